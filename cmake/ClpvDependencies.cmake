@@ -1,0 +1,32 @@
+# The libraries clpv stands on, all of them packages of Debian 12.
+find_package(OpenCL REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(OpenImageIO REQUIRED)
+# Debian's package names OpenCV's headers, which it does not need and may not be there.
+get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+set(oiio_present)
+foreach(directory IN LISTS oiio_includes)
+  if(EXISTS "${directory}")
+    list(APPEND oiio_present "${directory}")
+  endif()
+endforeach()
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_present}")
+find_package(CLI11 REQUIRED)
+find_package(Threads REQUIRED)
+find_package(embree 3 REQUIRED)
+find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
+
+function(clpv_link_dependencies target)
+  target_compile_definitions(${target} PUBLIC
+    CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120 CL_HPP_ENABLE_EXCEPTIONS
+    CL_TARGET_OPENCL_VERSION=120 GLM_FORCE_EXPLICIT_CTOR SPDLOG_FMT_EXTERNAL)
+  target_link_libraries(${target}
+    PUBLIC OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json
+           CLI11::CLI11 spdlog::spdlog Threads::Threads
+    PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} embree)
+  target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
+endfunction()

@@ -1,0 +1,13 @@
+# bin/clpv, the library, its headers and a CMake package: find_package(clpv), link clpv::clpv.
+include(CMakePackageConfigHelpers)
+install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY host/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clpv FILES_MATCHING PATTERN "*.hpp"
+        PATTERN commands EXCLUDE)
+install(DIRECTORY kernels/shared DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clpv/kernels FILES_MATCHING PATTERN "*.h")
+install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
+configure_package_config_file(cmake/clpvConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/clpvConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/clpvConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)

@@ -1,0 +1,19 @@
+// The sub-commands. Each adds itself to the program: its options, its help, and what it does when chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace clpv {
+
+/// What every command shares.
+struct Shared {
+  std::string device;  ///< --device
+  bool quiet = false;
+  int verbosity = 0;
+};
+
+// Each in commands/NAME.cpp. The callbacks throw clpv::Error; main turns it into an exit code.
+void add_devices(CLI::App& app, Shared& shared);
+
+}  // namespace clpv

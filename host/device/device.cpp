@@ -1,0 +1,155 @@
+#include "device/device.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+std::string trimmed(std::string text) {
+  while (!text.empty() && (std::isspace(static_cast<unsigned char>(text.back())) || text.back() == '\0')) text.pop_back();
+  return text;
+}
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
+  return out;
+}
+
+std::string type_name(cl_device_type type) {
+  if (type & CL_DEVICE_TYPE_CPU) return "cpu";
+  if (type & CL_DEVICE_TYPE_GPU) return "gpu";
+  if (type & CL_DEVICE_TYPE_ACCELERATOR) return "accelerator";
+  return "other";
+}
+
+/// Runs a fill of 1 MiB and asks whether the event's clock moved as a real one would.
+bool profiling_is_plausible(const cl::Device& handle) {
+  try {
+    cl::Context context(handle);
+    cl::CommandQueue queue(context, handle, CL_QUEUE_PROFILING_ENABLE);
+    const std::size_t bytes = 1 << 20;
+    cl::Buffer buffer(context, CL_MEM_READ_WRITE, bytes);
+    cl::Event event;
+    queue.enqueueFillBuffer(buffer, cl_uint{0}, 0, bytes, nullptr, &event);
+    queue.finish();
+    const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+    const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    return end > start && end - start >= 100;  // 1 MiB in under 100 ns would be 10 TB/s
+  } catch (const cl::Error&) {
+    return false;
+  }
+}
+
+Device describe(const cl::Device& handle) {
+  Device device;
+  device.handle = handle;
+  device.name = trimmed(handle.getInfo<CL_DEVICE_NAME>());
+  device.driver = trimmed(handle.getInfo<CL_DRIVER_VERSION>());
+  device.version = trimmed(handle.getInfo<CL_DEVICE_VERSION>());
+  device.type = type_name(handle.getInfo<CL_DEVICE_TYPE>());
+  device.compute_units = handle.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  device.max_alloc_bytes = handle.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  device.memory_bytes = handle.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  device.images = handle.getInfo<CL_DEVICE_IMAGE_SUPPORT>() == CL_TRUE;
+  const std::string extensions = handle.getInfo<CL_DEVICE_EXTENSIONS>();
+  const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
+  device.image3d_writes = device.images && has("cl_khr_3d_image_writes");
+  device.int64_atomics = has("cl_khr_int64_base_atomics") && has("cl_khr_int64_extended_atomics");
+  device.fp64 = has("cl_khr_fp64");
+  if (handle.getInfo<CL_DEVICE_AVAILABLE>() != CL_TRUE) device.missing.push_back("available");
+  if (handle.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() != CL_TRUE) device.missing.push_back("compiler");
+  int major = 0, minor = 0;
+  if (std::sscanf(device.version.c_str(), "OpenCL %d.%d", &major, &minor) != 2 || major * 10 + minor < 12) {
+    device.missing.push_back("OpenCL 1.2");
+  }
+  if (handle.getInfo<CL_DEVICE_ENDIAN_LITTLE>() != CL_TRUE) device.missing.push_back("little endian");
+  device.profiling_valid = device.supported() && profiling_is_plausible(handle);
+  return device;
+}
+
+std::string summary(const std::vector<Device>& devices) {
+  std::string text;
+  for (const Device& device : devices) text += fmt::format("\n  {}: {} ({})", device.index, device.name, device.platform);
+  return devices.empty() ? "\n  (none)" : text;
+}
+
+bool parse_int(std::string_view text, int& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+bool matches(const Device& device, std::string_view choice) {
+  int first = 0, second = 0;
+  if (parse_int(choice, first)) return device.index == first;
+  if (const auto colon = choice.find(':'); colon != std::string_view::npos) {
+    if (parse_int(choice.substr(0, colon), first) && parse_int(choice.substr(colon + 1), second)) {
+      return device.platform_index == first && device.device_index == second;
+    }
+  }
+  const std::string wanted = lower(choice);
+  return lower(device.name).find(wanted) != std::string::npos ||
+         lower(device.platform).find(wanted) != std::string::npos;
+}
+
+}  // namespace
+
+DeviceList list_devices() {
+  DeviceList list;
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return list;  // the loader found no platform at all
+  }
+  for (std::size_t p = 0; p < platforms.size(); ++p) {
+    std::vector<cl::Device> handles;
+    try {
+      platforms[p].getDevices(CL_DEVICE_TYPE_ALL, &handles);
+    } catch (const cl::Error&) {
+      handles.clear();  // CL_DEVICE_NOT_FOUND: Mesa's platforms commonly have none
+    }
+    const std::string platform = trimmed(platforms[p].getInfo<CL_PLATFORM_NAME>());
+    if (handles.empty()) list.platforms_without_devices.push_back(platform);
+    for (std::size_t d = 0; d < handles.size(); ++d) {
+      Device device = describe(handles[d]);
+      device.platform = platform;
+      device.index = static_cast<int>(list.devices.size());
+      device.platform_index = static_cast<int>(p);
+      device.device_index = static_cast<int>(d);
+      list.devices.push_back(std::move(device));
+    }
+  }
+  return list;
+}
+
+Device choose_device(std::string_view choice) {
+  const std::vector<Device> devices = list_devices().devices;
+  if (devices.empty()) throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+  const char* environment = std::getenv("CLPV_DEVICE");
+  if (choice.empty() && environment != nullptr) choice = environment;
+  if (choice.empty()) {
+    for (const Device& device : devices) {
+      if (device.supported()) return device;
+    }
+    throw Error(ExitCode::device, "no supported OpenCL device among:{}", summary(devices));
+  }
+  std::vector<Device> fitting;
+  for (const Device& device : devices) {
+    if (matches(device, choice)) fitting.push_back(device);
+  }
+  if (fitting.empty()) throw Error(ExitCode::device, "no OpenCL device fits '{}'; there are:{}", choice, summary(devices));
+  if (fitting.size() > 1) throw Error(ExitCode::device, "several OpenCL devices fit '{}':{}", choice, summary(fitting));
+  if (!fitting[0].supported()) {
+    throw Error(ExitCode::device, "device {} ({}) lacks: {}", fitting[0].index, fitting[0].name,
+                fmt::join(fitting[0].missing, ", "));
+  }
+  return fitting[0];
+}
+
+}  // namespace clpv

@@ -1,0 +1,96 @@
+// A device in use: context, in-order queue, programs built so far, memory held and times taken.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "device/device.hpp"
+#include "device/timeline.hpp"
+
+namespace clpv {
+
+/// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with CLPV_.
+using Literals = std::map<std::string, std::string>;
+
+/// A float literal of the kernel language that reads back as float(value): "0.25f", "1e-05f".
+std::string float_literal(double value);
+
+/// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis functions,
+/// transport) that `#include "generated.h"`-style files refer to.
+struct ProgramSource {
+  std::string file;      ///< "propagate.cl"
+  Literals literals;     ///< before everything else
+  std::string generated;  ///< text placed after the literals and before the file
+  std::string options = "-cl-std=CL1.2";
+};
+
+/// One device opened for work. Everything is enqueued on one in-order queue. Not thread safe; one a thread.
+class Session {
+ public:
+  explicit Session(Device device);
+
+  const Device& device() const { return device_; }
+  cl::Context& context() { return context_; }
+  cl::CommandQueue& queue() { return queue_; }
+  Timeline& timeline() { return timeline_; }
+
+  /// The kernel `name` of a program, built at the first use of this very source.
+  /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault.
+  cl::Kernel kernel(const ProgramSource& source, const std::string& name);
+
+  /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill(). `what` names it in errors.
+  /// Throws Error(run_time) before allocating where the device cannot hold it.
+  cl::Buffer buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags = CL_MEM_READ_WRITE);
+  void account(std::size_t bytes) { bytes_ += bytes; }  ///< for memory taken outside buffer()
+
+  /// Runs `kernel` over at least `global` work-items, rounded up to whole groups of `local` in each dimension
+  /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current mark.
+  void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
+  void fill_zero(const cl::Buffer& buffer, std::size_t bytes);
+  void copy(const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes);
+
+  template <typename T>
+  void write(const cl::Buffer& buffer, const std::vector<T>& values) {
+    if (!values.empty()) queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
+  }
+  template <typename T>
+  cl::Buffer upload(const std::vector<T>& values, const std::string& what) {
+    cl::Buffer made = buffer(values.size() * sizeof(T), what);
+    write(made, values);
+    return made;
+  }
+  template <typename T>
+  std::vector<T> read(const cl::Buffer& buffer, std::size_t count) {
+    std::vector<T> values(count);
+    if (count > 0) queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(T), values.data());
+    return values;
+  }
+
+  std::size_t device_bytes() const { return bytes_; }  ///< allocated so far
+  double build_ms() const { return build_ms_; }        ///< spent compiling so far
+
+ private:
+  Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  Timeline timeline_;
+  std::map<std::string, cl::Program> programs_;
+  std::size_t bytes_ = 0;
+  double build_ms_ = 0;
+};
+
+/// Marks a stage for the timeline while it lives.
+class StageScope {
+ public:
+  StageScope(Session& session, StageMark mark) : session_(session) { session_.timeline().begin(std::move(mark)); }
+  ~StageScope() noexcept(false) { session_.timeline().end(session_.queue()); }
+  StageScope(const StageScope&) = delete;
+  StageScope& operator=(const StageScope&) = delete;
+
+ private:
+  Session& session_;
+};
+
+}  // namespace clpv

@@ -1,0 +1,51 @@
+#include "device/timeline.hpp"
+
+#include <algorithm>
+
+namespace clpv {
+
+void Timeline::begin(StageMark mark) {
+  const auto same = [&](const Entry& entry) {
+    return entry.mark.stage == mark.stage && entry.mark.cascade == mark.cascade && entry.mark.light == mark.light;
+  };
+  const auto found = std::find_if(entries_.begin(), entries_.end(), same);
+  current_ = static_cast<int>(found - entries_.begin());
+  if (found == entries_.end()) entries_.push_back({std::move(mark), {}, 0});
+  started_ = std::chrono::steady_clock::now();
+}
+
+void Timeline::end(cl::CommandQueue& queue) {
+  if (current_ < 0) return;
+  if (!events_valid_) {
+    queue.finish();
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started_;
+    entries_[static_cast<std::size_t>(current_)].wall_ms += elapsed.count();
+  }
+  current_ = -1;
+}
+
+void Timeline::add(const cl::Event& event) {
+  if (current_ >= 0 && events_valid_) entries_[static_cast<std::size_t>(current_)].events.push_back(event);
+}
+
+std::vector<StageTime> Timeline::times() const {
+  std::vector<StageTime> result;
+  for (const Entry& entry : entries_) {
+    StageTime time{entry.mark, entry.wall_ms, events_valid_};
+    for (const cl::Event& event : entry.events) {
+      event.wait();
+      const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+      const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+      time.ms += static_cast<double>(end - start) * 1e-6;
+    }
+    result.push_back(std::move(time));
+  }
+  return result;
+}
+
+void Timeline::clear() {
+  entries_.clear();
+  current_ = -1;
+}
+
+}  // namespace clpv

@@ -1,0 +1,43 @@
+// Parses, calls a command, turns an error into an exit code; nothing else.
+#include <CL/opencl.hpp>
+#include <iostream>
+
+#include "commands/commands.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+
+int main(int argc, char** argv) {
+  using namespace clpv;
+  CLI::App app{"clpv: cascaded light propagation volumes in OpenCL"};
+  Shared shared;
+  app.set_version_flag("--version", std::string("clpv ") + CLPV_VERSION);
+  app.add_option("--device", shared.device, "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)")
+      ->type_name("DEVICE");
+  app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
+  app.add_flag("-v,--verbose", shared.verbosity, "tell more; twice: still more");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.parse_complete_callback([&] { set_log_level(shared.quiet, shared.verbosity); });
+  add_devices(app, shared);
+  app.footer(
+      "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or image file;\n"
+      "4 no device, or one that lacks what was asked; 5 validation failed. stdout is data, stderr is talk.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+  } catch (const Error& error) {
+    std::cerr << "clpv: " << error.what() << '\n';
+    return static_cast<int>(error.code());
+  } catch (const cl::Error& error) {
+    std::cerr << "clpv: OpenCL: " << error.what() << " failed with code " << error.err() << '\n';
+    return static_cast<int>(ExitCode::run_time);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "clpv: out of memory\n";
+    return static_cast<int>(ExitCode::run_time);
+  } catch (const std::exception& error) {
+    std::cerr << "clpv: " << error.what() << '\n';
+    return static_cast<int>(ExitCode::run_time);
+  }
+  return 0;
+}

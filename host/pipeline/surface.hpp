@@ -1,0 +1,39 @@
+// What a view sees: an RSM or the camera's G-buffer, on the device and read back.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "device/session.hpp"
+#include "kernels/shared/view.h"
+#include "pipeline/options.hpp"
+
+namespace clpv {
+
+static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
+
+/// One value a pixel, row 0 first, on the device. Depth [m] along the view's forward axis, 0: no surface there.
+/// `format` paper: normal and colour hold 4 bytes a pixel; float32: 4 floats (kernels/surface.h).
+struct Surface {
+  ClpvView view{};
+  RsmFormat format = RsmFormat::float32;
+  float colour_scale = 1;  ///< what a stored 1 of `colour` means in format paper
+  cl::Buffer depth;        ///< float
+  cl::Buffer normal;       ///< unit, world space, turned towards the viewer; 0 where there is no surface
+  cl::Buffer colour;       ///< camera: albedo; light: flux of the virtual point light [W]
+  cl::Buffer emissive;     ///< camera only: float4, emitted radiance [W/m^2/sr]
+};
+
+/// A Surface read back, or made by a test; what the twins of host/reference work on.
+struct SurfaceImage {
+  ClpvView view{};
+  std::vector<float> depth;
+  std::vector<glm::vec4> normal, colour, emissive;  ///< xyz; w unused
+};
+
+SurfaceImage read_surface(Session& session, const Surface& surface);
+Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format = RsmFormat::float32,
+                       float colour_scale = 1);
+
+}  // namespace clpv

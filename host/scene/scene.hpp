@@ -1,0 +1,64 @@
+// What is lit: triangles, materials, textures, cameras and lights. Plain data in metres; knows no OpenCL.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/shared/light.h"
+#include "kernels/shared/mesh.h"
+
+namespace clpv {
+
+using Vertex = ClpvVertex;
+using Triangle = ClpvTriangle;
+using Material = ClpvMaterial;
+
+static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX && sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE &&
+              sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL && sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE &&
+              sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
+
+/// RGBA, 8 bits each, row 0 first (v = 0): sRGB-encoded colour, linear alpha.
+struct Texture {
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t wrap_u = CLPV_WRAP_REPEAT, wrap_v = CLPV_WRAP_REPEAT;
+  std::vector<std::uint8_t> rgba;
+  std::string name;
+};
+
+struct Camera {
+  std::string name;
+  glm::vec3 eye{0};              ///< [m]
+  glm::vec3 forward{0, 0, -1};   ///< unit
+  glm::vec3 up{0, 1, 0};         ///< unit, across forward
+  float vertical_fov = 1.0472f;  ///< [rad], in (0, pi)
+  float near_depth = 0.05f;      ///< [m]
+};
+
+struct Light {
+  std::string name;
+  ClpvLight data{};
+};
+
+struct Scene {
+  std::string name;  ///< the file's stem
+  std::string path;  ///< the file it came from
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<Material> materials;  ///< at least one, where there are triangles
+  std::vector<Texture> textures;
+  std::vector<Camera> cameras;  ///< at least one after loading
+  std::vector<Light> lights;
+  glm::vec3 lower{0}, upper{0};  ///< bounding box [m]
+  float exposure = 0;            ///< [EV]: the shown image is radiance x 2^exposure
+  std::optional<float> cascade_size;  ///< the scene file's wish for the finest cascade's edge [m]
+  std::optional<int> cascades;
+  std::vector<std::string> notes;  ///< what the loader decided and a user should be told ("no light: added a sun")
+
+  /// The camera of that name; empty: the first. Throws Error(usage) that lists the names there are.
+  const Camera& camera(const std::string& name) const;
+};
+
+}  // namespace clpv

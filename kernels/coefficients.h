@@ -1,0 +1,47 @@
+// The N coefficients of a cell as a struct of named scalars, and the few operations on it.
+// Named scalars and straight-line code, not arrays and loops: work-items then vectorise on CPU devices.
+//
+// CLPV_N and CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N-1), come from the host.
+#ifndef CLPV_COEFFICIENTS_H
+#define CLPV_COEFFICIENTS_H
+
+typedef struct {
+#define CLPV_DO(i) float c##i;
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+} Coefficients;
+
+static inline Coefficients clpv_zero(void) {
+  Coefficients r;
+#define CLPV_DO(i) r.c##i = 0.0f;
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return r;
+}
+
+static inline Coefficients clpv_add(const Coefficients a, const Coefficients b) {
+  Coefficients r;
+#define CLPV_DO(i) r.c##i = a.c##i + b.c##i;
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return r;
+}
+
+// a + s b
+static inline Coefficients clpv_add_scaled(const Coefficients a, const float s, const Coefficients b) {
+  Coefficients r;
+#define CLPV_DO(i) r.c##i = fma(s, b.c##i, a.c##i);
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return r;
+}
+
+static inline float clpv_dot(const Coefficients a, const Coefficients b) {
+  float r = 0.0f;
+#define CLPV_DO(i) r = fma(a.c##i, b.c##i, r);
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return r;
+}
+
+#endif

@@ -1,0 +1,17 @@
+// A cascade's grid of cubic light cells, as host and kernels both see it.
+//
+// Cell (i, j, k) fills origin + s [i, i+1] x [j, j+1] x [k, k+1]; its sample is its centre.
+// Geometry samples stand on the cells' corners: sample (i, j, k) at origin + s (i, j, k), i in 0..n.
+#ifndef CLPV_SHARED_GRID_H
+#define CLPV_SHARED_GRID_H
+
+typedef struct {
+  float origin[3];  // least corner [m], a whole multiple of cell
+  float cell;       // edge s of a cell [m]
+  unsigned int n;   // cells along each axis
+  float unused[3];
+} ClpvGrid;
+
+#define CLPV_SIZEOF_GRID 32
+
+#endif

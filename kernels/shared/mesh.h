@@ -1,0 +1,50 @@
+// Triangles and their materials, as host and kernels both see them: world space, metres.
+#ifndef CLPV_SHARED_MESH_H
+#define CLPV_SHARED_MESH_H
+
+#define CLPV_NO_TEXTURE 0xffffffffu
+
+#define CLPV_WRAP_REPEAT 0
+#define CLPV_WRAP_CLAMP 1
+#define CLPV_WRAP_MIRROR 2
+
+#define CLPV_MATERIAL_MASKED 1u        // texels with alpha below alpha_cutoff are holes
+#define CLPV_MATERIAL_DOUBLE_SIDED 2u  // seen from behind too, its normal then turned round
+
+typedef struct {
+  float position[3];  // [m]
+  float normal[3];    // unit
+  float uv[2];        // of the base-colour texture, its KHR_texture_transform applied
+  float colour[4];    // vertex colour, linear; 1 where the model has none
+} ClpvVertex;
+
+#define CLPV_SIZEOF_VERTEX 48
+
+typedef struct {
+  unsigned int vertex[3];
+  unsigned int material;
+} ClpvTriangle;
+
+#define CLPV_SIZEOF_TRIANGLE 16
+
+typedef struct {
+  float base_colour[4];  // linear albedo and alpha, times the texture's and the vertex's
+  float emissive[3];     // radiance [W/m^2/sr], added when seen; it does not light
+  float alpha_cutoff;
+  unsigned int texture;           // index, or CLPV_NO_TEXTURE
+  unsigned int emissive_texture;  // index, or CLPV_NO_TEXTURE; looked up with the same uv
+  unsigned int flags;             // CLPV_MATERIAL_*
+  unsigned int unused;
+} ClpvMaterial;
+
+#define CLPV_SIZEOF_MATERIAL 48
+
+typedef struct {
+  unsigned int offset;  // of texel (0, 0) in the texel buffer: 4 bytes a texel, sRGB-encoded RGB, linear alpha
+  unsigned int width, height;
+  unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v
+} ClpvTexture;
+
+#define CLPV_SIZEOF_TEXTURE 16
+
+#endif

@@ -1,0 +1,9 @@
+// Light volumes: the radiant intensity [W/sr] of every light cell, N coefficients a channel.
+// CLPV_GRID is the number of cells along each axis.
+#include "coefficients.h"
+#define CLPV_VOLUME light
+#define CLPV_VOLUME_N CLPV_GRID
+#define CLPV_VOLUME_CELL Coefficients
+#define CLPV_VOLUME_EACH CLPV_EACH_COEFFICIENT
+#define CLPV_VOLUME_COUNT CLPV_N
+#include "volume/soa.h"
