@@ -1,0 +1,30 @@
+// Holds each stage's kernels against its double-precision twin, on any device: what `clpv check` and the tests run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/session.hpp"
+
+namespace clpv::reference {
+
+/// The outcome of one comparison.
+struct CheckResult {
+  std::string stage;    ///< "propagate"
+  std::string variant;  ///< what varied: "sh2/sampled/blockers"
+  double worst = 0;     ///< largest error, as the tolerance table defines it for the stage
+  double allowed = 0;   ///< tolerance(stage)
+  std::string place;    ///< where the worst error is, with both values: "cell 3,4,5 channel 0: 0.25, twin 0.26"
+  bool passed() const { return worst <= allowed; }  // false for NaN too
+};
+
+using CheckResults = std::vector<CheckResult>;
+
+// One a stage, in reference/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device.
+CheckResults check_rasterize(Session& session);
+CheckResults check_inject(Session& session);
+CheckResults check_propagate(Session& session);
+CheckResults check_gather(Session& session);
+CheckResults check_shade(Session& session);
+
+}  // namespace clpv::reference
