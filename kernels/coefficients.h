@@ -1,15 +1,10 @@
 // The N coefficients of a cell as a struct of named scalars, and the few operations on it.
 // Named scalars and straight-line code, not arrays and loops: work-items then vectorise on CPU devices.
 //
-// CLPV_N and CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N-1), come from the host.
+// CLPV_N, CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N-1), and the struct come from the host
+// (coefficient_macros), since generated text such as a basis's functions stands before this file and uses them.
 #ifndef CLPV_COEFFICIENTS_H
 #define CLPV_COEFFICIENTS_H
-
-typedef struct {
-#define CLPV_DO(i) float c##i;
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-} Coefficients;
 
 static inline Coefficients clpv_zero(void) {
   Coefficients r;

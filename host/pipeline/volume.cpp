@@ -50,9 +50,12 @@ void Volume::write(Session& session, const std::vector<float>& values) {
 }
 
 std::string coefficient_macros(int coefficients) {
-  std::string each = "#define CLPV_EACH_COEFFICIENT(DO)";
-  for (int i = 0; i < coefficients; ++i) each += fmt::format(" DO({})", i);
-  return fmt::format("#define CLPV_N {}\n{}\n", coefficients, each);
+  std::string each = "#define CLPV_EACH_COEFFICIENT(DO)", names;
+  for (int i = 0; i < coefficients; ++i) {
+    each += fmt::format(" DO({})", i);
+    names += fmt::format("{} c{}", i == 0 ? "" : ",", i);
+  }
+  return fmt::format("#define CLPV_N {}\n{}\ntypedef struct {{\n  float{};\n}} Coefficients;\n", coefficients, each, names);
 }
 
 }  // namespace clpv

@@ -38,7 +38,8 @@ class Volume {
   cl::Buffer buffer_;
 };
 
-/// Text every kernel that handles coefficients starts with: CLPV_N and CLPV_EACH_COEFFICIENT(DO) (ProgramSource::generated).
+/// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_N,
+/// CLPV_EACH_COEFFICIENT(DO) and the struct Coefficients of N floats c0, c1, ...
 std::string coefficient_macros(int coefficients);
 
 }  // namespace clpv
