@@ -19,4 +19,7 @@ typedef struct {
 
 #define CLPV_SIZEOF_LIGHT 64
 
+// [m]; a point nearer to a spot or point light is lit as from here, so that nothing is infinite.
+#define CLPV_LIGHT_LEAST_DISTANCE 1e-3f
+
 #endif
