@@ -1,0 +1,24 @@
+// Where a view's pixels look, in double: the twin of kernels/surface.h.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "kernels/shared/view.h"
+
+namespace clpv::reference {
+
+/// The surface point [m] at depth [m] behind pixel (px, py); pixel centres at whole numbers.
+glm::dvec3 surface_position(const ClpvView& view, double px, double py, double depth);
+
+/// A point as a view sees it: pixel coordinates (pixel centres at whole numbers) and depth [m].
+/// Perspective: meaningful where depth > 0.
+struct Projected {
+  glm::dvec2 pixel{0};
+  double depth = 0;
+};
+Projected project(const ClpvView& view, const glm::dvec3& point);
+
+/// Distance between neighbouring pixels' surface points [m], on a plane across `forward` at that depth [m].
+double pixel_edge(const ClpvView& view, double depth);
+
+}  // namespace clpv::reference
