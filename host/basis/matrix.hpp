@@ -10,23 +10,29 @@ namespace clpv {
 class Matrix {
  public:
   Matrix() = default;
-  Matrix(int rows, int columns) : rows_(rows), columns_(columns), values_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), 0.0) {}
+  Matrix(int rows, int columns)
+      : rows_(rows),
+        columns_(columns),
+        values_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), 0.0) {}
   static Matrix identity(int n);
 
   int rows() const { return rows_; }
   int columns() const { return columns_; }
   double& operator()(int row, int column) { return values_[index(row, column)]; }
   double operator()(int row, int column) const { return values_[index(row, column)]; }
-  std::span<const double> row(int r) const { return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)}; }
+  std::span<const double> row(int r) const {
+    return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)};
+  }
   std::span<double> row(int r) { return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)}; }
 
-  Matrix operator*(const Matrix& other) const;                       ///< sizes must fit
+  Matrix operator*(const Matrix& other) const;  ///< sizes must fit
   std::vector<double> operator*(std::span<const double> vector) const;
   Matrix transposed() const;
 
  private:
   std::size_t index(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
   }
   int rows_ = 0, columns_ = 0;
   std::vector<double> values_;

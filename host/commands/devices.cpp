@@ -1,11 +1,10 @@
 // clpv devices: every OpenCL device, and what it can do.
-#include "device/device.hpp"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "device/device.hpp"
 
 namespace clpv {
 namespace {
@@ -37,8 +36,9 @@ nlohmann::json to_json(const DeviceList& list) {
 void print(const DeviceList& list) {
   for (const Device& d : list.devices) {
     fmt::print("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
-    fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}, events {}\n", d.type,
-               d.compute_units, d.max_alloc_bytes >> 20, d.images ? "yes" : "no", d.image3d_writes ? "yes" : "no",
+    fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}, events {}\n",
+               d.type, d.compute_units, d.max_alloc_bytes >> 20, d.images ? "yes" : "no",
+               d.image3d_writes ? "yes" : "no",
                d.profiling_valid ? "valid" : "implausible (wall time instead)");
     if (!d.supported()) fmt::print("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));
   }

@@ -11,7 +11,8 @@ namespace clpv {
 namespace {
 
 std::string trimmed(std::string text) {
-  while (!text.empty() && (std::isspace(static_cast<unsigned char>(text.back())) || text.back() == '\0')) text.pop_back();
+  while (!text.empty() && (std::isspace(static_cast<unsigned char>(text.back())) || text.back() == '\0'))
+    text.pop_back();
   return text;
 }
 
@@ -75,7 +76,8 @@ Device describe(const cl::Device& handle) {
 
 std::string summary(const std::vector<Device>& devices) {
   std::string text;
-  for (const Device& device : devices) text += fmt::format("\n  {}: {} ({})", device.index, device.name, device.platform);
+  for (const Device& device : devices)
+    text += fmt::format("\n  {}: {} ({})", device.index, device.name, device.platform);
   return devices.empty() ? "\n  (none)" : text;
 }
 
@@ -130,7 +132,8 @@ DeviceList list_devices() {
 
 Device choose_device(std::string_view choice) {
   const std::vector<Device> devices = list_devices().devices;
-  if (devices.empty()) throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+  if (devices.empty())
+    throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
   const char* environment = std::getenv("CLPV_DEVICE");
   if (choice.empty() && environment != nullptr) choice = environment;
   if (choice.empty()) {
@@ -143,8 +146,10 @@ Device choose_device(std::string_view choice) {
   for (const Device& device : devices) {
     if (matches(device, choice)) fitting.push_back(device);
   }
-  if (fitting.empty()) throw Error(ExitCode::device, "no OpenCL device fits '{}'; there are:{}", choice, summary(devices));
-  if (fitting.size() > 1) throw Error(ExitCode::device, "several OpenCL devices fit '{}':{}", choice, summary(fitting));
+  if (fitting.empty())
+    throw Error(ExitCode::device, "no OpenCL device fits '{}'; there are:{}", choice, summary(devices));
+  if (fitting.size() > 1)
+    throw Error(ExitCode::device, "several OpenCL devices fit '{}':{}", choice, summary(fitting));
   if (!fitting[0].supported()) {
     throw Error(ExitCode::device, "device {} ({}) lacks: {}", fitting[0].index, fitting[0].name,
                 fmt::join(fitting[0].missing, ", "));

@@ -37,9 +37,9 @@ struct DeviceList {
 /// Every device of every platform. No OpenCL at all is an empty list, not an error.
 DeviceList list_devices();
 
-/// The device named by `choice`: an index "N", "PLATFORM:DEVICE", or a part of its name or platform (letter case
-/// aside); empty: CLPV_DEVICE, else the first supported one.
-/// Throws Error(device) where none fits, several fit, or the one that fits lacks something (named).
+/// The device named by `choice`: an index "N", "PLATFORM:DEVICE", or a part of its name or platform (letter
+/// case aside); empty: CLPV_DEVICE, else the first supported one. Throws Error(device) where none fits,
+/// several fit, or the one that fits lacks something (named).
 Device choose_device(std::string_view choice = {});
 
 }  // namespace clpv

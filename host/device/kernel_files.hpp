@@ -7,8 +7,8 @@
 
 namespace clpv {
 
-/// Text of kernels/NAME ("propagate.cl", "volume/soa.h"), from the folder CLPV_KERNEL_DIR where that is set and
-/// has it, else the embedded copy. Throws Error(run_time) for an unknown name.
+/// Text of kernels/NAME ("propagate.cl", "volume/soa.h"), from the folder CLPV_KERNEL_DIR where that is set
+/// and has it, else the embedded copy. Throws Error(run_time) for an unknown name.
 std::string kernel_file(const std::string& name);
 
 /// kernel_file(name) with each `#include "other"` replaced by that file's text (paths from kernels/), `#line`

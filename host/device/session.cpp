@@ -10,7 +10,9 @@
 namespace clpv {
 namespace {
 
-std::size_t round_up(std::size_t value, std::size_t step) { return step == 0 ? value : (value + step - 1) / step * step; }
+std::size_t round_up(std::size_t value, std::size_t step) {
+  return step == 0 ? value : (value + step - 1) / step * step;
+}
 
 std::string full_text(const ProgramSource& source) {
   std::string text;
@@ -19,14 +21,15 @@ std::string full_text(const ProgramSource& source) {
   return text + assemble_kernel_source(source.file);
 }
 
-cl::Program build(cl::Context& context, const Device& device, const ProgramSource& source, const std::string& text) {
+cl::Program build(cl::Context& context, const Device& device, const ProgramSource& source,
+                  const std::string& text) {
   cl::Program program(context, text);
   try {
     program.build(device.handle, source.options.c_str());
   } catch (const cl::Error&) {
     const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle);
-    throw Error(ExitCode::run_time, "kernels/{} does not build on {} ({}) with '{}':\n{}", source.file, device.name,
-                device.driver, source.options, log);
+    throw Error(ExitCode::run_time, "kernels/{} does not build on {} ({}) with '{}':\n{}", source.file,
+                device.name, device.driver, source.options, log);
   }
   return program;
 }
@@ -62,8 +65,10 @@ cl::Kernel Session::kernel(const ProgramSource& source, const std::string& name)
 cl::Buffer Session::buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags) {
   bytes = std::max<std::size_t>(bytes, 4);
   if (bytes > device_.max_alloc_bytes || bytes_ + bytes > device_.memory_bytes) {
-    throw Error(ExitCode::run_time, "{} needs {} MiB; {} allows {} MiB a buffer and {} MiB in all, {} MiB of them in use",
-                what, bytes >> 20, device_.name, device_.max_alloc_bytes >> 20, device_.memory_bytes >> 20, bytes_ >> 20);
+    throw Error(ExitCode::run_time,
+                "{} needs {} MiB; {} allows {} MiB a buffer and {} MiB in all, {} MiB of them in use", what,
+                bytes >> 20, device_.name, device_.max_alloc_bytes >> 20, device_.memory_bytes >> 20,
+                bytes_ >> 20);
   }
   cl::Buffer made(context_, flags, bytes);
   bytes_ += bytes;

@@ -11,17 +11,18 @@
 
 namespace clpv {
 
-/// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with CLPV_.
+/// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with
+/// CLPV_.
 using Literals = std::map<std::string, std::string>;
 
 /// A float literal of the kernel language that reads back as float(value): "0.25f", "1e-05f".
 std::string float_literal(double value);
 
-/// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis functions,
-/// transport) that `#include "generated.h"`-style files refer to.
+/// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis
+/// functions, transport) that `#include "generated.h"`-style files refer to.
 struct ProgramSource {
-  std::string file;      ///< "propagate.cl"
-  Literals literals;     ///< before everything else
+  std::string file;       ///< "propagate.cl"
+  Literals literals;      ///< before everything else
   std::string generated;  ///< text placed after the literals and before the file
   std::string options = "-cl-std=CL1.2";
 };
@@ -46,14 +47,16 @@ class Session {
   void account(std::size_t bytes) { bytes_ += bytes; }  ///< for memory taken outside buffer()
 
   /// Runs `kernel` over at least `global` work-items, rounded up to whole groups of `local` in each dimension
-  /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current mark.
+  /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current
+  /// mark.
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
   void fill_zero(const cl::Buffer& buffer, std::size_t bytes);
   void copy(const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes);
 
   template <typename T>
   void write(const cl::Buffer& buffer, const std::vector<T>& values) {
-    if (!values.empty()) queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
+    if (!values.empty())
+      queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
   }
   template <typename T>
   cl::Buffer upload(const std::vector<T>& values, const std::string& what) {
@@ -84,7 +87,9 @@ class Session {
 /// Marks a stage for the timeline while it lives.
 class StageScope {
  public:
-  StageScope(Session& session, StageMark mark) : session_(session) { session_.timeline().begin(std::move(mark)); }
+  StageScope(Session& session, StageMark mark) : session_(session) {
+    session_.timeline().begin(std::move(mark));
+  }
   ~StageScope() noexcept(false) { session_.timeline().end(session_.queue()); }
   StageScope(const StageScope&) = delete;
   StageScope& operator=(const StageScope&) = delete;

@@ -6,7 +6,8 @@ namespace clpv {
 
 void Timeline::begin(StageMark mark) {
   const auto same = [&](const Entry& entry) {
-    return entry.mark.stage == mark.stage && entry.mark.cascade == mark.cascade && entry.mark.light == mark.light;
+    return entry.mark.stage == mark.stage && entry.mark.cascade == mark.cascade &&
+           entry.mark.light == mark.light;
   };
   const auto found = std::find_if(entries_.begin(), entries_.end(), same);
   current_ = static_cast<int>(found - entries_.begin());

@@ -1,28 +1,58 @@
-// Every choice that shapes a rendered frame, with its default.
+// Every choice that shapes a rendered frame: one table for the command line, --stats, image metadata and
+// presets.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "pipeline/transport_source.hpp"
 
 namespace clpv {
 
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
-enum class ToneMap { none, reinhard, aces };
 
 struct RenderOptions {
   std::string basis = "sh2";
   double lambda = 0.25;
   std::string transport = "sampled";
+  std::string state = "coefficients";
   int iterations = 8;
-  int grid = 32;               ///< cells along each axis of a cascade
+  int grid = 32;
   int cascades = 3;
-  double cascade_size = 12.5;  ///< edge of the finest cascade [m]; each next one twice that
-  int rsm_size = 256;          ///< texels along each side
-  int shadow_size = 1024;      ///< texels along each side of a light's shadow map
-  RsmFormat rsm_format = RsmFormat::float32;
-  bool occlusion = true;       ///< indirect shadows: the geometry volume blocks
+  double cascade_size = 12.5;
+  int rsm_size = 256;
+  std::string rsm_format = "float";
+  int shadow_size = 1024;
+  bool occlusion = true;
+  std::string blocking = "two-sided";
+  std::string injection = "nearest";
+  double gather_offset = 0.5;
+  double gather_floor = 0;
+  bool late_light = false;
   int width = 960, height = 540;
+
+  RsmFormat rsm() const { return rsm_format == "paper" ? RsmFormat::paper : RsmFormat::float32; }
+  State travelling() const { return state == "fluxes" ? State::fluxes : State::coefficients; }
 };
+
+/// What a user is told of one option.
+struct OptionInfo {
+  std::string name;     ///< long name without dashes: "cascade-size"
+  std::string help;     ///< with the unit
+  std::string allowed;  ///< "on|off", "1..512"
+  std::string value;    ///< as text, of the given options
+};
+
+/// All options with their present values, in the order of --help.
+std::vector<OptionInfo> list_options(const RenderOptions& options);
+
+/// Sets one option from text. Throws Error(usage) that names the option, the value found and the values
+/// allowed.
+void set_option(RenderOptions& options, std::string_view name, std::string_view value);
+
+/// Every option resolved, by name: numbers, strings, and true or false.
+nlohmann::json to_json(const RenderOptions& options);
 
 }  // namespace clpv

@@ -13,8 +13,8 @@ namespace clpv {
 
 static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
 
-/// One value a pixel, row 0 first, on the device. Depth [m] along the view's forward axis, 0: no surface there.
-/// `format` paper: normal and colour hold 4 bytes a pixel; float32: 4 floats (kernels/surface.h).
+/// One value a pixel, row 0 first, on the device. Depth [m] along the view's forward axis, 0: no surface
+/// there. `format` paper: normal and colour hold 4 bytes a pixel; float32: 4 floats (kernels/surface.h).
 struct Surface {
   ClpvView view{};
   RsmFormat format = RsmFormat::float32;

@@ -5,7 +5,9 @@
 namespace clpv {
 namespace {
 
-std::size_t pitch(const VolumeShape& shape) { return static_cast<std::size_t>(shape.n) + 2; }
+std::size_t pitch(const VolumeShape& shape) {
+  return static_cast<std::size_t>(shape.n) + 2;
+}
 
 std::size_t planes(const VolumeShape& shape) {
   return static_cast<std::size_t>(shape.channels) * static_cast<std::size_t>(shape.coefficients);
@@ -34,7 +36,9 @@ Volume::Volume(Session& session, const VolumeShape& shape, const std::string& wh
   clear(session);
 }
 
-void Volume::clear(Session& session) { session.fill_zero(buffer_, bytes_); }
+void Volume::clear(Session& session) {
+  session.fill_zero(buffer_, bytes_);
+}
 
 std::vector<float> Volume::read(Session& session) const {
   const std::vector<float> padded = session.read<float>(buffer_, bytes_ / sizeof(float));
@@ -49,13 +53,19 @@ void Volume::write(Session& session, const std::vector<float>& values) {
   session.write(buffer_, padded);
 }
 
-std::string coefficient_macros(int coefficients) {
-  std::string each = "#define CLPV_EACH_COEFFICIENT(DO)", names;
-  for (int i = 0; i < coefficients; ++i) {
-    each += fmt::format(" DO({})", i);
-    names += fmt::format("{} c{}", i == 0 ? "" : ",", i);
+std::string cell_macros(const std::string& type, const std::string& each, int count) {
+  std::string list, fields;
+  for (int i = 0; i < count; ++i) {
+    list += fmt::format(" DO({})", i);
+    fields += fmt::format("{} c{}", i == 0 ? "" : ",", i);
   }
-  return fmt::format("#define CLPV_N {}\n{}\ntypedef struct {{\n  float{};\n}} Coefficients;\n", coefficients, each, names);
+  return fmt::format("#define CLPV_EACH_{}(DO){}\ntypedef struct {{\n  float{};\n}} {};\n", each, list,
+                     fields, type);
+}
+
+std::string coefficient_macros(int coefficients) {
+  return fmt::format("#define CLPV_N {}\n", coefficients) +
+         cell_macros("Coefficients", "COEFFICIENT", coefficients);
 }
 
 }  // namespace clpv

@@ -17,7 +17,8 @@ struct VolumeShape {
 };
 
 /// A volume on the device in the `soa` layout (kernels/volume/soa.h): one plane of samples a channel and
-/// coefficient, each plane with a border of one zero sample all round, so that neighbours need no bounds checks.
+/// coefficient, each plane with a border of one zero sample all round, so that neighbours need no bounds
+/// checks.
 class Volume {
  public:
   Volume(Session& session, const VolumeShape& shape, const std::string& what);
@@ -41,5 +42,8 @@ class Volume {
 /// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_N,
 /// CLPV_EACH_COEFFICIENT(DO) and the struct Coefficients of N floats c0, c1, ...
 std::string coefficient_macros(int coefficients);
+
+/// The struct `type` of `count` floats c0, c1, ... and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
+std::string cell_macros(const std::string& type, const std::string& each, int count);
 
 }  // namespace clpv

@@ -1,4 +1,5 @@
-// Holds each stage's kernels against its double-precision twin, on any device: what `clpv check` and the tests run.
+// Holds each stage's kernels against its double-precision twin, on any device: what `clpv check` and the
+// tests run.
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@ struct CheckResult {
   std::string variant;  ///< what varied: "sh2/sampled/blockers"
   double worst = 0;     ///< largest error, as the tolerance table defines it for the stage
   double allowed = 0;   ///< tolerance(stage)
-  std::string place;    ///< where the worst error is, with both values: "cell 3,4,5 channel 0: 0.25, twin 0.26"
+  std::string place;  ///< where the worst error is, with both values: "cell 3,4,5 channel 0: 0.25, twin 0.26"
   bool passed() const { return worst <= allowed; }  // false for NaN too
 };
 

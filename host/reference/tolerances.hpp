@@ -7,12 +7,14 @@ namespace clpv::reference {
 
 struct Tolerance {
   std::string_view stage;
-  double allowed;  ///< largest |kernel - twin| over the largest |twin| of the compared field, unless said otherwise
+  double allowed;  ///< largest |kernel - twin| over the largest |twin| of the compared field, unless said
+                   ///< otherwise
   std::string_view reason;
 };
 
 inline constexpr Tolerance kTolerances[] = {
-    {"propagate", 2e-5, "float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14)"},
+    {"propagate", 2e-5,
+     "float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14)"},
 };
 
 /// The tolerance of a stage. A stage without an entry allows nothing.

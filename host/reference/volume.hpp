@@ -13,8 +13,11 @@ struct Volume {
 
   Volume() = default;
   Volume(int samples, int coefficient_count, int channel_count = 3)
-      : n(samples), coefficients(coefficient_count), channels(channel_count),
-        values(static_cast<std::size_t>(samples) * samples * samples * coefficient_count * channel_count, 0.0) {}
+      : n(samples),
+        coefficients(coefficient_count),
+        channels(channel_count),
+        values(static_cast<std::size_t>(samples) * samples * samples * coefficient_count * channel_count,
+               0.0) {}
 
   std::size_t index(int channel, int i, int x, int y, int z) const {
     return ((((static_cast<std::size_t>(channel) * coefficients + i) * n + z) * n + y) * n) + x;

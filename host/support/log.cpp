@@ -11,9 +11,10 @@ void set_log_level(bool quiet, int verbosity) {
     spdlog::set_default_logger(made);
     return made;
   }();
-  logger->set_level(quiet ? spdlog::level::err
-                          : verbosity >= 2 ? spdlog::level::trace
-                                           : verbosity == 1 ? spdlog::level::debug : spdlog::level::info);
+  logger->set_level(quiet            ? spdlog::level::err
+                    : verbosity >= 2 ? spdlog::level::trace
+                    : verbosity == 1 ? spdlog::level::debug
+                                     : spdlog::level::info);
 }
 
 }  // namespace clpv

@@ -1,0 +1,18 @@
+// Where the cascades' grids stand: nested round the camera, snapped to whole cells.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "kernels/shared/grid.h"
+
+namespace clpv {
+
+static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
+
+/// `count` grids of `cells`^3 cells, finest first, edges `size`, 2 size, 4 size ... [m], each about `eye` [m]
+/// in its middle. Origins are whole multiples of the cell, so that a camera that moves inside a cell moves no
+/// grid, and light does not swim (Kaplanyan & Dachsbacher 2010, section 5).
+std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
+
+}  // namespace clpv

@@ -1,0 +1,132 @@
+#include "pipeline/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+// Largest values: beyond any use, so that a slip of the finger is told before gigabytes are asked for.
+constexpr double kMostCells = 512, kMostSteps = 4096, kMostTexels = 8192, kMostPixels = 16384,
+                 kMostMetres = 1e6;
+constexpr int kMostCascades = 8;
+
+struct Range {
+  double least, most;
+  bool open = false;  ///< the ends themselves are not allowed
+};
+
+/// Calls visit(name, member, help, allowed) for every option; the one list of them.
+template <typename Options, typename Visit>
+void for_each_option(Options& o, Visit&& visit) {
+  visit("basis", o.basis, "basis of the sphere (clpv basis tells of each)", basis_names());
+  visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
+  visit("transport", o.transport, "how light moves from cell to cell", transport_names());
+  visit("state", o.state, "what travels: the basis's coefficients, or six fluxes a cell",
+        std::vector<std::string>{"coefficients", "fluxes"});
+  visit("iterations", o.iterations, "propagation steps a cascade", Range{0, kMostSteps});
+  visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMostCells});
+  visit("cascades", o.cascades, "cascades, each twice the size of the one before", Range{1, kMostCascades});
+  visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: the scene's, else 12.5",
+        Range{0, kMostMetres, true});
+  visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map", Range{1, kMostTexels});
+  visit("rsm-format", o.rsm_format, "RSM storage; paper: 32-bit depth, 8-bit normal and flux",
+        std::vector<std::string>{"float", "paper"});
+  visit("shadow-size", o.shadow_size, "texels along each side of a direct light's shadow map",
+        Range{1, kMostTexels});
+  visit("occlusion", o.occlusion, "indirect shadows: the geometry volume blocks light",
+        std::vector<std::string>{"on", "off"});
+  visit("blocking", o.blocking, "which light a surface blocks: all, or what meets its lit side",
+        std::vector<std::string>{"two-sided", "one-sided"});
+  visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight",
+        std::vector<std::string>{"nearest", "trilinear"});
+  visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
+  visit("gather-floor", o.gather_floor, "least irradiance, as a share of the cell's isotropic light",
+        Range{0, 1});
+  visit("late-light", o.late_light, "add what later steps brought in coarser cascades",
+        std::vector<std::string>{"on", "off"});
+  visit("width", o.width, "image width [pixels]", Range{1, kMostPixels});
+  visit("height", o.height, "image height [pixels]", Range{1, kMostPixels});
+}
+
+std::string text_of(const std::string& value) {
+  return value;
+}
+std::string text_of(int value) {
+  return std::to_string(value);
+}
+std::string text_of(double value) {
+  return fmt::format("{}", value);
+}
+std::string text_of(bool value) {
+  return value ? "on" : "off";
+}
+
+std::string text_of(const std::vector<std::string>& choices) {
+  return fmt::format("{}", fmt::join(choices, "|"));
+}
+std::string text_of(const Range& range) {
+  return range.open ? fmt::format("between {} and {}, neither included", range.least, range.most)
+                    : fmt::format("{}..{}", range.least, range.most);
+}
+
+template <typename Number>
+bool parse(std::string_view text, const Range& range, Number& out) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return false;
+  const bool inside =
+      range.open ? value > range.least && value < range.most : value >= range.least && value <= range.most;
+  if (inside) out = value;
+  return inside;
+}
+
+bool parse(std::string_view text, const std::vector<std::string>& choices, std::string& out) {
+  if (std::find(choices.begin(), choices.end(), text) == choices.end()) return false;
+  out = text;
+  return true;
+}
+
+bool parse(std::string_view text, const std::vector<std::string>& choices, bool& out) {
+  if (std::find(choices.begin(), choices.end(), text) == choices.end()) return false;
+  out = text == "on";
+  return true;
+}
+
+}  // namespace
+
+std::vector<OptionInfo> list_options(const RenderOptions& options) {
+  std::vector<OptionInfo> list;
+  for_each_option(options, [&](const char* name, const auto& member, const char* help, const auto& allowed) {
+    list.push_back({name, help, text_of(allowed), text_of(member)});
+  });
+  return list;
+}
+
+void set_option(RenderOptions& options, std::string_view name, std::string_view value) {
+  bool known = false;
+  for_each_option(options, [&](const char* candidate, auto& member, const char*, const auto& allowed) {
+    if (name != candidate) return;
+    known = true;
+    if (!parse(value, allowed, member)) {
+      throw Error(ExitCode::usage, "--{}: found '{}', allowed: {}", name, value, text_of(allowed));
+    }
+  });
+  if (!known) throw Error(ExitCode::usage, "no option named --{}", name);
+}
+
+nlohmann::json to_json(const RenderOptions& options) {
+  nlohmann::json json;
+  for_each_option(
+      options, [&](const char* name, const auto& member, const char*, const auto&) { json[name] = member; });
+  return json;
+}
+
+}  // namespace clpv

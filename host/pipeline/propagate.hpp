@@ -1,0 +1,70 @@
+// Propagation: the injected light, n steps on through a cascade's cells (MATH section 3; Kaplanyan &
+// Dachsbacher 2010).
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "device/session.hpp"
+#include "pipeline/transport_source.hpp"
+#include "pipeline/volume.hpp"
+
+namespace clpv {
+
+struct PropagateOptions {
+  int grid = 32;  ///< cells along each axis
+  State state = State::coefficients;
+  std::array<std::size_t, 2> local = {0,
+                                      1};  ///< work-group size along x, y; x 0: the grid's edge, at most 64
+};
+
+/// What a propagation reads and writes. The caller owns the volumes; all have `grid` cells, geometry one more
+/// a side.
+struct PropagateVolumes {
+  const Volume& injected;            ///< [W/sr], step 0
+  const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
+  Volume& accumulated;               ///< out: injected field plus every step's output [W/sr]
+  Volume* late = nullptr;  ///< out, where wanted: what steps after half of them added (MATH section 5)
+};
+
+/// Runs the steps of one basis and transport over volumes of one grid size.
+class Propagator {
+ public:
+  Propagator(Session& session, const Basis& basis, const Transport& transport,
+             const PropagateOptions& options);
+
+  /// Called after each step with its number, from 1, and what travels then: N coefficients a cell, or six
+  /// fluxes.
+  using Observer = std::function<void(int step, const Volume& travelling)>;
+
+  /// Light does not block in the first step, in which it leaves the surfaces it was injected at.
+  void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
+
+  /// Operations a cell and channel, and a cell's transmittance, of a later step: what the kernel executes.
+  const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
+
+ private:
+  struct Form {
+    TransportSource source;
+    cl::Kernel step, expand;
+  };
+  Form& form(bool first, bool blocking);
+  void run_step(Form& form, bool blocking, const cl::Buffer& source, const cl::Buffer& target,
+                const cl::Buffer& sum_so_far, const cl::Buffer& sum, const Volume* geometry);
+  void run_expand(Form& form, const cl::Buffer& base, const cl::Buffer& sum, const cl::Buffer& accumulated);
+  cl::NDRange per_channel() const;
+
+  Session& session_;
+  const Basis& basis_;
+  const Transport& transport_;
+  PropagateOptions options_;
+  std::optional<Form> forms_[2][2];         ///< [first step][blocking]
+  std::unique_ptr<Volume> travelling_[2];   ///< ping-pong
+  std::unique_ptr<Volume> sum_, late_sum_;  ///< of the six fluxes, or of late coefficients
+};
+
+}  // namespace clpv

@@ -1,0 +1,115 @@
+// Propagation: kernels against the twin on a small grid of random light and random blockers.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "pipeline/propagate.hpp"
+#include "reference/check.hpp"
+#include "reference/propagate.hpp"
+#include "reference/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kGrid = 7;   // no multiple of anything: borders, partial work-groups
+constexpr int kSteps = 5;  // light crosses the grid and meets blockers
+
+/// Lobes of random direction and colour in a third of the cells; what injection leaves.
+Volume random_light(const Basis& basis, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Volume volume(kGrid, basis.size());
+  for (int cell = 0; cell < kGrid * kGrid * kGrid; ++cell) {
+    const int x = cell % kGrid, y = cell / kGrid % kGrid, z = cell / kGrid / kGrid;
+    const glm::dvec3 d = glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
+    if (uniform(random) > -0.33) continue;
+    const std::vector<double> lobe = basis.clamped_cosine(d);
+    for (int channel = 0; channel < 3; ++channel) {
+      const double power = 1 + uniform(random);
+      for (int i = 0; i < basis.size(); ++i)
+        volume.at(channel, i, x, y, z) = static_cast<float>(power * lobe[static_cast<std::size_t>(i)]);
+    }
+  }
+  return volume;
+}
+
+/// Two-sided surfels of random direction and cover on half the corners.
+Volume random_blockers(const Basis& basis, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Volume volume(kGrid + 1, basis.size(), 1);
+  for (int z = 0; z <= kGrid; ++z) {
+    for (int y = 0; y <= kGrid; ++y) {
+      for (int x = 0; x <= kGrid; ++x) {
+        const glm::dvec3 d =
+            glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
+        const double cover = std::max(0.0, 1.5 * uniform(random));
+        const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
+        for (std::size_t i = 0; i < front.size(); ++i) {
+          volume.at(0, static_cast<int>(i), x, y, z) = static_cast<float>(cover * (front[i] + back[i]));
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+std::vector<float> to_float(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
+
+CheckResult compare(const std::vector<float>& device, const Volume& twin, const std::string& variant) {
+  CheckResult result{"propagate", variant, 0, tolerance("propagate"), {}};
+  double largest = 0;
+  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
+  for (std::size_t at = 0; at < twin.values.size(); ++at) {
+    const double error = std::abs(device[at] - twin.values[at]) / largest;
+    if (error <= result.worst) continue;  // a NaN is not, and stays the worst
+    result.worst = error;
+    const auto n = static_cast<std::size_t>(twin.n);
+    result.place = fmt::format("cell {},{},{} plane {}: {:.7g}, twin {:.7g}", at % n, at / n % n,
+                               at / n / n % n, at / n / n / n, device[at], twin.values[at]);
+    if (std::isnan(error)) break;
+  }
+  return result;
+}
+
+CheckResult check_one(Session& session, const Basis& basis, const Transport& transport, State state,
+                      bool blockers) {
+  std::mt19937 random(7);
+  const Volume light = random_light(basis, random);
+  const Volume geometry = random_blockers(basis, random);
+  clpv::Volume injected(session, {kGrid, basis.size(), 3}, "check: injected light");
+  clpv::Volume accumulated(session, {kGrid, basis.size(), 3}, "check: accumulated light");
+  clpv::Volume corners(session, {kGrid + 1, basis.size(), 1}, "check: geometry");
+  injected.write(session, to_float(light.values));
+  corners.write(session, to_float(geometry.values));
+  Propagator propagator(session, basis, transport, {.grid = kGrid, .state = state});
+  propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
+  const Propagation twin = propagate(basis, transport, light, blockers ? &geometry : nullptr, kSteps);
+  return compare(
+      accumulated.read(session), twin.accumulated,
+      fmt::format("{}/{}/{}/{}", basis.name(), transport.name,
+                  state == State::fluxes ? "fluxes" : "coefficients", blockers ? "blockers" : "free"));
+}
+
+}  // namespace
+
+CheckResults check_propagate(Session& session) {
+  CheckResults results;
+  for (const std::string& basis_name : basis_names()) {
+    const std::unique_ptr<Basis> basis = make_basis(basis_name);
+    for (const std::string& transport_name : transport_names()) {
+      const Transport transport = make_transport(transport_name, *basis);
+      for (const State state : {State::coefficients, State::fluxes}) {
+        if (state == State::fluxes && !std::holds_alternative<FaceTransport>(transport.scheme)) continue;
+        for (const bool blockers : {false, true}) {
+          results.push_back(check_one(session, *basis, transport, state, blockers));
+        }
+      }
+    }
+  }
+  return results;
+}
+
+}  // namespace clpv::reference
