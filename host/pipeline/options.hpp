@@ -13,6 +13,8 @@ namespace clpv {
 
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
 
+enum class ToneMap { none, reinhard, aces };
+
 struct RenderOptions {
   std::string basis = "sh2";
   double lambda = 0.25;
