@@ -1,0 +1,302 @@
+// Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
+#include "reference/path_tracer.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <thread>
+
+#include "reference/ray_scene.hpp"
+#include "reference/sampling.hpp"
+#include "support/error.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kTile = 16;          // pixels along each side of what a thread takes at a time
+constexpr std::uint32_t kFirstSamples = 64;  // paths a pixel before the noise is judged at all
+constexpr std::uint32_t kMostSamples = 1u << 24;
+constexpr int kCertainBounces = 3;      // further ones are played Russian roulette for
+constexpr double kMostSurvival = 0.95;  // of roulette: paths end even between white walls
+
+/// A pixel's surface, and the two independent halves of its estimate.
+struct Pixel {
+  std::optional<Hit> hit;
+  glm::dvec3 sum[2] = {glm::dvec3(0), glm::dvec3(0)};  // irradiance [W/m^2], summed over paths
+};
+
+glm::vec3 to_vec3(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+/// Light that reaches a point unless something stands between: along `towards` from the point, irradiance
+/// across it.
+struct Incident {
+  glm::vec3 towards;        // unit
+  float distance;           // [m] to the light
+  glm::vec3 irradiance{0};  // [W/m^2] on a plane across `towards`
+};
+
+Incident incident(const ClpvLight& light, const glm::vec3& point) {
+  if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
+    return {-to_vec3(light.direction), kInfinity, to_vec3(light.intensity)};
+  }
+  const glm::vec3 path = to_vec3(light.position) - point;
+  const float distance = glm::length(path);
+  if (distance == 0 || (light.range > 0 && distance > light.range)) return {{0, 0, 1}, distance};
+  Incident result{path / distance, distance, to_vec3(light.intensity) / (distance * distance)};
+  if (light.kind == CLPV_LIGHT_SPOT) {
+    const float cosine = -glm::dot(result.towards, to_vec3(light.direction));
+    const float cone = std::clamp(cosine * light.cone_scale + light.cone_offset, 0.0f, 1.0f);
+    result.irradiance *= cone * cone;
+  }
+  return result;
+}
+
+/// Traces one pixel's rays. Cheap to make: one a thread, so that rays can be counted without sharing.
+class Tracer {
+ public:
+  Tracer(const RayScene& rays, const PathTracerOptions& options) : rays_(rays), options_(options) {}
+
+  std::uint64_t shot() const { return shot_; }
+
+  /// The surface at a pixel's centre, its depth as `distance`.
+  std::optional<Hit> see(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
+    ++shot_;
+    const float sx = (2 * (px + 0.5f) / view.width - 1) * view.half_width;
+    const float sy = (1 - 2 * (py + 0.5f) / view.height) * view.half_height;
+    const glm::vec3 aside = sx * to_vec3(view.right) + sy * to_vec3(view.up), forward = to_vec3(view.forward);
+    const bool parallel = view.orthographic != 0;
+    const glm::vec3 origin = to_vec3(view.eye) + (parallel ? aside : glm::vec3(0));
+    return rays_.intersect(origin, parallel ? forward : forward + aside, view.near_depth, view.far_depth,
+                           Faces::as_seen);
+  }
+
+  /// Irradiance [W/m^2] straight from the lights.
+  glm::dvec3 direct(const Hit& hit) {
+    glm::dvec3 sum(0);
+    for (const Light& light : rays_.scene().lights) {
+      const Incident in = incident(light.data, hit.position);
+      const float cosine = glm::dot(hit.normal, in.towards);
+      if (cosine <= 0 || glm::dot(hit.geometric, in.towards) <= 0 || in.irradiance == glm::vec3(0)) continue;
+      ++shot_;
+      if (rays_.occluded(rays_.leave(hit), in.towards, in.distance)) continue;
+      sum += glm::dvec3(in.irradiance) * static_cast<double>(cosine);
+    }
+    return sum;
+  }
+
+  /// One path's estimate of the irradiance [W/m^2] that reaches `start` from other surfaces.
+  glm::dvec3 indirect(const Hit& start, std::uint32_t index, std::uint64_t stream) {
+    glm::dvec3 sum(0), throughput(1);
+    Hit at = start;
+    for (int bounce = 1; options_.bounces == PathTracerOptions::kAllBounces || bounce <= options_.bounces;
+         ++bounce) {
+      const std::uint64_t dimensions = mix(stream, bounce);
+      const glm::vec3 direction(cosine_direction(glm::dvec3(at.normal), sobol_point(index, dimensions)));
+      if (glm::dot(direction, at.geometric) <= 0)
+        break;  // into the surface: an interpolated normal leans that far
+      ++shot_;
+      const std::optional<Hit> next = rays_.intersect(rays_.leave(at), direction, 0, kInfinity, Faces::both);
+      if (!next) break;
+      if (options_.emissive_lights) sum += throughput * glm::dvec3(next->emissive) * std::numbers::pi;
+      throughput *= glm::dvec3(next->albedo);
+      sum += throughput * direct(*next);
+      if (!survive(throughput, bounce, mix(mix(dimensions), index))) break;
+      at = *next;
+    }
+    return sum;
+  }
+
+ private:
+  static bool survive(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
+    const double most = std::max({throughput.x, throughput.y, throughput.z});
+    if (bounce < kCertainBounces) return most > 0;
+    const double survival = std::min(most, kMostSurvival);
+    if (unit(bits) >= survival) return false;
+    throughput /= survival;
+    return true;
+  }
+
+  const RayScene& rays_;
+  const PathTracerOptions& options_;
+  std::uint64_t shot_ = 0;
+};
+
+/// The image while it is traced, tile by tile.
+class Work {
+ public:
+  Work(const Scene& scene, const ClpvView& view, const PathTracerOptions& options,
+       const TraceProgress& progress)
+      : rays_(scene), options_(options), progress_(progress), pixels_(std::size_t{view.width} * view.height) {
+    image_.view = view;
+    threads_ = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  }
+
+  /// Everything that needs one ray a pixel: what is seen, and its direct light.
+  void look() {
+    image_.depth.assign(pixels_.size(), 0);
+    for (auto* layer :
+         {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance}) {
+      layer->assign(pixels_.size(), glm::vec3(0));
+    }
+    each_pixel([&](Tracer& tracer, std::uint32_t x, std::uint32_t y) {
+      const std::size_t i = std::size_t{y} * image_.view.width + x;
+      pixels_[i].hit = tracer.see(image_.view, x, y);
+      if (!pixels_[i].hit) return;
+      const Hit& hit = *pixels_[i].hit;
+      image_.depth[i] = hit.distance;
+      image_.normal[i] = hit.normal;
+      image_.albedo[i] = hit.albedo;
+      image_.emissive[i] = hit.emissive;
+      image_.direct[i] = glm::vec3(tracer.direct(hit));
+    });
+  }
+
+  /// Paths until there are `samples` a pixel, half of them in each half (the first takes an odd one).
+  void trace(std::uint32_t samples) {
+    each_pixel([&](Tracer& tracer, std::uint32_t x, std::uint32_t y) {
+      const std::size_t i = std::size_t{y} * image_.view.width + x;
+      Pixel& pixel = pixels_[i];
+      if (!pixel.hit) return;
+      for (std::uint32_t half = 0; half < 2; ++half) {
+        const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
+        for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s) {
+          pixel.sum[half] += tracer.indirect(*pixel.hit, s, stream);
+        }
+      }
+    });
+    image_.samples = samples;
+    image_.noise = noise();
+  }
+
+  TracedImage finish() {
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      image_.irradiance[i] = glm::vec3((pixels_[i].sum[0] + pixels_[i].sum[1]) / double(image_.samples));
+    }
+    return std::move(image_);
+  }
+
+  double current_noise() const { return image_.noise; }
+  void expect(double share_before, double share_after) { before_ = share_before, after_ = share_after; }
+
+ private:
+  static std::uint32_t share(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
+
+  /// Runs action(tracer, x, y) once a pixel, tiles handed to threads as they come.
+  template <typename Action>
+  void each_pixel(const Action& action) {
+    const std::uint32_t width = image_.view.width, height = image_.view.height;
+    const std::uint32_t columns = (width + kTile - 1) / kTile,
+                        tiles = columns * ((height + kTile - 1) / kTile);
+    std::atomic<std::uint32_t> next{0};
+    std::uint32_t done = 0;
+    std::mutex mutex;
+    const auto run = [&] {
+      Tracer tracer(rays_, options_);
+      for (std::uint32_t tile; (tile = next.fetch_add(1)) < tiles;) {
+        const std::uint32_t left = tile % columns * kTile, top = tile / columns * kTile;
+        for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
+          for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x) action(tracer, x, y);
+        }
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (progress_) progress_(before_ + (after_ - before_) * done / tiles);
+      }
+      const std::lock_guard lock(mutex);
+      image_.rays += tracer.shot();
+    };
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads_; ++t) others.emplace_back(run);
+    run();
+  }
+
+  /// TracedImage::noise of the paths so far. The halves differ by twice the error of their mean, in the mean
+  /// square.
+  double noise() const {
+    const std::uint32_t counts[2] = {share(image_.samples, 0), share(image_.samples, 1)};
+    if (counts[1] == 0) return std::numeric_limits<double>::quiet_NaN();
+    double error = 0, signal = 0;
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      const glm::dvec3 a = pixels_[i].sum[0] / double(counts[0]), b = pixels_[i].sum[1] / double(counts[1]);
+      const glm::dvec3 albedo(image_.albedo[i]);
+      const glm::dvec3 mean = albedo * (a + b) / 2.0, spread = albedo * (a - b) / 2.0;
+      error += glm::dot(spread, spread);
+      signal += glm::dot(mean, mean);
+    }
+    return signal > 0 ? std::sqrt(error / signal) : 0.0;
+  }
+
+  RayScene rays_;
+  const PathTracerOptions& options_;
+  const TraceProgress& progress_;
+  std::vector<Pixel> pixels_;
+  TracedImage image_;
+  int threads_ = 1;
+  double before_ = 0, after_ = 0;
+};
+
+void check(const Scene& scene, const PathTracerOptions& options) {
+  if (options.bounces < 0) throw Error(ExitCode::usage, "bounces {}: 1 or more, or all", options.bounces);
+  if (options.samples > kMostSamples) {
+    throw Error(ExitCode::usage, "{} samples a pixel: at most {}", options.samples, kMostSamples);
+  }
+  if (options.samples == 0 && !(options.noise > 0))
+    throw Error(ExitCode::usage, "noise {}: above 0", options.noise);
+  if (scene.lights.empty() && !options.emissive_lights) {
+    throw Error(ExitCode::bad_input, "{}: no light: the whole image would be black", scene.path);
+  }
+  for (const Light& light : scene.lights) {
+    const ClpvLight& d = light.data;
+    const auto finite = [](const float(&v)[3]) { return std::isfinite(v[0] + v[1] + v[2]); };
+    if (d.kind > CLPV_LIGHT_POINT || !finite(d.position) || !finite(d.direction) || !finite(d.intensity) ||
+        !std::isfinite(d.range + d.cone_scale + d.cone_offset)) {
+      throw Error(ExitCode::bad_input, "{}: light {}: an unknown kind, or a value that is not finite",
+                  scene.path, light.name);
+    }
+  }
+}
+
+/// The next count of paths: powers of two and the sums of two neighbouring ones, where Sobol points are most
+/// even.
+std::uint32_t next_count(std::uint32_t samples) {
+  const bool power = (samples & (samples - 1)) == 0;
+  return power ? samples + samples / 2 : samples / 3 * 4;
+}
+
+/// How many paths reach the target, if the error falls with n^(-3/4) as it does between scrambled Sobol
+/// points.
+double expected_count(std::uint32_t samples, double noise, double target) {
+  return samples * std::pow(std::max(1.0, noise / target), 4.0 / 3.0);
+}
+
+}  // namespace
+
+TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options,
+                        const TraceProgress& progress) {
+  check(scene, options);
+  Work work(scene, view, options, progress);
+  work.look();
+  if (options.samples > 0) {
+    work.expect(0, 1);
+    work.trace(options.samples);
+    return work.finish();
+  }
+  std::uint32_t done = 0;
+  for (std::uint32_t count = kFirstSamples; count <= kMostSamples; count = next_count(count)) {
+    const double goal =
+        done == 0 ? count
+                  : std::max<double>(count, expected_count(done, work.current_noise(), options.noise));
+    work.expect(done / goal, count / goal);
+    work.trace(count);
+    done = count;
+    if (work.current_noise() <= options.noise) break;
+  }
+  return work.finish();
+}
+
+}  // namespace clpv::reference

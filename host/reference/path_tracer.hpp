@@ -1,0 +1,58 @@
+// Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
+//
+// Every surface is diffuse; lights are points, spots and suns without extent (hard shadows). A pixel is one
+// ray through its centre, as in the rasteriser, so there is no antialiasing. Its indirect irradiance is
+//   E = pi mean over cosine-distributed directions of the radiance L that arrives along them,
+//   L = albedo / pi (E_direct [+ E of the next bounce]) at the surface the direction meets.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "kernels/shared/view.h"
+#include "scene/scene.hpp"
+
+namespace clpv::reference {
+
+struct PathTracerOptions {
+  static constexpr int kAllBounces = 0;
+
+  int bounces =
+      1;  ///< surfaces between a light and the surface seen: 1 is what a volume estimates; or kAllBounces
+  std::uint32_t samples = 0;  ///< paths a pixel; 0: as many as `noise` needs
+  double noise = 0.02;        ///< where samples is 0: stops at this TracedImage::noise
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one a processor
+  bool emissive_lights =
+      false;  ///< emissive surfaces light what they face (render's do not: for tests against closed forms)
+};
+
+/// One value a pixel, row 0 first; 0 where there is no surface.
+struct TracedImage {
+  ClpvView view{};
+  std::vector<float> depth;       ///< [m] along the view's forward axis
+  std::vector<glm::vec3> normal;  ///< unit, towards the viewer
+  std::vector<glm::vec3> albedo;
+  std::vector<glm::vec3> emissive;    ///< radiance [W/m^2/sr]
+  std::vector<glm::vec3> direct;      ///< irradiance straight from the lights [W/m^2]
+  std::vector<glm::vec3> irradiance;  ///< irradiance from other surfaces [W/m^2]
+  std::uint32_t samples = 0;          ///< paths a pixel
+  /// Standard error of the indirect radiance: its root mean square over that of the image, all pixels and
+  /// channels (so, the NRMSE that the reference itself adds). From two independently randomised halves; NaN
+  /// with one sample.
+  double noise = 0;
+  std::uint64_t rays = 0;
+};
+
+/// Called now and then, by one thread at a time, with the estimated share done in [0, 1].
+using TraceProgress = std::function<void(double)>;
+
+/// The same bytes for the same scene, view, options and seed, whatever the number of threads.
+/// Throws Error(bad_input) for a scene without surface, without light, or with a value that is not finite;
+/// Error(usage) for options out of range.
+TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options,
+                        const TraceProgress& progress = {});
+
+}  // namespace clpv::reference

@@ -1,0 +1,87 @@
+// Numbers for Monte Carlo: counter-based, so that a sample depends on what it is for and never on who
+// computes it. Owen-scrambled Sobol points after Burley, "Practical Hash-based Owen Scrambling" (JCGT 9(4),
+// 2020).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <numbers>
+
+namespace clpv::reference {
+
+/// A well-mixed 64-bit value of `x` (the finaliser of SplitMix64).
+constexpr std::uint64_t mix(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// A stream of its own for every pair (stream, what).
+constexpr std::uint64_t mix(std::uint64_t stream, std::uint64_t what) {
+  return mix(stream ^ mix(what));
+}
+
+/// In [0, 1).
+constexpr double unit(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+  return (x << 16) | (x >> 16);
+}
+
+/// Owen's nested uniform scramble by the Laine-Karras hash: every bit flips as the bits above it and the seed
+/// say.
+constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  x = reverse_bits(x);
+  x += seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return reverse_bits(x);
+}
+
+/// Second dimension of the Sobol sequence; the first is reverse_bits.
+constexpr std::uint32_t sobol_second(std::uint32_t index) {
+  std::uint32_t result = 0;
+  for (std::uint32_t direction = 1u << 31; index != 0; index >>= 1, direction ^= direction >> 1) {
+    if (index & 1u) result ^= direction;
+  }
+  return result;
+}
+
+/// Point `index` of the scrambled and shuffled (0,2)-sequence of `stream`, in [0,1)^2.
+/// Sequences of different streams are independent: one serves each bounce of a path.
+inline glm::dvec2 sobol_point(std::uint32_t index, std::uint64_t stream) {
+  const std::uint64_t second = mix(stream);
+  const std::uint32_t shuffled = owen_scramble(index, static_cast<std::uint32_t>(stream >> 32));
+  const std::uint32_t x = owen_scramble(reverse_bits(shuffled), static_cast<std::uint32_t>(second));
+  const std::uint32_t y = owen_scramble(sobol_second(shuffled), static_cast<std::uint32_t>(second >> 32));
+  return {x * 0x1p-32, y * 0x1p-32};
+}
+
+/// A unit direction round `normal` with density cos/pi, by Shirley and Chiu's concentric map of the square.
+inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& point) {
+  const glm::dvec2 square = 2.0 * point - 1.0;
+  const bool wide = std::abs(square.x) > std::abs(square.y);
+  const double radius = wide ? square.x : square.y;
+  if (radius == 0.0) return normal;
+  const double quarter = std::numbers::pi / 4;
+  const double angle = wide ? quarter * square.y / square.x : 2 * quarter - quarter * square.x / square.y;
+  const double up = std::sqrt(std::max(0.0, 1.0 - radius * radius));
+  // An orthonormal frame without a branch at the poles: Duff et al., JCGT 6(1), 2017.
+  const double sign = std::copysign(1.0, normal.z);
+  const double a = -1.0 / (sign + normal.z), b = normal.x * normal.y * a;
+  const glm::dvec3 tangent{1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
+  const glm::dvec3 bitangent{b, sign + normal.y * normal.y * a, -normal.y};
+  return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + up * normal;
+}
+
+}  // namespace clpv::reference
