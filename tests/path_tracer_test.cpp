@@ -320,8 +320,7 @@ TEST(PathTracer, TexturesAreFilteredAndWrapped) {
   Texture texture;
   texture.width = 4, texture.height = 1;
   texture.wrap_u = CLPV_WRAP_MIRROR;
-  for (const std::uint8_t value : {0, 0, 255, 255})
-    texture.rgba.insert(texture.rgba.end(), {value, value, value, 255});
+  texture.rgba = {0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255};
   scene.textures = {texture};
   scene.materials[0].texture = 0;
   scene.lights = {sun({0, -1, 0}, 1)};

@@ -9,8 +9,10 @@
 #include <numbers>
 #include <thread>
 
+#include "reference/lighting.hpp"
 #include "reference/ray_scene.hpp"
 #include "reference/sampling.hpp"
+#include "reference/view.hpp"
 #include "support/error.hpp"
 
 namespace clpv::reference {
@@ -29,34 +31,6 @@ struct Pixel {
   glm::dvec3 sum[2] = {glm::dvec3(0), glm::dvec3(0)};  // irradiance [W/m^2], summed over paths
 };
 
-glm::vec3 to_vec3(const float (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
-
-/// Light that reaches a point unless something stands between: along `towards` from the point, irradiance
-/// across it.
-struct Incident {
-  glm::vec3 towards;        // unit
-  float distance;           // [m] to the light
-  glm::vec3 irradiance{0};  // [W/m^2] on a plane across `towards`
-};
-
-Incident incident(const ClpvLight& light, const glm::vec3& point) {
-  if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
-    return {-to_vec3(light.direction), kInfinity, to_vec3(light.intensity)};
-  }
-  const glm::vec3 path = to_vec3(light.position) - point;
-  const float distance = glm::length(path);
-  if (distance == 0 || (light.range > 0 && distance > light.range)) return {{0, 0, 1}, distance};
-  Incident result{path / distance, distance, to_vec3(light.intensity) / (distance * distance)};
-  if (light.kind == CLPV_LIGHT_SPOT) {
-    const float cosine = -glm::dot(result.towards, to_vec3(light.direction));
-    const float cone = std::clamp(cosine * light.cone_scale + light.cone_offset, 0.0f, 1.0f);
-    result.irradiance *= cone * cone;
-  }
-  return result;
-}
-
 /// Traces one pixel's rays. Cheap to make: one a thread, so that rays can be counted without sharing.
 class Tracer {
  public:
@@ -67,25 +41,22 @@ class Tracer {
   /// The surface at a pixel's centre, its depth as `distance`.
   std::optional<Hit> see(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
     ++shot_;
-    const float sx = (2 * (px + 0.5f) / view.width - 1) * view.half_width;
-    const float sy = (1 - 2 * (py + 0.5f) / view.height) * view.half_height;
-    const glm::vec3 aside = sx * to_vec3(view.right) + sy * to_vec3(view.up), forward = to_vec3(view.forward);
-    const bool parallel = view.orthographic != 0;
-    const glm::vec3 origin = to_vec3(view.eye) + (parallel ? aside : glm::vec3(0));
-    return rays_.intersect(origin, parallel ? forward : forward + aside, view.near_depth, view.far_depth,
+    const glm::dvec3 origin = surface_position(view, px, py, 0), one_on = surface_position(view, px, py, 1);
+    return rays_.intersect(glm::vec3(origin), glm::vec3(one_on - origin), view.near_depth, view.far_depth,
                            Faces::as_seen);
   }
 
   /// Irradiance [W/m^2] straight from the lights.
   glm::dvec3 direct(const Hit& hit) {
+    const glm::vec3 origin = rays_.leave(hit);
     glm::dvec3 sum(0);
     for (const Light& light : rays_.scene().lights) {
-      const Incident in = incident(light.data, hit.position);
-      const float cosine = glm::dot(hit.normal, in.towards);
-      if (cosine <= 0 || glm::dot(hit.geometric, in.towards) <= 0 || in.irradiance == glm::vec3(0)) continue;
+      const Incident in = light_at(light.data, glm::dvec3(hit.position));
+      const double cosine = glm::dot(glm::dvec3(hit.normal), in.towards);
+      if (cosine <= 0 || glm::dot(glm::dvec3(hit.geometric), in.towards) <= 0) continue;
+      if (in.irradiance == glm::dvec3(0)) continue;
       ++shot_;
-      if (rays_.occluded(rays_.leave(hit), in.towards, in.distance)) continue;
-      sum += glm::dvec3(in.irradiance) * static_cast<double>(cosine);
+      if (!shadowed(light.data, origin, in.towards)) sum += in.irradiance * cosine;
     }
     return sum;
   }
@@ -113,6 +84,12 @@ class Tracer {
   }
 
  private:
+  bool shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const {
+    if (light.kind == CLPV_LIGHT_DIRECTIONAL) return rays_.occluded(origin, glm::vec3(towards), kInfinity);
+    const glm::vec3 path = glm::vec3(light.position[0], light.position[1], light.position[2]) - origin;
+    return rays_.occluded(origin, path, 1);
+  }
+
   static bool survive(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
     const double most = std::max({throughput.x, throughput.y, throughput.z});
     if (bounce < kCertainBounces) return most > 0;
