@@ -35,6 +35,7 @@ struct Camera {
   glm::vec3 up{0, 1, 0};         ///< unit, across forward
   float vertical_fov = 1.0472f;  ///< [rad], in (0, pi)
   float near_depth = 0.05f;      ///< [m]
+  std::string light;             ///< the only light that shines with this camera; empty: all of them
 };
 
 struct Light {
@@ -51,14 +52,18 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Camera> cameras;  ///< at least one after loading
   std::vector<Light> lights;
-  glm::vec3 lower{0}, upper{0};  ///< bounding box [m]
-  float exposure = 0;            ///< [EV]: the shown image is radiance x 2^exposure
+  glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
+  float exposure = 0;                 ///< [EV]: the shown image is radiance x 2^exposure
   std::optional<float> cascade_size;  ///< the scene file's wish for the finest cascade's edge [m]
   std::optional<int> cascades;
-  std::vector<std::string> notes;  ///< what the loader decided and a user should be told ("no light: added a sun")
+  std::vector<std::string>
+      notes;  ///< what the loader decided and a user should be told ("no light: added a sun")
 
   /// The camera of that name; empty: the first. Throws Error(usage) that lists the names there are.
   const Camera& camera(const std::string& name) const;
+
+  /// The lights that shine when seen through `camera`: the one it names, or all.
+  std::vector<Light> lights_for(const Camera& camera) const;
 };
 
 }  // namespace clpv
