@@ -18,9 +18,11 @@ class Basis {
   virtual ~Basis() = default;
 
   const std::string& name() const { return name_; }
-  int size() const { return size_; }                   ///< N
-  double lambda() const { return lambda_; }            ///< SRBF bandwidth in (0, 1); 0: the basis has none
-  const std::vector<glm::dvec3>& centres() const { return centres_; }  ///< SRBF centres; empty: the basis has none
+  int size() const { return size_; }         ///< N
+  double lambda() const { return lambda_; }  ///< SRBF bandwidth in (0, 1); 0: the basis has none
+  const std::vector<glm::dvec3>& centres() const {
+    return centres_;
+  }  ///< SRBF centres; empty: the basis has none
 
   /// b_i(w), i < N, for a unit w.
   virtual void evaluate(const glm::dvec3& w, std::span<double> b) const = 0;
@@ -33,10 +35,15 @@ class Basis {
   ///   static Coefficients clpv_project(Coefficients a)                      A^-1 a
   virtual std::string kernel_source() const = 0;
 
-  const Matrix& gram() const { return gram_; }                  ///< A_ij = Int b_i b_j dw
+  /// Unit normals of the planes through the origin across which the functions jump: quadrature splits there.
+  virtual std::vector<glm::dvec3> creases() const { return {}; }
+
+  const Matrix& gram() const { return gram_; }  ///< A_ij = Int b_i b_j dw
   const Matrix& gram_inverse() const { return gram_inverse_; }
-  double condition() const { return condition_; }               ///< 2-norm condition number of A
-  const std::vector<double>& integrals() const { return integrals_; }  ///< Int b_i dw: energy of f is c . integrals
+  double condition() const { return condition_; }  ///< 2-norm condition number of A
+  const std::vector<double>& integrals() const {
+    return integrals_;
+  }  ///< Int b_i dw: energy of f is c . integrals
 
   std::vector<double> evaluate(const glm::dvec3& w) const;
   double value(std::span<const double> c, const glm::dvec3& w) const;  ///< f(w)
@@ -48,6 +55,10 @@ class Basis {
 
  protected:
   Basis() = default;
+  /// Sets the Gram matrix, what follows from it, and Int b_i dw.
+  /// Throws Error(usage) for a condition number above kLargestCondition.
+  void set_gram(Matrix gram, std::vector<double> integrals);
+
   std::string name_;
   int size_ = 0;
   double lambda_ = 0;
@@ -58,11 +69,21 @@ class Basis {
 };
 
 inline constexpr double kDefaultLambda = 0.25;
+inline constexpr double kLargestCondition = 1e7;  ///< float coefficients lose their last digits beyond
 
 /// The basis of that name ("sh2", "srbf8v2", ...; basis_names()). `lambda` matters to SRBF alone.
-/// Throws Error(usage) for an unknown name (listing those there are), lambda outside (0, 1), or a Gram matrix with
-/// a condition number above 1e7 (naming lambda and the number).
+/// Throws Error(usage) for an unknown name (listing those there are), lambda outside (0, 1), or a Gram matrix
+/// with a condition number above 1e7 (naming lambda and the number).
 std::unique_ptr<Basis> make_basis(const std::string& name, double lambda = kDefaultLambda);
 std::vector<std::string> basis_names();
+
+/// An SRBF set of a user's own: 1 to 64 unit centres, no two alike. Throws like make_basis.
+std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
+                                               const std::vector<glm::dvec3>& centres,
+                                               double lambda = kDefaultLambda);
+/// The same from a JSON file {"name": "mine", "centres": [[x, y, z], ...]}, any length but 0; `name` may be
+/// left out (the file's stem then). Throws Error(bad_input) naming file, place and value where it is not like
+/// that.
+std::unique_ptr<Basis> load_basis(const std::string& path, double lambda = kDefaultLambda);
 
 }  // namespace clpv

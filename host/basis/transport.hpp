@@ -13,27 +13,29 @@
 
 namespace clpv {
 
-/// One of the thirty ways from a source cell to a face of a neighbour (Kaplanyan & Dachsbacher 2010; MATH section 3).
+/// One of the thirty ways from a source cell to a face of a neighbour (Kaplanyan & Dachsbacher 2010; MATH
+/// section 3).
 struct Face {
-  glm::ivec3 travel;      ///< k: from the source cell to its neighbour, a unit axis
-  glm::ivec3 normal;      ///< n_f: outward normal of the neighbour's face; equals travel for the far face
-  glm::dvec3 direction;   ///< w_f, unit: from the source's centre to the face's centre
-  double solid_angle;     ///< Omega_f, seen from the source's centre [sr]
+  glm::ivec3 travel;         ///< k: from the source cell to its neighbour, a unit axis
+  glm::ivec3 normal;         ///< n_f: outward normal of the neighbour's face; equals travel for the far face
+  glm::dvec3 direction;      ///< w_f, unit: from the source's centre to the face's centre
+  double solid_angle;        ///< Omega_f, seen from the source's centre [sr]
   std::vector<double> flux;  ///< N: flux through the face [W] = flux . c, before blocking and clamping
 };
 
 /// Fluxes through faces, clamped at 0, re-emitted as lobes: `sampled` (the paper) and `exact`.
 struct FaceTransport {
   std::vector<Face> faces;  ///< 30: six neighbours (+x -x +y -y +z -z), far face first, then four sides
-  Matrix lobes;             ///< N x 6: what 1 W through the face of normal +x -x +y -y +z -z adds to the coefficients
+  Matrix lobes;  ///< N x 6: what 1 W through the face of normal +x -x +y -y +z -z adds to the coefficients
 };
 
 /// Linear operators: `upwind` and `semi-lagrangian`. c'(x) = sum_k (1 - B_k) R_k c(x - offset_k).
 struct OperatorTransport {
   struct Neighbour {
-    glm::ivec3 offset;      ///< how far the light travels, in cells; zero: it stays
-    glm::dvec3 direction;   ///< unit; the blocker of the shared face (or corner) is looked up against it; zero: none
-    Matrix weights;         ///< R_k, N x N
+    glm::ivec3 offset;  ///< how far the light travels, in cells; zero: it stays
+    glm::dvec3
+        direction;   ///< unit; the blocker of the shared face (or corner) is looked up against it; zero: none
+    Matrix weights;  ///< R_k, N x N
   };
   std::vector<Neighbour> neighbours;
 };
@@ -41,11 +43,14 @@ struct OperatorTransport {
 struct Transport {
   std::string name;
   std::variant<FaceTransport, OperatorTransport> scheme;
-  /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2], where
-  /// gather(n) = 4 b(-n) for face transports (the convention of MATH section 4), alpha(-n) K for operators.
+  /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2],
+  /// where gather(n) = 4 b(-n) for face transports (the convention of MATH section 4), alpha(-n) K for
+  /// operators.
   bool gathers_cosine = false;  ///< false: 4 b(-n);  true: alpha(-n) K
   Matrix gather;                ///< K, N x N; used where gathers_cosine
-  double flux_scale_of_lobe = 1;  ///< not used by operators; `exact`: lobes are scaled to unit flux, injected ones too
+  /// Lobes carry their nominal flux exactly: injection scales each virtual point light's lobe f to Int f dw =
+  /// its flux.
+  bool unit_flux_lobes = false;
 };
 
 /// "sampled", "exact", "upwind", "semi-lagrangian". Throws Error(usage) for another name.

@@ -36,14 +36,6 @@ cl::Program build(cl::Context& context, const Device& device, const ProgramSourc
 
 }  // namespace
 
-std::string float_literal(double value) {
-  const auto single = static_cast<float>(value);
-  if (!std::isfinite(single)) throw Error(ExitCode::run_time, "no kernel literal for {}", value);
-  std::string text = fmt::format("{:.9g}", single);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return single < 0 || std::signbit(single) ? "(" + text + "f)" : text + "f";
-}
-
 Session::Session(Device device)
     : device_(std::move(device)),
       context_(device_.handle),

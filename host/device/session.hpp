@@ -8,15 +8,13 @@
 
 #include "device/device.hpp"
 #include "device/timeline.hpp"
+#include "support/literal.hpp"  // float_literal, for Literals
 
 namespace clpv {
 
 /// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with
 /// CLPV_.
 using Literals = std::map<std::string, std::string>;
-
-/// A float literal of the kernel language that reads back as float(value): "0.25f", "1e-05f".
-std::string float_literal(double value);
 
 /// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis
 /// functions, transport) that `#include "generated.h"`-style files refer to.

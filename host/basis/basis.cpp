@@ -1,0 +1,82 @@
+#include "basis/basis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "basis/spherical_harmonics.hpp"
+#include "basis/srbf.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr int kLeastBands = 2, kMostBands = 5;
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
+  condition_ = condition_number(gram);
+  if (!(condition_ <= kLargestCondition)) {
+    throw Error(ExitCode::usage,
+                "{} with lambda {}: the Gram matrix has condition number {:.3g}, at most {:.0e} is allowed; "
+                "take a larger lambda",
+                name_, lambda_, condition_, kLargestCondition);
+  }
+  gram_inverse_ = inverse(gram);
+  gram_ = std::move(gram);
+  integrals_ = std::move(integrals);
+}
+
+std::vector<double> Basis::evaluate(const glm::dvec3& w) const {
+  std::vector<double> b(static_cast<std::size_t>(size_));
+  evaluate(w, b);
+  return b;
+}
+
+double Basis::value(std::span<const double> c, const glm::dvec3& w) const {
+  return dot(c, evaluate(w));
+}
+
+double Basis::energy(std::span<const double> c) const {
+  return dot(c, integrals_);
+}
+
+std::vector<double> Basis::clamped_cosine(const glm::dvec3& d) const {
+  std::vector<double> alpha(static_cast<std::size_t>(size_));
+  cosine_integrals(d, alpha);
+  return gram_inverse_ * alpha;
+}
+
+std::vector<double> Basis::constant() const {
+  return gram_inverse_ * integrals_;
+}
+
+std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
+  for (int bands = kLeastBands; bands <= kMostBands; ++bands) {
+    if (name == fmt::format("sh{}", bands)) return std::make_unique<SphericalHarmonics>(bands);
+  }
+  for (const SrbfSet& set : srbf_sets()) {
+    if (name == set.name) return std::make_unique<Srbf>(name, set.centres, lambda);
+  }
+  throw Error(ExitCode::usage, "there is no basis '{}'; there are {}", name, fmt::join(basis_names(), ", "));
+}
+
+std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
+                                               const std::vector<glm::dvec3>& centres, double lambda) {
+  return std::make_unique<Srbf>(name, centres, lambda);
+}
+
+std::vector<std::string> basis_names() {
+  std::vector<std::string> names;
+  for (int bands = kLeastBands; bands <= kMostBands; ++bands) names.push_back(fmt::format("sh{}", bands));
+  for (const SrbfSet& set : srbf_sets()) names.push_back(set.name);
+  return names;
+}
+
+}  // namespace clpv

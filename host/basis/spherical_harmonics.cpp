@@ -1,0 +1,121 @@
+#include "basis/spherical_harmonics.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "basis/clamped_cosine.hpp"
+#include "basis/kernel_text.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Coefficients of the Legendre polynomial P_l, [i] that of z^i, by (n+1) P_{n+1} = (2n+1) z P_n - n P_{n-1}.
+std::vector<double> legendre(int l) {
+  std::vector<double> before{0}, now{1};
+  for (int n = 0; n < l; ++n) {
+    std::vector<double> next(static_cast<std::size_t>(n) + 2, 0.0);
+    for (std::size_t i = 0; i < now.size(); ++i) next[i + 1] += (2.0 * n + 1) / (n + 1) * now[i];
+    for (std::size_t i = 0; i < before.size(); ++i) next[i] -= static_cast<double>(n) / (n + 1) * before[i];
+    before = now;
+    now = next;
+  }
+  return now;
+}
+
+std::vector<double> derivative(const std::vector<double>& p) {
+  std::vector<double> d;
+  for (std::size_t i = 1; i < p.size(); ++i) d.push_back(static_cast<double>(i) * p[i]);
+  return d;
+}
+
+// K_lm: makes Y_lm of unit norm.
+double norm(int l, int m) {
+  double ratio = 1;  // (l - m)! / (l + m)!
+  for (int i = l - m + 1; i <= l + m; ++i) ratio /= i;
+  return std::sqrt((2 * l + 1) / (4 * kPi) * ratio * (m == 0 ? 1 : 2));
+}
+
+double value_of(const std::vector<double>& polynomial, double z) {
+  double sum = 0;
+  for (std::size_t i = polynomial.size(); i-- > 0;) sum = sum * z + polynomial[i];
+  return sum;
+}
+
+}  // namespace
+
+SphericalHarmonics::SphericalHarmonics(int bands) : bands_(bands) {
+  name_ = fmt::format("sh{}", bands);
+  size_ = bands * bands;
+  for (int l = 0; l < bands; ++l) {
+    for (int m = -l; m <= l; ++m) {
+      std::vector<double> p = legendre(l);
+      for (int i = 0; i < std::abs(m); ++i) p = derivative(p);
+      for (double& c : p) c *= norm(l, std::abs(m));
+      functions_.push_back({l, m, p});
+    }
+  }
+  std::vector<double> integrals(static_cast<std::size_t>(size_), 0.0);
+  integrals[0] = std::sqrt(4 * kPi);
+  set_gram(Matrix::identity(size_), integrals);
+}
+
+void SphericalHarmonics::evaluate(const glm::dvec3& w, std::span<double> b) const {
+  std::vector<double> re{1}, im{0};  // (x + iy)^m
+  for (int m = 1; m < bands_; ++m) {
+    re.push_back(w.x * re.back() - w.y * im.back());
+    im.push_back(w.x * im.back() + w.y * re[re.size() - 2]);
+  }
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const Function& f = functions_[i];
+    const auto m = static_cast<std::size_t>(std::abs(f.order));
+    b[i] = (f.order < 0 ? im[m] : re[m]) * value_of(f.polynomial, w.z);
+  }
+}
+
+void SphericalHarmonics::cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const {
+  evaluate(d, alpha);
+  for (std::size_t i = 0; i < functions_.size(); ++i) alpha[i] *= cosine_band(functions_[i].band);
+}
+
+std::string SphericalHarmonics::kernel_function(const std::string& name, bool cosine) const {
+  std::string text =
+      fmt::format("static inline Coefficients {}(const float x, const float y, const float z) {{\n", name);
+  text += "  Coefficients r;\n";
+  if (bands_ > 2) text += "  const float zz = z * z;\n";
+  for (int m = 2; m < bands_; ++m) {  // re1 = x, im1 = y
+    const std::string re = m == 2 ? "x" : fmt::format("re{}", m - 1),
+                      im = m == 2 ? "y" : fmt::format("im{}", m - 1);
+    text += fmt::format("  const float re{} = fma(x, {}, -(y * {})), im{} = fma(x, {}, y * {});\n", m, re, im,
+                        m, im, re);
+  }
+  for (int i = 0; i < size_; ++i) {
+    const Function& f = functions_[static_cast<std::size_t>(i)];
+    const double factor = cosine ? cosine_band(f.band) : 1;
+    const int m = std::abs(f.order);
+    // Q_lm is even or odd in z: a polynomial in z^2, times z where odd.
+    const std::size_t odd = (f.polynomial.size() - 1) % 2;
+    std::vector<double> even;
+    for (std::size_t k = odd; k < f.polynomial.size(); k += 2) even.push_back(factor * f.polynomial[k]);
+    if (factor == 0) even.assign(1, 0.0);
+    std::string value = horner(even, "zz");
+    if (factor != 0 && odd == 1) value = "z * " + value;
+    if (factor != 0 && m > 0) {
+      const std::string part =
+          m == 1 ? (f.order < 0 ? "y" : "x") : fmt::format("{}{}", f.order < 0 ? "im" : "re", m);
+      value = part + " * " + value;
+    }
+    text += fmt::format("  r.c{} = {};\n", i, value);
+  }
+  return text + "  return r;\n}\n";
+}
+
+std::string SphericalHarmonics::kernel_source() const {
+  return kernel_function("clpv_basis", false) + kernel_function("clpv_cosine_integrals", true) +
+         "static inline Coefficients clpv_project(const Coefficients a) { return a; }\n";
+}
+
+}  // namespace clpv

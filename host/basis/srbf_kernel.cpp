@@ -1,0 +1,161 @@
+#include "basis/srbf_kernel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "basis/kernel_text.hpp"
+#include "support/literal.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr const char* kOfDirection = "(const float x, const float y, const float z) {\n  Coefficients r;\n";
+
+// A centre, and the one opposite to it where the set has it.
+struct Pair {
+  int centre, opposite;  // opposite -1: none
+};
+
+std::vector<Pair> antipodal_pairs(const Basis& basis) {
+  std::vector<Pair> pairs;
+  std::vector<bool> taken(static_cast<std::size_t>(basis.size()), false);
+  for (int i = 0; i < basis.size(); ++i) {
+    if (taken[static_cast<std::size_t>(i)]) continue;
+    Pair pair{i, -1};
+    for (int j = i + 1; j < basis.size(); ++j) {
+      const glm::dvec3 sum =
+          basis.centres()[static_cast<std::size_t>(i)] + basis.centres()[static_cast<std::size_t>(j)];
+      if (glm::dot(sum, sum) < 1e-24) pair.opposite = j;
+    }
+    if (pair.opposite >= 0) taken[static_cast<std::size_t>(pair.opposite)] = true;
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+// "  const float t3 = w . xi_3;"
+std::string height_statement(const Basis& basis, int i) {
+  const glm::dvec3& xi = basis.centres()[static_cast<std::size_t>(i)];
+  const double factors[] = {xi.x, xi.y, xi.z};
+  return fmt::format("  const float t{} = {};\n", i, sum_of_products(factors, {"x", "y", "z"}));
+}
+
+std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs) {
+  const double lambda = basis.lambda();
+  const std::string one = float_literal(1 + lambda * lambda), top = float_literal(1 - lambda * lambda);
+  const auto value = [&](int i, int of, double slope) {
+    return fmt::format(
+        "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c{0} = {4} * d{0} * d{0} * d{0};\n", i,
+        float_literal(slope), of, one, top);
+  };
+  std::string text = std::string("static inline Coefficients clpv_basis") + kOfDirection;
+  for (const Pair& pair : pairs) {
+    text += height_statement(basis, pair.centre) + value(pair.centre, pair.centre, -2 * lambda);
+    if (pair.opposite >= 0) text += value(pair.opposite, pair.centre, 2 * lambda);
+  }
+  return text + "  return r;\n}\n";
+}
+
+// Coefficients in u = t^2 of a Chebyshev series in x = 2u - 1.
+std::vector<double> monomials(const std::vector<double>& chebyshev) {
+  std::vector<double> before{1}, now{-1, 2}, sum(chebyshev.size(), 0.0);  // T_0, T_1 in u
+  const auto add = [&](const std::vector<double>& p, double c) {
+    for (std::size_t i = 0; i < p.size(); ++i) sum[i] += c * p[i];
+  };
+  add(before, chebyshev[0]);
+  for (std::size_t k = 1; k < chebyshev.size(); ++k) {
+    add(now, chebyshev[k]);
+    std::vector<double> next(now.size() + 1, 0.0);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      next[i + 1] += 4 * now[i];
+      next[i] -= 2 * now[i];
+    }
+    for (std::size_t i = 0; i < before.size(); ++i) next[i] -= before[i];
+    before = now;
+    now = next;
+  }
+  return sum;
+}
+
+// Statements that set `even` to g's even part at height `t`. Horner's form in t^2 where its terms do not
+// cancel (lambda up to about .5), else Clenshaw's recurrence, which is stable for any lambda.
+std::string even_part(const std::vector<double>& chebyshev, int i) {
+  const std::vector<double> c = monomials(chebyshev);
+  double size = 0;
+  for (const double term : c) size += std::abs(term);
+  constexpr double kCancellation = 4;  // two bits of a float's 24
+  if (size < kCancellation * chebyshev[0]) {
+    return fmt::format("  const float u{0} = t{0} * t{0};\n  const float even{0} = {1};\n", i,
+                       horner(c, fmt::format("u{}", i)));
+  }
+  std::string text = fmt::format("  const float u{0} = fma(4.0f * t{0}, t{0}, -2.0f);\n", i);  // 2x
+  std::string one = "0.0f", two = "0.0f";
+  for (std::size_t k = chebyshev.size() - 1; k > 0; --k) {
+    const std::string name = fmt::format("s{}_{}", i, k);
+    text += fmt::format("  const float {} = fma(u{}, {}, {} - {});\n", name, i, one,
+                        float_literal(chebyshev[k]), two);
+    two = one;
+    one = name;
+  }
+  return text + fmt::format("  const float even{0} = fma(0.5f * u{0}, {1}, {2} - {3});\n", i, one,
+                            float_literal(chebyshev[0]), two);
+}
+
+std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
+                            const CosineOfPoisson& cosine) {
+  const std::vector<double> chebyshev = cosine.chebyshev();
+  const std::string slope = float_literal(cosine.slope()), minus = float_literal(-cosine.slope());
+  std::string text = std::string("static inline Coefficients clpv_cosine_integrals") + kOfDirection;
+  for (const Pair& pair : pairs) {
+    const int i = pair.centre;
+    text += height_statement(basis, i) + even_part(chebyshev, i);
+    text += fmt::format("  r.c{0} = fma({1}, t{0}, even{0});\n", i, slope);
+    if (pair.opposite >= 0)
+      text += fmt::format("  r.c{0} = fma({2}, t{1}, even{1});\n", pair.opposite, i, minus);
+  }
+  return text + "  return r;\n}\n";
+}
+
+// A^-1 of a set that is its own mirror image in the origin maps sums of opposite coefficients to sums and
+// differences to differences: half the products.
+std::string project_paired(const Basis& basis, const std::vector<Pair>& pairs) {
+  const Matrix& inverse = basis.gram_inverse();
+  std::string text;
+  std::vector<std::string> sums, differences;
+  for (const Pair& p : pairs) {
+    text +=
+        fmt::format("  const float p{0} = a.c{0} + a.c{1}, m{0} = a.c{0} - a.c{1};\n", p.centre, p.opposite);
+    sums.push_back(fmt::format("p{}", p.centre));
+    differences.push_back(fmt::format("m{}", p.centre));
+  }
+  for (const Pair& p : pairs) {
+    std::vector<double> even, odd;
+    for (const Pair& q : pairs) {
+      even.push_back((inverse(p.centre, q.centre) + inverse(p.centre, q.opposite)) / 2);
+      odd.push_back((inverse(p.centre, q.centre) - inverse(p.centre, q.opposite)) / 2);
+    }
+    text += fmt::format("  const float even{0} = {1};\n  const float odd{0} = {2};\n", p.centre,
+                        sum_of_products(even, sums), sum_of_products(odd, differences));
+    text += fmt::format("  r.c{0} = even{0} + odd{0};\n  r.c{1} = even{0} - odd{0};\n", p.centre, p.opposite);
+  }
+  return text;
+}
+
+std::string project_function(const Basis& basis, const std::vector<Pair>& pairs) {
+  const bool paired = std::ranges::all_of(pairs, [](const Pair& p) { return p.opposite >= 0; });
+  return "static inline Coefficients clpv_project(const Coefficients a) {\n  Coefficients r;\n" +
+         (paired ? project_paired(basis, pairs) : product_statements(basis.gram_inverse(), "r", "a")) +
+         "  return r;\n}\n";
+}
+
+}  // namespace
+
+std::string srbf_kernel_source(const Basis& basis, const CosineOfPoisson& cosine) {
+  const std::vector<Pair> pairs = antipodal_pairs(basis);
+  return evaluate_function(basis, pairs) + cosine_function(basis, pairs, cosine) +
+         project_function(basis, pairs);
+}
+
+}  // namespace clpv
