@@ -1,0 +1,194 @@
+#include "image/compare.hpp"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "image/tone_map.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite; issue and literature use it
+
+std::vector<std::size_t> colour_channels(const Image& image) {
+  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B");
+  if (r && g && b) return {*r, *g, *b};
+  std::vector<std::size_t> indices;
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    if (image.channels[c] != "A") indices.push_back(c);
+  }
+  return indices;
+}
+
+const float* pixel(const Image& image, std::size_t index) { return &image.pixels[index * image.channels.size()]; }
+
+void check_finite(const Image& image, const std::string& name) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (std::isfinite(image.pixels[i])) continue;
+    const std::size_t p = i / image.channels.size(), c = i % image.channels.size();
+    throw Error(ExitCode::bad_input, "{}: pixel ({}, {}), channel {} is {}; only finite values can be compared", name,
+                p % image.width, p / image.width, image.channels[c], image.pixels[i]);
+  }
+}
+
+void check_comparable(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name) {
+  if (a.width != b.width || a.height != b.height) {
+    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; only equal sizes can be compared", a_name,
+                a.width, a.height, b_name, b.width, b.height);
+  }
+  const std::size_t in_a = colour_channels(a).size(), in_b = colour_channels(b).size();
+  if (in_a != in_b || in_a == 0) {
+    throw Error(ExitCode::bad_input, "{} has {} colour channels, {} has {}; only equal numbers can be compared", a_name,
+                in_a, b_name, in_b);
+  }
+  if (a.encoding != b.encoding) {
+    const bool a_linear = a.encoding == Encoding::linear;
+    throw Error(ExitCode::bad_input, "{} holds linear radiance and {} sRGB-encoded values; compare two of a kind",
+                a_linear ? a_name : b_name, a_linear ? b_name : a_name);
+  }
+  check_finite(a, a_name);
+  check_finite(b, b_name);
+}
+
+/// What Yee's test sees: linear RGB, black where a pixel is not valid.
+OIIO::ImageBuf perceptual_input(const Image& image, const std::vector<bool>& valid) {
+  const std::vector<std::size_t> channels = colour_channels(image);
+  OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeFloat));
+  auto* out = static_cast<float*>(buffer.localpixels());
+  for (std::size_t p = 0; p < valid.size(); ++p) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = pixel(image, p)[channels[channels.size() < 3 ? 0 : c]];
+      out[3 * p + c] = !valid[p] ? 0.0f : image.encoding == Encoding::srgb ? srgb_decode(value) : value;
+    }
+  }
+  return buffer;
+}
+
+std::uint64_t perceptual_failures(const Image& a, const Image& b, const std::vector<bool>& valid) {
+  const OIIO::ImageBuf in_a = perceptual_input(a, valid), in_b = perceptual_input(b, valid);
+  OIIO::ImageBufAlgo::CompareResults results{};
+  return static_cast<std::uint64_t>(OIIO::ImageBufAlgo::compare_Yee(in_a, in_b, results));
+}
+
+/// Sums over the values of some pixels, in double.
+struct Sums {
+  double a = 0, b = 0, aa = 0, ab = 0, bb = 0, squared_error = 0;
+  void add(double x, double y) {
+    a += x;
+    b += y;
+    aa += x * x;
+    ab += x * y;
+    bb += y * y;
+    squared_error += (x - y) * (x - y);
+  }
+};
+
+std::optional<double> ratio(double numerator, double denominator) {
+  if (denominator == 0) return std::nullopt;
+  return numerator / denominator;
+}
+
+/// sqrt(error / power of the reference); of nothing against nothing, 0.
+std::optional<double> normalised(double squared_error, double reference_power) {
+  if (reference_power == 0 && squared_error == 0) return 0.0;
+  const auto share = ratio(squared_error, reference_power);
+  return share ? std::optional(std::sqrt(std::max(*share, 0.0))) : std::nullopt;
+}
+
+void add_valid_figures(Comparison& result, const Sums& valid) {
+  result.nrmse_valid = normalised(valid.squared_error, valid.bb);
+  result.best_gain = ratio(valid.ab, valid.aa);
+  // |gA - B|^2 = BB - AB^2 / AA at the best gain; of a black A nothing can be made.
+  const double explained = valid.aa > 0 ? valid.ab * valid.ab / valid.aa : 0.0;
+  result.nrmse_best_gain = valid.squared_error == 0 ? normalised(0, valid.bb) : normalised(valid.bb - explained, valid.bb);
+  result.energy_ratio = ratio(valid.a, valid.b);
+}
+
+double pixel_luminance(const float* values, const std::vector<std::size_t>& channels) {
+  if (channels.size() != 3) return values[channels[0]];
+  return luminance({values[channels[0]], values[channels[1]], values[channels[2]]});
+}
+
+}  // namespace
+
+Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name) {
+  check_comparable(a, a_name, b, b_name);
+  const std::vector<std::size_t> in_a = colour_channels(a), in_b = colour_channels(b);
+  const auto alpha_a = a.channel("A"), alpha_b = b.channel("A");
+  const std::size_t pixels = a.pixel_count(), channels = in_a.size();
+
+  Comparison result{.width = a.width, .height = a.height, .channels = static_cast<int>(channels), .encoding = a.encoding};
+  Sums all, valid;
+  std::vector<bool> is_valid(pixels);
+  double relative = 0;
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const float *pa = pixel(a, p), *pb = pixel(b, p);
+    is_valid[p] = (!alpha_a || pa[*alpha_a] > 0) && (!alpha_b || pb[*alpha_b] > 0);
+    result.valid_pixels += is_valid[p];
+    result.mean_luminance += glm::dvec2(pixel_luminance(pa, in_a), pixel_luminance(pb, in_b));
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double x = pa[in_a[c]], y = pb[in_b[c]], error = std::abs(x - y);
+      all.add(x, y);
+      if (is_valid[p]) valid.add(x, y);
+      relative += error * error / (y * y + kRelativeFloor);
+      if (error > result.max_error) {
+        result.max_error = error;
+        result.max_error_at = {static_cast<int>(p % a.width), static_cast<int>(p / a.width)};
+      }
+    }
+  }
+  const double values = static_cast<double>(pixels * channels);
+  result.rmse = std::sqrt(all.squared_error / values);
+  result.nrmse = normalised(all.squared_error, all.bb);
+  result.relative_mse = relative / values;
+  if (result.rmse > 0) result.psnr_db = -20 * std::log10(result.rmse);
+  result.mean_luminance /= static_cast<double>(pixels);
+  result.identical = result.max_error == 0;
+  add_valid_figures(result, valid);
+  result.perceptual_failures = perceptual_failures(a, b, is_valid);
+  return result;
+}
+
+nlohmann::json to_json(const Comparison& c) {
+  const auto value = [](const std::optional<double>& number) {
+    return number ? nlohmann::json(*number) : nlohmann::json(nullptr);
+  };
+  return {{"schema", 1},
+          {"width", c.width},
+          {"height", c.height},
+          {"channels", c.channels},
+          {"encoding", c.encoding == Encoding::linear ? "linear" : "srgb"},
+          {"rmse", c.rmse},
+          {"nrmse", value(c.nrmse)},
+          {"relative_mse", c.relative_mse},
+          {"psnr_db", value(c.psnr_db)},
+          {"max_error", c.max_error},
+          {"max_error_at", {c.max_error_at.x, c.max_error_at.y}},
+          {"mean_luminance", {c.mean_luminance.x, c.mean_luminance.y}},
+          {"identical", c.identical},
+          {"valid_pixels", c.valid_pixels},
+          {"nrmse_valid", value(c.nrmse_valid)},
+          {"best_gain", value(c.best_gain)},
+          {"nrmse_best_gain", value(c.nrmse_best_gain)},
+          {"energy_ratio", value(c.energy_ratio)},
+          {"perceptual_failures", c.perceptual_failures}};
+}
+
+Image difference_image(const Image& a, const Image& b, float amplify) {
+  const std::vector<std::size_t> in_a = colour_channels(a), in_b = colour_channels(b);
+  Image result = make_image(a.width, a.height, {"R", "G", "B"});
+  result.encoding = a.encoding;
+  for (std::size_t p = 0; p < a.pixel_count(); ++p) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t channel = in_a.size() < 3 ? 0 : c;
+      result.pixels[3 * p + c] = amplify * std::abs(pixel(a, p)[in_a[channel]] - pixel(b, p)[in_b[channel]]);
+    }
+  }
+  return result;
+}
+
+}  // namespace clpv

@@ -1,0 +1,94 @@
+#include "image/image.hpp"
+
+#include <algorithm>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+std::string_view layer_of(std::string_view channel) {
+  const auto dot = channel.rfind('.');
+  return dot == std::string_view::npos ? std::string_view{} : channel.substr(0, dot);
+}
+
+std::string_view name_in_layer(std::string_view channel) {
+  const auto dot = channel.rfind('.');
+  return dot == std::string_view::npos ? channel : channel.substr(dot + 1);
+}
+
+}  // namespace
+
+std::optional<std::size_t> Image::channel(std::string_view name) const {
+  const auto found = std::find(channels.begin(), channels.end(), name);
+  if (found == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
+Image make_image(int width, int height, std::vector<std::string> channels) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.channels = std::move(channels);
+  image.pixels.assign(image.pixel_count() * image.channels.size(), 0.0f);
+  return image;
+}
+
+std::vector<std::string> layers(const Image& image) {
+  std::vector<std::string> names;
+  for (const std::string& channel : image.channels) {
+    const std::string layer(layer_of(channel));
+    if (std::find(names.begin(), names.end(), layer) == names.end()) names.push_back(layer);
+  }
+  return names;
+}
+
+Image extract_layer(const Image& image, const std::string& layer, const std::string& source) {
+  std::vector<std::size_t> chosen;
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    if (layer_of(image.channels[c]) != layer) continue;
+    chosen.push_back(c);
+    names.emplace_back(name_in_layer(image.channels[c]));
+  }
+  if (chosen.empty()) {
+    std::vector<std::string> there;
+    for (const std::string& name : layers(image)) there.push_back("'" + name + "'");
+    throw Error(ExitCode::bad_input, "{}: no layer '{}'; there are: {}", source, layer,
+                fmt::join(there, ", "));
+  }
+  Image result = make_image(image.width, image.height, std::move(names));
+  result.metadata = image.metadata;
+  result.encoding = image.encoding;
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+      result.pixels[p * chosen.size() + c] = image.pixels[p * image.channels.size() + chosen[c]];
+    }
+  }
+  return result;
+}
+
+void append_layer(Image& image, const Image& addition, const std::string& layer) {
+  if (image.channels.empty()) {
+    image.width = addition.width;
+    image.height = addition.height;
+    image.encoding = addition.encoding;
+  }
+  if (image.width != addition.width || image.height != addition.height ||
+      image.encoding != addition.encoding) {
+    throw std::logic_error("layers of one image share size and encoding");
+  }
+  const std::size_t before = image.channels.size(), added = addition.channels.size();
+  std::vector<float> pixels(image.pixel_count() * (before + added));
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    const auto out =
+        std::copy_n(image.pixels.begin() + p * before, before, pixels.begin() + p * (before + added));
+    std::copy_n(addition.pixels.begin() + p * added, added, out);
+  }
+  image.pixels = std::move(pixels);
+  for (const std::string& name : addition.channels) {
+    image.channels.push_back(layer.empty() ? name : layer + "." + name);
+  }
+}
+
+}  // namespace clpv

@@ -1,0 +1,175 @@
+#include "image/image_io.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "support/error.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMetadataPrefix = "clpv:";
+// OpenImageIO stamps an EXR with the time of writing unless told one: the same image must give the same
+// bytes.
+constexpr const char* kFixedDate = "1970:01:01 00:00:00";
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
+}
+
+std::vector<unsigned char> read_bytes(const fs::path& path, const ImageLimits& limits) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) refuse(path, "no such file");
+  if (!fs::is_regular_file(status)) refuse(path, "not a regular file");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) refuse(path, error.message());
+  if (size > limits.file_bytes) {
+    refuse(path, fmt::format("{} bytes; an image file may have {}", size, limits.file_bytes));
+  }
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
+    refuse(path, "cannot be read");
+  }
+  return bytes;
+}
+
+/// "openexr", "png", "hdr", or empty: by the first bytes, whatever the file is called.
+std::string format_of_content(const std::vector<unsigned char>& bytes) {
+  const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
+                              std::min<std::size_t>(bytes.size(), 16));
+  if (head.starts_with("\x76\x2f\x31\x01")) return "openexr";
+  if (head.starts_with("\x89PNG\r\n\x1a\n")) return "png";
+  if (head.starts_with("#?RADIANCE") || head.starts_with("#?RGBE")) return "hdr";
+  return {};
+}
+
+std::string format_of_name(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".exr") return "openexr";
+  if (extension == ".png") return "png";
+  if (extension == ".hdr") return "hdr";
+  return {};
+}
+
+std::string checked_format(const fs::path& path, const std::vector<unsigned char>& bytes) {
+  const std::string named = format_of_name(path), found = format_of_content(bytes);
+  if (named.empty()) {
+    refuse(path, fmt::format("extension '{}'; allowed are .exr, .png and .hdr", path.extension().string()));
+  }
+  if (found != named) {
+    refuse(path, fmt::format("named as {}, but its content is {}", named,
+                             found.empty() ? "no image known here" : found));
+  }
+  return named;
+}
+
+void check_size(const fs::path& path, const OIIO::ImageSpec& spec, const ImageLimits& limits) {
+  if (spec.width < 1 || spec.height < 1 || spec.width > limits.side || spec.height > limits.side) {
+    refuse(path,
+           fmt::format("{} x {} pixels; allowed are 1 to {} a side", spec.width, spec.height, limits.side));
+  }
+  if (spec.nchannels < 1 || spec.nchannels > limits.channels) {
+    refuse(path, fmt::format("{} channels; allowed are 1 to {}", spec.nchannels, limits.channels));
+  }
+  if (spec.depth > 1 || spec.deep) refuse(path, "a volume or deep image; allowed are flat ones");
+  const std::size_t bytes = sizeof(float) * spec.width * spec.height * spec.nchannels;
+  if (bytes > limits.pixel_bytes) {
+    refuse(path, fmt::format("{} x {} pixels of {} channels take {} MiB; allowed are {}", spec.width,
+                             spec.height, spec.nchannels, bytes >> 20, limits.pixel_bytes >> 20));
+  }
+}
+
+std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
+  std::map<std::string, std::string> metadata;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (!name.starts_with(kMetadataPrefix) || value.type() != OIIO::TypeString) continue;
+    metadata[name.substr(kMetadataPrefix.size())] = value.get_string();
+  }
+  return metadata;
+}
+
+/// OpenImageIO ends its messages with a newline, and repeats itself over several.
+std::string first_line(const std::string& message) {
+  return message.substr(0, message.find('\n'));
+}
+
+void write(const fs::path& path, const char* format, OIIO::ImageSpec spec, OIIO::TypeDesc type,
+           const void* pixels) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output) throw Error(ExitCode::run_time, "{}: OpenImageIO cannot write {}", path.string(), format);
+  output->set_ioproxy(&memory);
+  if (!output->open(path.string(), spec) || !output->write_image(type, pixels) || !output->close()) {
+    throw Error(ExitCode::run_time, "{}: cannot be encoded: {}", path.string(),
+                first_line(output->geterror()));
+  }
+  write_file(path, std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace
+
+Image read_image(const fs::path& path, const ImageLimits& limits) {
+  const std::vector<unsigned char> bytes = read_bytes(path, limits);
+  const std::string format = checked_format(path, bytes);
+  const auto input = OIIO::ImageInput::create(format);
+  if (!input)
+    refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  input->set_ioproxy(&memory);
+  OIIO::ImageSpec spec, config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->open(path.string(), spec, config))
+    refuse(path, "cannot be read: " + first_line(input->geterror()));
+  check_size(path, spec, limits);
+
+  Image image = make_image(spec.width, spec.height, spec.channelnames);
+  image.metadata = metadata_of(spec);
+  image.encoding = format == "png" ? Encoding::srgb : Encoding::linear;
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data())) {
+    refuse(path, "damaged or truncated: " + first_line(input->geterror()));
+  }
+  return image;
+}
+
+void write_exr(const fs::path& path, const Image& image) {
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeFloat);
+  spec.channelnames = image.channels;
+  spec.attribute("compression", "zip");
+  spec.attribute("oiio:ColorSpace", "Linear");
+  spec.attribute("DateTime", kFixedDate);
+  for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
+  write(path, "openexr", spec, OIIO::TypeFloat, image.pixels.data());
+}
+
+void write_png(const fs::path& path, const Image& image) {
+  const std::size_t channels = image.channels.size();
+  if (image.encoding != Encoding::srgb || channels < 3 || channels > 4) {
+    throw std::logic_error("write_png wants display-encoded R, G, B and perhaps A");
+  }
+  std::vector<std::uint8_t> pixels(image.pixels.size());
+  std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(), [](float value) {
+    const float shown = value > 0 ? std::min(value, 1.0f) : 0.0f;  // a NaN, which no byte can hold, is black
+    return static_cast<std::uint8_t>(shown * 255.0f + 0.5f);
+  });
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels), OIIO::TypeUInt8);
+  spec.channelnames = image.channels;
+  if (channels == 4) spec.alpha_channel = 3;
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  write(path, "png", spec, OIIO::TypeUInt8, pixels.data());
+}
+
+}  // namespace clpv

@@ -1,0 +1,32 @@
+// Images in and out, through OpenImageIO: EXR, PNG and Radiance HDR in; EXR and PNG out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+#include "image/image.hpp"
+
+namespace clpv {
+
+/// What an image file may hold; checked before memory is taken for it.
+struct ImageLimits {
+  std::uintmax_t file_bytes = std::uintmax_t{1} << 30;
+  int side = 16384;  ///< pixels
+  int channels = 256;
+  std::size_t pixel_bytes = std::size_t{1} << 30;  ///< as float
+};
+
+/// Reads an EXR, PNG or HDR file, all channels, the finest level of the first part. PNG: values in [0,1], as
+/// they are encoded (Encoding::srgb), alpha not multiplied in. The name's extension and the content must
+/// agree. Throws Error(bad_input) that names the file, what was found, and what is allowed.
+Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
+
+/// Writes 32-bit float EXR with the image's channel names; metadata goes in as string attributes "clpv:NAME"
+/// (and comes back from read_image). The same image gives the same bytes. Throws Error(run_time).
+void write_exr(const std::filesystem::path& path, const Image& image);
+
+/// Writes 8-bit PNG of a display-encoded image (display_image): R,G,B or R,G,B,A in [0,1].
+void write_png(const std::filesystem::path& path, const Image& image);
+
+}  // namespace clpv

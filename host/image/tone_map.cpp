@@ -1,0 +1,77 @@
+#include "image/tone_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <utility>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, ToneMap>, 3> kCurves{
+    {{"none", ToneMap::none}, {"reinhard", ToneMap::reinhard}, {"aces", ToneMap::aces}}};
+
+}  // namespace
+
+float luminance(const glm::vec3& linear) {
+  return 0.2126f * linear.r + 0.7152f * linear.g + 0.0722f * linear.b;
+}
+
+glm::vec3 tone_curve(ToneMap curve, const glm::vec3& linear) {
+  // Beyond this every curve shows white; it keeps infinity away from inf/inf.
+  const glm::vec3 x = glm::clamp(linear, 0.0f, 1e6f);
+  glm::vec3 shown = x;
+  if (curve == ToneMap::reinhard) shown = x / (1.0f + luminance(x));
+  if (curve == ToneMap::aces) shown = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
+  return glm::clamp(shown, 0.0f, 1.0f);
+}
+
+float srgb_encode(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+float srgb_decode(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+ToneMap parse_tone_map(std::string_view name) {
+  std::string known;
+  for (const auto& [text, curve] : kCurves) {
+    if (name == text) return curve;
+    known += fmt::format(" {}", text);
+  }
+  throw Error(ExitCode::usage, "no tone curve '{}'; there are:{}", name, known);
+}
+
+std::string_view name_of(ToneMap curve) {
+  return std::find_if(kCurves.begin(), kCurves.end(),
+                      [=](const auto& entry) { return entry.second == curve; })
+      ->first;
+}
+
+Image display_image(const Image& image, float exposure, ToneMap curve) {
+  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"), a = image.channel("A");
+  if (!r || !g || !b || image.encoding != Encoding::linear) {
+    throw std::logic_error("display_image wants linear R, G and B");
+  }
+  Image shown = make_image(image.width, image.height, {"R", "G", "B"});
+  if (a) shown = make_image(image.width, image.height, {"R", "G", "B", "A"});
+  shown.encoding = Encoding::srgb;
+  shown.metadata = image.metadata;
+  const float gain = std::exp2(exposure);
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    const float* in = &image.pixels[p * image.channels.size()];
+    float* out = &shown.pixels[p * shown.channels.size()];
+    const float alpha = a ? in[*a] : 1.0f;
+    if (a) out[3] = std::clamp(alpha, 0.0f, 1.0f);
+    if (!(alpha > 0)) continue;
+    const glm::vec3 colour = tone_curve(curve, gain * glm::vec3(in[*r], in[*g], in[*b]));
+    for (int c = 0; c < 3; ++c) out[c] = srgb_encode(colour[c]);
+  }
+  return shown;
+}
+
+}  // namespace clpv

@@ -1,0 +1,98 @@
+#include "support/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason(int code) {
+  return std::generic_category().message(code);
+}
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw Error(ExitCode::run_time, "{}: cannot be written: {}", path.string(), why);
+}
+
+/// A new file in the folder of its target, removed unless it was renamed into place.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target) : target_(target) {
+    static std::atomic<unsigned> count{0};
+    path_ =
+        target.parent_path() / fmt::format(".{}.{}-{}.part", target.filename().string(), ::getpid(), count++);
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) refuse(target_, reason(errno));
+  }
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!renamed_) ::unlink(path_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  void write(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) refuse(target_, reason(errno));
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+  }
+
+  void rename_into_place() {
+    const int closed = ::close(std::exchange(descriptor_, -1));
+    if (closed != 0) refuse(target_, reason(errno));
+    if (::rename(path_.c_str(), target_.c_str()) != 0) refuse(target_, reason(errno));
+    renamed_ = true;
+  }
+
+ private:
+  fs::path target_, path_;
+  int descriptor_ = -1;
+  bool renamed_ = false;
+};
+
+/// Where the bytes go: `path` with its symbolic links followed. Refuses what is not a place for a file.
+fs::path resolve(const fs::path& path) {
+  if (path.filename().empty()) refuse(path, "that names no file");
+  std::error_code error;
+  // Absolute first: of a relative path that does not exist yet, weakly_canonical would leave the folder out.
+  const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error) refuse(path, error.message());
+  if (!fs::is_directory(target.parent_path(), error)) {
+    refuse(path, fmt::format("there is no folder {}", target.parent_path().string()));
+  }
+  const fs::file_status status = fs::status(target, error);
+  if (fs::is_directory(status)) refuse(path, "a folder of that name is in the way");
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse(path, "what is there is not a regular file");
+  if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) refuse(path, reason(errno));
+  return target;
+}
+
+}  // namespace
+
+void check_writable(const std::filesystem::path& path) {
+  TemporaryFile probe(resolve(path));
+}
+
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  TemporaryFile file(resolve(path));
+  file.write(bytes);
+  file.rename_into_place();
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  write_file(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace clpv

@@ -1,0 +1,234 @@
+// Figures of the comparison against hand-made images whose errors are known, and the command around them.
+#include "image/compare.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "image/image_io.hpp"
+#include "image/tone_map.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every pixel (r, g, b, 1).
+Image plain(int width, int height, float r, float g, float b) {
+  Image image = make_image(width, height, {"R", "G", "B", "A"});
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    image.pixels[4 * p] = r;
+    image.pixels[4 * p + 1] = g;
+    image.pixels[4 * p + 2] = b;
+    image.pixels[4 * p + 3] = 1;
+  }
+  return image;
+}
+
+std::string refusal(const Image& a, const Image& b) {
+  try {
+    compare(a, "a.exr", b, "b.exr");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    return error.what();
+  }
+  ADD_FAILURE() << "compared";
+  return {};
+}
+
+TEST(Compare, IdenticalImages) {
+  const Image image = plain(64, 48, 0.2f, 0.4f, 0.1f);
+  const Comparison c = compare(image, "a", image, "b");
+  EXPECT_TRUE(c.identical);
+  EXPECT_EQ(c.rmse, 0);
+  EXPECT_EQ(c.nrmse.value(), 0);
+  EXPECT_EQ(c.relative_mse, 0);
+  EXPECT_FALSE(c.psnr_db.has_value());
+  EXPECT_EQ(c.channels, 3);
+  EXPECT_EQ(c.nrmse_best_gain.value(), 0);
+  EXPECT_NEAR(c.energy_ratio.value(), 1, 1e-12);
+  EXPECT_EQ(c.perceptual_failures, 0u);
+  EXPECT_EQ(c.valid_pixels, 64u * 48u);
+  EXPECT_TRUE(to_json(c)["psnr_db"].is_null());
+  EXPECT_EQ(to_json(c)["schema"], 1);
+}
+
+TEST(Compare, AConstantOffset) {
+  const Comparison c = compare(plain(8, 8, 0.75f, 0.75f, 0.75f), "a", plain(8, 8, 0.5f, 0.5f, 0.5f), "b");
+  EXPECT_FALSE(c.identical);
+  EXPECT_NEAR(c.rmse, 0.25, 1e-12);
+  EXPECT_NEAR(c.nrmse.value(), 0.5, 1e-12);
+  EXPECT_NEAR(c.relative_mse, 0.0625 / 0.26, 1e-12);
+  EXPECT_NEAR(c.psnr_db.value(), 20 * std::log10(4.0), 1e-9);
+  EXPECT_NEAR(c.mean_luminance.x, 0.75, 1e-6);
+  EXPECT_NEAR(c.mean_luminance.y, 0.5, 1e-6);
+  EXPECT_NEAR(c.best_gain.value(), 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(c.nrmse_best_gain.value(), 0, 1e-7);
+  EXPECT_NEAR(c.energy_ratio.value(), 1.5, 1e-12);
+}
+
+TEST(Compare, OnePixelOneChannel) {
+  const Image b = plain(10, 5, 0.5f, 0.5f, 0.5f);
+  Image a = b;
+  a.at(7, 3, 1) = 1.5f;
+  const Comparison c = compare(a, "a", b, "b");
+  EXPECT_EQ(c.max_error, 1);
+  EXPECT_EQ(c.max_error_at, glm::ivec2(7, 3));
+  EXPECT_NEAR(c.rmse, std::sqrt(1.0 / 150), 1e-12);
+  EXPECT_FALSE(c.identical);
+}
+
+TEST(Compare, AlphaIsNotComparedAndTellsWhichPixelsAreValid) {
+  Image a = plain(4, 2, 1, 1, 1), b = plain(4, 2, 2, 2, 2);
+  for (int y = 0; y < 2; ++y) {
+    a.at(0, y, 3) = 0;  // background in A only, where A is bright
+    a.at(0, y, 0) = 100;
+    b.at(1, y, 3) = 0;
+  }
+  const Comparison c = compare(a, "a", b, "b");
+  EXPECT_EQ(c.valid_pixels, 4u);
+  EXPECT_NEAR(c.nrmse_valid.value(), 0.5, 1e-12);
+  EXPECT_NEAR(c.best_gain.value(), 2, 1e-12);
+  EXPECT_NEAR(c.energy_ratio.value(), 0.5, 1e-12);
+  EXPECT_GT(c.max_error, 90);
+
+  Image clear = b;
+  for (std::size_t p = 0; p < clear.pixel_count(); ++p) clear.pixels[4 * p + 3] = 0.5f;
+  EXPECT_TRUE(compare(clear, "a", b, "b").identical);
+}
+
+TEST(Compare, BestGainLeavesTheErrorThatNoGainMends) {
+  // A constant, B of two values 1 and 3: g A = 2 everywhere, error 1 against a root mean square of sqrt 5.
+  Image a = plain(2, 1, 1, 1, 1), b = plain(2, 1, 1, 1, 1);
+  for (int c = 0; c < 3; ++c) b.at(1, 0, c) = 3;
+  EXPECT_NEAR(compare(a, "a", b, "b").nrmse_best_gain.value(), std::sqrt(1 / 5.0), 1e-12);
+}
+
+TEST(Compare, ABlackReferenceHasNoRelativeError) {
+  const Comparison c = compare(plain(2, 2, 1, 1, 1), "a", plain(2, 2, 0, 0, 0), "b");
+  EXPECT_FALSE(c.nrmse.has_value());
+  EXPECT_FALSE(c.energy_ratio.has_value());
+  EXPECT_NEAR(c.relative_mse, 100, 1e-9);
+  const Comparison black = compare(plain(2, 2, 0, 0, 0), "a", plain(2, 2, 0, 0, 0), "b");
+  EXPECT_EQ(black.nrmse.value(), 0);
+  EXPECT_TRUE(black.identical);
+}
+
+TEST(Compare, PerceptualTestSeesAPatchAndForgivesATrace) {
+  const Image b = plain(128, 128, 0.5f, 0.5f, 0.5f);
+  Image patch = b, trace = b;
+  for (int y = 40; y < 80; ++y) {
+    for (int x = 40; x < 80; ++x) patch.at(x, y, 0) = 0.1f;
+  }
+  for (float& value : trace.pixels) value *= 1.0005f;
+  EXPECT_GT(compare(patch, "a", b, "b").perceptual_failures, 500u);
+  EXPECT_EQ(compare(trace, "a", b, "b").perceptual_failures, 0u);
+  for (std::size_t p = 0; p < patch.pixel_count(); ++p) patch.pixels[4 * p + 3] = 0;
+  EXPECT_EQ(compare(patch, "a", b, "b").perceptual_failures, 0u);
+}
+
+TEST(Compare, RefusesWhatCannotBeCompared) {
+  const Image image = plain(4, 4, 1, 1, 1);
+  EXPECT_NE(refusal(image, plain(4, 5, 1, 1, 1)).find("4 x 5"), std::string::npos);
+  EXPECT_NE(refusal(image, make_image(4, 4, {"Y"})).find("1"), std::string::npos);
+  for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
+    Image bad = image;
+    bad.at(2, 1, 1) = value;
+    const std::string message = refusal(image, bad);
+    EXPECT_NE(message.find("b.exr: pixel (2, 1), channel G"), std::string::npos) << message;
+    refusal(bad, bad);  // a NaN in both is no agreement
+  }
+  Image encoded = image;
+  encoded.encoding = Encoding::srgb;
+  EXPECT_NE(refusal(image, encoded).find("b.exr sRGB"), std::string::npos);
+}
+
+TEST(Compare, DifferenceImage) {
+  Image a = plain(2, 1, 0.5f, 0.5f, 0.5f), b = a;
+  a.at(0, 0, 0) = 0.48f;
+  b.at(1, 0, 2) = 0.51f;
+  const Image difference = difference_image(a, b, 15);
+  EXPECT_NEAR(difference.at(0, 0, 0), 0.3f, 1e-5);
+  EXPECT_NEAR(difference.at(1, 0, 2), 0.15f, 1e-5);
+  EXPECT_EQ(difference.at(0, 0, 1), 0);
+  EXPECT_EQ(difference.channels.size(), 3u);
+}
+
+class CompareCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(CLPV_TEST_DIR) /
+              ("compare_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Exit code; stdout goes to out.json.
+  int run(const std::string& arguments) const {
+    const std::string command = std::string(CLPV_PROGRAM) + " compare " + arguments + " > " + file("out.json") + " 2> " +
+                                file("err.txt");
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  nlohmann::json output() const { return nlohmann::json::parse(std::ifstream(file("out.json"))); }
+
+  fs::path folder_;
+};
+
+TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {
+  Image a, b;
+  append_layer(a, plain(6, 4, 0.5f, 0.5f, 0.5f), "");
+  append_layer(a, plain(6, 4, 0.21f, 0.2f, 0.2f), "indirect");
+  append_layer(b, plain(6, 4, 0.5f, 0.5f, 0.5f), "");
+  append_layer(b, plain(6, 4, 0.2f, 0.2f, 0.2f), "indirect");
+  write_exr(file("a.exr"), a);
+  write_exr(file("b.exr"), b);
+  ASSERT_EQ(run(file("a.exr") + " " + file("b.exr")), 0);
+  EXPECT_TRUE(output()["identical"].get<bool>());
+  ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.exr") + " --amplify 10"), 0);
+  EXPECT_NEAR(output()["max_error"].get<double>(), 0.01, 1e-6);
+  EXPECT_NEAR(read_image(file("d.exr")).at(0, 0, 0), 0.1f, 1e-5);
+  ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.png")), 0);
+  EXPECT_NEAR(read_image(file("d.png")).at(0, 0, 0), srgb_encode(0.15f), 0.5 / 255);
+  EXPECT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer direct"), 3);
+}
+
+TEST_F(CompareCommand, BytesOfPngDifferByTheirAmplifiedDifference) {
+  Image a = plain(4, 4, 100 / 255.0f, 0, 0), b = plain(4, 4, 104 / 255.0f, 0, 0);
+  a.encoding = b.encoding = Encoding::srgb;
+  write_png(file("a.png"), a);
+  write_png(file("b.png"), b);
+  ASSERT_EQ(run(file("a.png") + " " + file("b.png") + " -o " + file("d.png")), 0);
+  EXPECT_NEAR(output()["max_error"].get<double>() * 255, 4, 1e-4);
+  EXPECT_NEAR(read_image(file("d.png")).at(1, 1, 0) * 255, 60, 1e-3);
+}
+
+TEST_F(CompareCommand, ExitCodes) {
+  Image nan = plain(4, 4, 1, 1, 1);
+  nan.pixels[5] = std::nanf("");
+  write_exr(file("nan.exr"), nan);
+  write_exr(file("good.exr"), plain(4, 4, 1, 1, 1));
+  write_exr(file("wide.exr"), plain(5, 4, 1, 1, 1));
+  EXPECT_EQ(run(file("good.exr") + " " + file("nan.exr")), 3);
+  EXPECT_EQ(run(file("nan.exr") + " " + file("nan.exr")), 3);
+  EXPECT_EQ(run(file("good.exr") + " " + file("wide.exr")), 3);
+  EXPECT_EQ(run(file("good.exr") + " " + file("missing.exr")), 3);
+  EXPECT_EQ(run(file("good.exr")), 2);
+  EXPECT_EQ(run(file("good.exr") + " " + file("good.exr") + " --amplify -1"), 2);
+  EXPECT_EQ(run(file("good.exr") + " " + file("good.exr") + " -o " + file("d.jpg")), 2);
+  EXPECT_EQ(run(file("good.exr") + " " + file("good.exr") + " -o " + file("none/d.png")), 1);
+  EXPECT_EQ(run("--help"), 0);
+}
+
+}  // namespace
+}  // namespace clpv

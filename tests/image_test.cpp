@@ -1,0 +1,219 @@
+// Images in and out: what is written comes back, the same bytes each time, and bad files are refused in
+// words.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "image/image_io.hpp"
+#include "support/error.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(CLPV_TEST_DIR) /
+              ("image_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// What read_image says about `bytes` under `name`.
+  std::string refusal(const std::string& name, const std::string& bytes) {
+    write_file(folder_ / name, bytes);
+    return refusal(name);
+  }
+  std::string refusal(const std::string& name) {
+    try {
+      read_image(folder_ / name);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+      return error.what();
+    }
+    ADD_FAILURE() << name << ": was read";
+    return {};
+  }
+
+  fs::path folder_;
+};
+
+std::string content(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Values of many magnitudes, none equal.
+Image sample(int width, int height, std::vector<std::string> channels) {
+  Image image = make_image(width, height, std::move(channels));
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = 0.37f * static_cast<float>(i * i % 977);
+  return image;
+}
+
+void set_big_endian(std::string& bytes, std::size_t at, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (24 - 8 * i));
+}
+
+/// PNG's checksum of a chunk (ISO 3309), bit by bit.
+std::uint32_t crc(std::string_view bytes) {
+  std::uint32_t c = 0xffffffffu;
+  for (const unsigned char byte : bytes) {
+    c ^= byte;
+    for (int bit = 0; bit < 8; ++bit) c = (c >> 1) ^ (c & 1 ? 0xedb88320u : 0);
+  }
+  return ~c;
+}
+
+TEST_F(ImageFiles, ExrKeepsFloatsLayersAndOptions) {
+  Image image;
+  append_layer(image, sample(37, 19, {"R", "G", "B", "A"}), "");
+  append_layer(image, sample(37, 19, {"R", "G", "B", "A"}), "indirect");
+  append_layer(image, sample(37, 19, {"Z"}), "depth");
+  image.metadata = {{"basis", "srbf8v2"}, {"lambda", "0.25"}, {"scene", "scenes/a b.json"}};
+  write_exr(folder_ / "a.exr", image);
+
+  const Image back = read_image(folder_ / "a.exr");
+  EXPECT_EQ(back.encoding, Encoding::linear);
+  EXPECT_EQ(back.metadata, image.metadata);
+  EXPECT_EQ(layers(back).size(), 3u);
+  for (const std::string layer : {"", "indirect", "depth"}) {
+    const Image expected = extract_layer(image, layer, "memory"), found = extract_layer(back, layer, "a.exr");
+    EXPECT_EQ(found.channels, expected.channels) << layer;
+    EXPECT_EQ(found.pixels, expected.pixels) << layer;
+  }
+  try {
+    extract_layer(back, "direct", "a.exr");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("'indirect'"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(ImageFiles, ExrHoldsSpecialValues) {
+  Image image = make_image(4, 1, {"R"});
+  const float infinity = std::numeric_limits<float>::infinity();
+  image.pixels = {infinity, std::nanf(""), 1e-40f, 3e38f};
+  write_exr(folder_ / "a.exr", image);
+  const Image back = read_image(folder_ / "a.exr");
+  EXPECT_EQ(std::memcmp(back.pixels.data(), image.pixels.data(), sizeof(float) * 4), 0);
+}
+
+TEST_F(ImageFiles, SameImageSameBytes) {
+  Image image = sample(16, 16, {"R", "G", "B", "A"});
+  image.metadata = {{"basis", "sh2"}};
+  write_exr(folder_ / "a.exr", image);
+  const std::string first = content(folder_ / "a.exr");
+  // Two writes within one second would not show a time stamp: the stamp must be the fixed one.
+  EXPECT_NE(first.find("1970:01:01 00:00:00"), std::string::npos);
+  write_exr(folder_ / "b.exr", image);
+  EXPECT_EQ(first, content(folder_ / "b.exr"));
+  image.encoding = Encoding::srgb;
+  write_png(folder_ / "a.png", image);
+  write_png(folder_ / "b.png", image);
+  EXPECT_EQ(content(folder_ / "a.png"), content(folder_ / "b.png"));
+  EXPECT_EQ(content(folder_ / "a.png").find("tIME"), std::string::npos);
+}
+
+TEST_F(ImageFiles, PngRoundsToBytesAndKeepsAlphaApart) {
+  Image image = make_image(3, 1, {"R", "G", "B", "A"});
+  image.encoding = Encoding::srgb;
+  image.pixels = {1, 0.5f, 100 / 255.0f, 1, 2, -1, 0.2f, 0.5f, 1, 1, 1, 0};
+  write_png(folder_ / "a.png", image);
+  const Image back = read_image(folder_ / "a.png");
+  EXPECT_EQ(back.encoding, Encoding::srgb);
+  const int expected[] = {255, 128, 100, 255, 255, 0, 51, 128, 255, 255, 255, 0};
+  ASSERT_EQ(back.pixels.size(), std::size(expected));
+  for (std::size_t i = 0; i < back.pixels.size(); ++i)
+    EXPECT_NEAR(back.pixels[i] * 255, expected[i], 1e-3) << i;
+}
+
+TEST_F(ImageFiles, HdrIsRead) {
+  // Radiance RGBE: mantissas 64, 128, 255 with exponent 129 are value / 256 * 2^(129 - 128); flat, not
+  // run-length coded.
+  const unsigned char pixels[] = {64, 128, 255, 129, 128, 128, 128, 128};
+  std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+  bytes.append(reinterpret_cast<const char*>(pixels), sizeof pixels);
+  write_file(folder_ / "a.hdr", bytes);
+  const Image image = read_image(folder_ / "a.hdr");
+  ASSERT_EQ(image.pixels.size(), 6u);
+  EXPECT_NEAR(image.pixels[0], 0.5f, 0.01f);
+  EXPECT_NEAR(image.pixels[1], 1.0f, 0.01f);
+  EXPECT_NEAR(image.pixels[3], 0.5f, 0.01f);
+}
+
+TEST_F(ImageFiles, RefusesWhatIsNoImageOrAnotherThanItsName) {
+  EXPECT_NE(refusal("missing.exr").find("no such file"), std::string::npos);
+  fs::create_directories(folder_ / "folder.exr");
+  refusal("folder.exr");
+  refusal("empty.png", "");
+  refusal("text.exr", "once upon a time");
+  EXPECT_NE(refusal("a.txt", "x").find(".exr, .png and .hdr"), std::string::npos);
+  Image image = sample(4, 4, {"R", "G", "B"});
+  write_exr(folder_ / "good.exr", image);
+  EXPECT_NE(refusal("exr.png", content(folder_ / "good.exr")).find("content is openexr"), std::string::npos);
+}
+
+TEST_F(ImageFiles, RefusesTruncatedFiles) {
+  Image image = sample(64, 64, {"R", "G", "B"});
+  write_exr(folder_ / "good.exr", image);
+  image.encoding = Encoding::srgb;
+  for (float& value : image.pixels) value /= 400;
+  write_png(folder_ / "good.png", image);
+  for (const std::string name : {"good.exr", "good.png"}) {
+    const std::string bytes = content(folder_ / name);
+    for (const double share : {0.02, 0.1, 0.5, 0.9, 0.98}) {
+      refusal("cut." + name, bytes.substr(0, static_cast<std::size_t>(share * bytes.size())));
+    }
+  }
+  std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20 +X 20\n";
+  refusal("cut.hdr", hdr + std::string(100, 'x'));
+  refusal("head.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n");
+}
+
+TEST_F(ImageFiles, RefusesHugeDimensionsBeforeTakingMemory) {
+  Image image = sample(4, 4, {"R", "G", "B"});
+  image.encoding = Encoding::srgb;
+  write_png(folder_ / "small.png", image);
+  std::string png = content(folder_ / "small.png");
+  set_big_endian(png, 16, 60000);
+  set_big_endian(png, 20, 60000);
+  set_big_endian(png, 29, crc(std::string_view(png).substr(12, 17)));
+  const std::string message = refusal("huge.png", png);
+  EXPECT_NE(message.find("60000 x 60000"), std::string::npos) << message;
+  EXPECT_NE(message.find("16384"), std::string::npos) << message;
+  refusal("huge.hdr",
+          "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\n" + std::string(64, 'x'));
+
+  ImageLimits limits;
+  limits.pixel_bytes = 100;
+  EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
+  limits = {};
+  limits.channels = 2;
+  EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
+  limits = {};
+  limits.file_bytes = 20;
+  EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
+}
+
+TEST_F(ImageFiles, UnwritablePlacesAreRunTimeErrors) {
+  try {
+    write_exr(folder_ / "none" / "a.exr", sample(2, 2, {"R"}));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::run_time);
+  }
+}
+
+}  // namespace
+}  // namespace clpv

@@ -1,0 +1,201 @@
+// Output is whole or not there; volumes written for others' tools say what they should.
+#include "support/output_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "support/error.hpp"
+#include "support/npy.hpp"
+#include "support/progress.hpp"
+#include "support/vti.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(CLPV_TEST_DIR) /
+              ("output_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::size_t entries() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+
+  fs::path folder_;
+};
+
+std::string content(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+template <typename Action>
+std::string message_of(ExitCode code, Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), code);
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+TEST_F(OutputFile, ReplacesWholeFilesAndLeavesNothingBeside) {
+  const fs::path path = folder_ / "out.txt";
+  write_file(path, std::string_view("a longer first content"));
+  write_file(path, std::string_view("second"));
+  EXPECT_EQ(content(path), "second");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, CheckLeavesNothingAndKeepsWhatIsThere) {
+  check_writable(folder_ / "new.txt");
+  EXPECT_EQ(entries(), 0u);
+  write_file(folder_ / "old.txt", std::string_view("old"));
+  check_writable(folder_ / "old.txt");
+  EXPECT_EQ(content(folder_ / "old.txt"), "old");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, RefusesPlacesThatTakeNoFileAndNamesThem) {
+  EXPECT_NE(
+      message_of(ExitCode::run_time, [&] { check_writable(folder_ / "none" / "a.exr"); }).find("no folder"),
+      std::string::npos);
+  EXPECT_NE(message_of(ExitCode::run_time, [&] { check_writable(folder_); }).find(folder_.string()),
+            std::string::npos);
+  message_of(ExitCode::run_time, [&] { check_writable(""); });
+  message_of(ExitCode::run_time, [&] { check_writable(folder_ / ""); });
+  write_file(folder_ / "file", std::string_view("x"));
+  message_of(ExitCode::run_time, [&] { check_writable(folder_ / "file" / "a.exr"); });
+  message_of(ExitCode::run_time, [&] { check_writable("/dev/null"); });
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(OutputFile, ANameWithoutFolderGoesIntoTheCurrentOne) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  check_writable("plain.txt");
+  write_file("plain.txt", std::string_view("x"));
+  fs::current_path(before);
+  EXPECT_EQ(content(folder_ / "plain.txt"), "x");
+}
+
+TEST_F(OutputFile, FollowsASymbolicLink) {
+  write_file(folder_ / "target", std::string_view("old"));
+  fs::create_symlink("target", folder_ / "link");
+  write_file(folder_ / "link", std::string_view("new"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(content(folder_ / "target"), "new");
+}
+
+TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
+  const fs::path path = folder_ / "out.txt";
+  write_file(path, std::string_view("old"));
+  // A limit on file size stands in for the full disk.
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{1000, before.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message =
+      message_of(ExitCode::run_time, [&] { write_file(path, std::string(5000, 'x')); });
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(message.find(path.string()), std::string::npos);
+  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, NpyComesBackAndHasNumPysHeader) {
+  const std::vector<float> values{1, -2, 3.5f, 4, 5, 1e-30f};
+  const std::size_t shape[] = {3, 1, 2}, line[] = {6};
+  write_npy(folder_ / "a.npy", values, shape);
+  const NpyArray array = read_npy(folder_ / "a.npy");
+  EXPECT_EQ(array.values, values);
+  EXPECT_EQ(array.shape, std::vector<std::size_t>({3, 1, 2}));
+  const std::string file = content(folder_ / "a.npy");
+  EXPECT_EQ((file.size() - values.size() * 4) % 64, 0u);
+  EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
+  EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
+  write_npy(folder_ / "b.npy", values, line);
+  EXPECT_NE(content(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
+  EXPECT_EQ(read_npy(folder_ / "b.npy").shape, std::vector<std::size_t>({6}));
+}
+
+TEST_F(OutputFile, NpyRefusesWhatItCannotHold) {
+  const std::size_t shape[] = {4};
+  write_npy(folder_ / "a.npy", std::vector<float>(4), shape);
+  const std::string good = content(folder_ / "a.npy");
+  const auto refused = [&](std::string bytes) {
+    write_file(folder_ / "bad.npy", bytes);
+    message_of(ExitCode::bad_input, [&] { read_npy(folder_ / "bad.npy"); });
+  };
+  refused(good.substr(0, good.size() - 1));
+  refused(good.substr(0, 20));
+  refused("");
+  std::string doubles = good;
+  doubles.replace(good.find("<f4"), 3, "<f8");
+  refused(doubles);
+  std::string huge = good;
+  huge.replace(good.find("(4,), }             "), 20, "(999999999, 9999), }");
+  refused(huge);
+}
+
+TEST_F(OutputFile, VtiDescribesTheGridAndItsBytes) {
+  std::vector<float> first(2 * 3 * 4), second(first.size() * 3);
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = static_cast<float>(i);
+  for (std::size_t i = 0; i < second.size(); ++i) second[i] = -static_cast<float>(i);
+  const VtiArray arrays[] = {{"a<b", 1, first}, {"rgb", 3, second}};
+  write_vti(folder_ / "v.vti", {{2, 3, 4}, {-1.5, 0, 2}, {0.25, 0.25, 0.5}}, arrays);
+  const std::string file = content(folder_ / "v.vti");
+  EXPECT_NE(file.find("WholeExtent=\"0 2 0 3 0 4\" Origin=\"-1.5 0 2\" Spacing=\"0.25 0.25 0.5\""),
+            std::string::npos);
+  EXPECT_NE(file.find("Name=\"a&lt;b\" NumberOfComponents=\"1\" format=\"appended\" offset=\"0\""),
+            std::string::npos);
+  const std::size_t start = file.find("\n_") + 2;
+  const std::size_t offset = 8 + first.size() * 4;
+  EXPECT_NE(file.find("Name=\"rgb\" NumberOfComponents=\"3\" format=\"appended\" offset=\"" +
+                      std::to_string(offset)),
+            std::string::npos);
+  std::uint64_t bytes = 0;
+  std::memcpy(&bytes, file.data() + start + offset, 8);
+  EXPECT_EQ(bytes, second.size() * 4);
+  EXPECT_EQ(std::memcmp(file.data() + start + 8, first.data(), first.size() * 4), 0);
+  EXPECT_EQ(std::memcmp(file.data() + start + offset + 8, second.data(), second.size() * 4), 0);
+}
+
+TEST(ProgressLine, TellsShareAndTimeLeft) {
+  EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200), "tracing [..............................]   0 % ");
+  EXPECT_EQ(progress_line("tracing", 5, 10, 90, 200),
+            "tracing [###############...............]  50 % 1:30 left");
+  EXPECT_NE(progress_line("tracing", 1, 101, 60, 200).find("1:40:00 left"), std::string::npos);
+  EXPECT_NE(progress_line("tracing", 12, 10, 60, 200).find("100 % 0:00 left"), std::string::npos);
+  EXPECT_EQ(progress_line("tracing", 5, 10, 90, 10).size(), 10u);
+}
+
+TEST(ProgressLine, NothingIsDrawnWhereStderrIsNoTerminal) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("tracing", 2);
+    progress.advance();
+    progress.advance();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace clpv
