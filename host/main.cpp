@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   app.fallthrough();
   app.parse_complete_callback([&] { set_log_level(shared.quiet, shared.verbosity); });
   add_devices(app, shared);
+  add_compare(app, shared);
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or image file;\n"
       "4 no device, or one that lacks what was asked; 5 validation failed. stdout is data, stderr is talk.");

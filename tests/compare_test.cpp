@@ -175,8 +175,8 @@ class CompareCommand : public testing::Test {
 
   /// Exit code; stdout goes to out.json.
   int run(const std::string& arguments) const {
-    const std::string command = std::string(CLPV_PROGRAM) + " compare " + arguments + " > " + file("out.json") + " 2> " +
-                                file("err.txt");
+    const std::string command = std::string(CLPV_PROGRAM) + " compare " + arguments + " > " +
+                                file("out.json") + " 2> " + file("err.txt");
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -195,7 +195,9 @@ TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {
   write_exr(file("b.exr"), b);
   ASSERT_EQ(run(file("a.exr") + " " + file("b.exr")), 0);
   EXPECT_TRUE(output()["identical"].get<bool>());
-  ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.exr") + " --amplify 10"), 0);
+  ASSERT_EQ(
+      run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.exr") + " --amplify 10"),
+      0);
   EXPECT_NEAR(output()["max_error"].get<double>(), 0.01, 1e-6);
   EXPECT_NEAR(read_image(file("d.exr")).at(0, 0, 0), 0.1f, 1e-5);
   ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.png")), 0);

@@ -19,7 +19,9 @@ struct CompareOptions {
   float amplify = 15;
 };
 
-bool is_png(const std::filesystem::path& path) { return path.extension() == ".png"; }
+bool is_png(const std::filesystem::path& path) {
+  return path.extension() == ".png";
+}
 
 void check_output(const std::string& output) {
   if (output.empty()) return;
@@ -53,7 +55,8 @@ void run(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Shared&) {
-  CLI::App* command = app.add_subcommand("compare", "How far image A is from its reference B: JSON on stdout");
+  CLI::App* command =
+      app.add_subcommand("compare", "How far image A is from its reference B: JSON on stdout");
   auto options = std::make_shared<CompareOptions>();
   command->add_option("A", options->a, "the image: .exr, .png or .hdr")->required();
   command->add_option("B", options->b, "its reference, of the same size")->required();
@@ -62,12 +65,17 @@ void add_compare(CLI::App& app, Shared&) {
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--layer", options->layer, "compare this layer of both EXR files (default: the unnamed one)")
+  command
+      ->add_option("--layer", options->layer,
+                   "compare this layer of both EXR files (default: the unnamed one)")
       ->type_name("NAME");
   command->footer(
-      "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: linear in EXR\n"
-      "and HDR, sRGB-encoded from 0 to 1 in PNG. psnr_db has its peak at 1 and is null without error; nrmse is rmse over\n"
-      "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and perceptual_failures (pixels,\n"
+      "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
+      "linear in EXR\n"
+      "and HDR, sRGB-encoded from 0 to 1 in PNG. psnr_db has its peak at 1 and is null without error; nrmse "
+      "is rmse over\n"
+      "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and "
+      "perceptual_failures (pixels,\n"
       "Yee 1999) are over the valid pixels: alpha above 0 in both, all where there is no alpha.\n"
       "Different sizes and values that are not finite exit with 3.");
   command->callback([options] { run(*options); });

@@ -12,7 +12,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite; issue and literature use it
+constexpr double kRelativeFloor =
+    0.01;  // keeps the relative error of black pixels finite; issue and literature use it
 
 std::vector<std::size_t> colour_channels(const Image& image) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B");
@@ -24,30 +25,36 @@ std::vector<std::size_t> colour_channels(const Image& image) {
   return indices;
 }
 
-const float* pixel(const Image& image, std::size_t index) { return &image.pixels[index * image.channels.size()]; }
+const float* pixel(const Image& image, std::size_t index) {
+  return &image.pixels[index * image.channels.size()];
+}
 
 void check_finite(const Image& image, const std::string& name) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     if (std::isfinite(image.pixels[i])) continue;
     const std::size_t p = i / image.channels.size(), c = i % image.channels.size();
-    throw Error(ExitCode::bad_input, "{}: pixel ({}, {}), channel {} is {}; only finite values can be compared", name,
+    throw Error(ExitCode::bad_input,
+                "{}: pixel ({}, {}), channel {} is {}; only finite values can be compared", name,
                 p % image.width, p / image.width, image.channels[c], image.pixels[i]);
   }
 }
 
 void check_comparable(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name) {
   if (a.width != b.width || a.height != b.height) {
-    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; only equal sizes can be compared", a_name,
-                a.width, a.height, b_name, b.width, b.height);
+    throw Error(ExitCode::bad_input,
+                "{} has {} x {} pixels, {} has {} x {}; only equal sizes can be compared", a_name, a.width,
+                a.height, b_name, b.width, b.height);
   }
   const std::size_t in_a = colour_channels(a).size(), in_b = colour_channels(b).size();
   if (in_a != in_b || in_a == 0) {
-    throw Error(ExitCode::bad_input, "{} has {} colour channels, {} has {}; only equal numbers can be compared", a_name,
-                in_a, b_name, in_b);
+    throw Error(ExitCode::bad_input,
+                "{} has {} colour channels, {} has {}; only equal numbers can be compared", a_name, in_a,
+                b_name, in_b);
   }
   if (a.encoding != b.encoding) {
     const bool a_linear = a.encoding == Encoding::linear;
-    throw Error(ExitCode::bad_input, "{} holds linear radiance and {} sRGB-encoded values; compare two of a kind",
+    throw Error(ExitCode::bad_input,
+                "{} holds linear radiance and {} sRGB-encoded values; compare two of a kind",
                 a_linear ? a_name : b_name, a_linear ? b_name : a_name);
   }
   check_finite(a, a_name);
@@ -104,7 +111,8 @@ void add_valid_figures(Comparison& result, const Sums& valid) {
   result.best_gain = ratio(valid.ab, valid.aa);
   // |gA - B|^2 = BB - AB^2 / AA at the best gain; of a black A nothing can be made.
   const double explained = valid.aa > 0 ? valid.ab * valid.ab / valid.aa : 0.0;
-  result.nrmse_best_gain = valid.squared_error == 0 ? normalised(0, valid.bb) : normalised(valid.bb - explained, valid.bb);
+  result.nrmse_best_gain =
+      valid.squared_error == 0 ? normalised(0, valid.bb) : normalised(valid.bb - explained, valid.bb);
   result.energy_ratio = ratio(valid.a, valid.b);
 }
 
@@ -121,7 +129,11 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
   const auto alpha_a = a.channel("A"), alpha_b = b.channel("A");
   const std::size_t pixels = a.pixel_count(), channels = in_a.size();
 
-  Comparison result{.width = a.width, .height = a.height, .channels = static_cast<int>(channels), .encoding = a.encoding};
+  Comparison result;
+  result.width = a.width;
+  result.height = a.height;
+  result.channels = static_cast<int>(channels);
+  result.encoding = a.encoding;
   Sums all, valid;
   std::vector<bool> is_valid(pixels);
   double relative = 0;
