@@ -1,0 +1,118 @@
+// Injection's cells: which one a point falls into, as a key to sort by, and how a cell's sum gets into the volume.
+//
+//   uint cell_key(point)            point in units of cells; CLPV_NO_CELL outside the grid
+//   uint phase_of(key)              keys of one phase may be delivered at the same time
+//   void deliver(volume, key, sums) adds (light) or merges (geometry) the sum of a cell's texels
+//
+// Trilinear: a texel spreads over the 8 cells whose centres surround it. Its key is that of those 8 together, the
+// corner they share, and sums have 8 lanes, one a cell. Two corners share cells unless their coordinates have the
+// same parities: the eight parities are the phases, most significant in the key, so that a phase is one stretch of
+// the sorted texels.
+#ifndef CLPV_INJECT_CELLS_H
+#define CLPV_INJECT_CELLS_H
+
+#include "shared/sort.h"
+
+#if CLPV_GEOMETRY
+#include "volume/geometry.h"
+#define CLPV_EACH_CHANNEL(DO) DO(0)
+#define CLPV_CHANNELS 1
+#else
+#include "volume/light.h"
+#define CLPV_EACH_CHANNEL(DO) DO(0) DO(1) DO(2)
+#define CLPV_CHANNELS 3
+#endif
+
+#if CLPV_TRILINEAR
+typedef float8 Lanes;  // a value for each of 8 cells, x fastest; Sum and clpv_project_sum come from the host
+#else
+typedef float Lanes;
+typedef Coefficients Sum;
+#endif
+
+// What the texels of a cell add up to: weighted integrals alpha, a channel each.
+typedef struct {
+#define CLPV_DO(k) Sum k##k;
+  CLPV_EACH_CHANNEL(CLPV_DO)
+#undef CLPV_DO
+} Sums;
+
+#if CLPV_TRILINEAR || CLPV_GEOMETRY
+#define CLPV_KEYS (CLPV_GRID + 1)
+#define CLPV_ROUND(point) floor((point) + 0.5f)  // the nearest corner
+#else
+#define CLPV_KEYS CLPV_GRID
+#define CLPV_ROUND(point) floor(point)
+#endif
+#define CLPV_HALF_KEYS ((CLPV_KEYS + 1) / 2)
+
+static inline uint cell_key(const float3 point) {
+  const float3 cell = CLPV_ROUND(point);
+  const float top = (float)(CLPV_KEYS - 1);
+  const bool inside = cell.x >= 0.0f && cell.y >= 0.0f && cell.z >= 0.0f && cell.x <= top && cell.y <= top &&
+                      cell.z <= top;
+  if (!inside) return CLPV_NO_CELL;
+  const uint x = (uint)cell.x, y = (uint)cell.y, z = (uint)cell.z;
+#if CLPV_TRILINEAR
+  const uint parity = x % 2 + 2 * (y % 2) + 4 * (z % 2);
+  return ((parity * CLPV_HALF_KEYS + z / 2) * CLPV_HALF_KEYS + y / 2) * CLPV_HALF_KEYS + x / 2;
+#else
+  return (z * CLPV_KEYS + y) * CLPV_KEYS + x;
+#endif
+}
+
+#if CLPV_TRILINEAR
+
+static inline uint phase_of(const uint key) {
+  return key / (CLPV_HALF_KEYS * CLPV_HALF_KEYS * CLPV_HALF_KEYS);
+}
+
+static inline Coefficients one_lane(const Sum* sum, const int lane) {
+  Coefficients c;
+#define CLPV_DO(i) c.c##i = ((const float*)&sum->c##i)[lane];
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return c;
+}
+
+static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
+  const int phase = phase_of(key);
+  const int x = 2 * (key % CLPV_HALF_KEYS) + phase % 2;
+  const int y = 2 * (key / CLPV_HALF_KEYS % CLPV_HALF_KEYS) + phase / 2 % 2;
+  const int z = 2 * (key / (CLPV_HALF_KEYS * CLPV_HALF_KEYS) % CLPV_HALF_KEYS) + phase / 4;
+#define CLPV_DO(k) const Sum projected##k = clpv_project_sum(sums.k##k);
+  CLPV_EACH_CHANNEL(CLPV_DO)
+#undef CLPV_DO
+  for (int lane = 0; lane < 8; ++lane) {
+    const int cx = x - 1 + lane % 2, cy = y - 1 + lane / 2 % 2, cz = z - 1 + lane / 4;
+    if (min(min(cx, cy), cz) < 0 || max(max(cx, cy), cz) >= CLPV_GRID) continue;
+#define CLPV_DO(k)                                                                      \
+  light_store(volume, k, cx, cy, cz,                                                    \
+              clpv_add_scaled(light_load(volume, k, cx, cy, cz), M_1_PI_F, one_lane(&projected##k, lane)));
+    CLPV_EACH_CHANNEL(CLPV_DO)
+#undef CLPV_DO
+  }
+}
+
+#else
+
+static inline uint phase_of(const uint key) { return 0; }
+
+static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
+  const int x = key % CLPV_KEYS, y = key / CLPV_KEYS % CLPV_KEYS, z = key / (CLPV_KEYS * CLPV_KEYS);
+#if CLPV_GEOMETRY
+  const Coefficients blocking = clpv_project(sums.k0);
+  if (clpv_mean(blocking) > clpv_mean(geometry_load(volume, 0, x, y, z))) {
+    geometry_store(volume, 0, x, y, z, blocking);
+  }
+#else
+#define CLPV_DO(k)                 \
+  light_store(volume, k, x, y, z, \
+              clpv_add_scaled(light_load(volume, k, x, y, z), M_1_PI_F, clpv_project(sums.k##k)));
+  CLPV_EACH_CHANNEL(CLPV_DO)
+#undef CLPV_DO
+#endif
+}
+
+#endif
+#endif
