@@ -30,11 +30,16 @@ typedef float4 Detail;
 typedef float Detail;
 #endif
 
-static inline bool all_finite(const float3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+// Bitwise and scalar, like all of find_cells: work-items then vectorise on CPU devices.
+static inline bool all_finite(const float3 v) {
+  return (fabs(v.x) <= MAXFLOAT) & (fabs(v.y) <= MAXFLOAT) & (fabs(v.z) <= MAXFLOAT);
+}
+static inline bool not_zero(const float3 v) { return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f); }
 
 static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
                                   const float depth, const float3 normal) {
-  const float cosine = fabs(dot(normal, clpv_ray(view, px, py)));
+  const float3 ray = clpv_ray(view, px, py);
+  const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
   return clpv_footprint(view, px, py, depth) / (fmax(cosine, CLPV_LEAST_COSINE) * grid.cell * grid.cell);
 }
 
@@ -48,19 +53,23 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
   const float depth = depths[texel];
   const float3 normal = clpv_load_normal(normals, texel);
   const float3 position = clpv_position(view, (float)px, (float)py, depth);
-  float3 point = (position - clpv_float3(grid.origin)) / grid.cell;
-  bool counts = depth > 0.0f && all_finite(normal) && dot(normal, normal) > 0.0f;
+  const float per_metre = 1.0f / grid.cell;
+  float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
+        z = (position.z - grid.origin[2]) * per_metre;
+  bool counts = (depth > 0.0f) & all_finite(normal) & not_zero(normal);
 #if CLPV_GEOMETRY
   details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
 #else
-  point += 0.5f * normal;
+  x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
   const float3 flux = clpv_load_colour(colours, texel, colour_scale);
-  counts = counts && all_finite(flux) && (flux.x != 0.0f || flux.y != 0.0f || flux.z != 0.0f);
+  counts = counts & all_finite(flux) & not_zero(flux);
+#endif
+  // A point that is not finite is inside no cell.
+  const float3 cell = (float3)(CLPV_ROUND(x), CLPV_ROUND(y), CLPV_ROUND(z));
+  keys[texel] = counts & in_grid(cell) ? cell_key(cell) : CLPV_NO_CELL;
 #if CLPV_TRILINEAR
-  details[texel] = (float4)(point + 0.5f - floor(point + 0.5f), 0.0f);
+  details[texel] = (float4)(x + 0.5f - cell.x, y + 0.5f - cell.y, z + 0.5f - cell.z, 0.0f);
 #endif
-#endif
-  keys[texel] = counts && all_finite(point) ? cell_key(point) : CLPV_NO_CELL;
 }
 
 // Everything a texel is weighted by.

@@ -1,6 +1,8 @@
 // Injection's cells: which one a point falls into, as a key to sort by, and how a cell's sum gets into the volume.
 //
-//   uint cell_key(point)            point in units of cells; CLPV_NO_CELL outside the grid
+//   CLPV_ROUND(coordinate)          of a point in units of cells: that of its cell; trilinear: of its corner
+//   bool in_grid(cell)              whether there is such a cell
+//   uint cell_key(cell)             for a cell in the grid
 //   uint phase_of(key)              keys of one phase may be delivered at the same time
 //   void deliver(volume, key, sums) adds (light) or merges (geometry) the sum of a cell's texels
 //
@@ -32,26 +34,26 @@ typedef Coefficients Sum;
 
 // What the texels of a cell add up to: weighted integrals alpha, a channel each.
 typedef struct {
-#define CLPV_DO(k) Sum k##k;
+#define CLPV_DO(channel) Sum k##channel;
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
 } Sums;
 
 #if CLPV_TRILINEAR || CLPV_GEOMETRY
 #define CLPV_KEYS (CLPV_GRID + 1)
-#define CLPV_ROUND(point) floor((point) + 0.5f)  // the nearest corner
+#define CLPV_ROUND(coordinate) floor((coordinate) + 0.5f)
 #else
 #define CLPV_KEYS CLPV_GRID
-#define CLPV_ROUND(point) floor(point)
+#define CLPV_ROUND(coordinate) floor(coordinate)
 #endif
 #define CLPV_HALF_KEYS ((CLPV_KEYS + 1) / 2)
 
-static inline uint cell_key(const float3 point) {
-  const float3 cell = CLPV_ROUND(point);
+static inline bool in_grid(const float3 cell) {
   const float top = (float)(CLPV_KEYS - 1);
-  const bool inside = cell.x >= 0.0f && cell.y >= 0.0f && cell.z >= 0.0f && cell.x <= top && cell.y <= top &&
-                      cell.z <= top;
-  if (!inside) return CLPV_NO_CELL;
+  return (cell.x >= 0.0f) & (cell.y >= 0.0f) & (cell.z >= 0.0f) & (cell.x <= top) & (cell.y <= top) & (cell.z <= top);
+}
+
+static inline uint cell_key(const float3 cell) {
   const uint x = (uint)cell.x, y = (uint)cell.y, z = (uint)cell.z;
 #if CLPV_TRILINEAR
   const uint parity = x % 2 + 2 * (y % 2) + 4 * (z % 2);
@@ -80,15 +82,16 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
   const int x = 2 * (key % CLPV_HALF_KEYS) + phase % 2;
   const int y = 2 * (key / CLPV_HALF_KEYS % CLPV_HALF_KEYS) + phase / 2 % 2;
   const int z = 2 * (key / (CLPV_HALF_KEYS * CLPV_HALF_KEYS) % CLPV_HALF_KEYS) + phase / 4;
-#define CLPV_DO(k) const Sum projected##k = clpv_project_sum(sums.k##k);
+#define CLPV_DO(channel) const Sum projected##channel = clpv_project_sum(sums.k##channel);
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
   for (int lane = 0; lane < 8; ++lane) {
     const int cx = x - 1 + lane % 2, cy = y - 1 + lane / 2 % 2, cz = z - 1 + lane / 4;
     if (min(min(cx, cy), cz) < 0 || max(max(cx, cy), cz) >= CLPV_GRID) continue;
-#define CLPV_DO(k)                                                                      \
-  light_store(volume, k, cx, cy, cz,                                                    \
-              clpv_add_scaled(light_load(volume, k, cx, cy, cz), M_1_PI_F, one_lane(&projected##k, lane)));
+#define CLPV_DO(channel)                                                           \
+  light_store(volume, channel, cx, cy, cz,                                         \
+              clpv_add_scaled(light_load(volume, channel, cx, cy, cz), M_1_PI_F,   \
+                              one_lane(&projected##channel, lane)));
     CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
   }
@@ -106,9 +109,10 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
     geometry_store(volume, 0, x, y, z, blocking);
   }
 #else
-#define CLPV_DO(k)                 \
-  light_store(volume, k, x, y, z, \
-              clpv_add_scaled(light_load(volume, k, x, y, z), M_1_PI_F, clpv_project(sums.k##k)));
+#define CLPV_DO(channel)                                                        \
+  light_store(volume, channel, x, y, z,                                         \
+              clpv_add_scaled(light_load(volume, channel, x, y, z), M_1_PI_F,   \
+                              clpv_project(sums.k##channel)));
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
 #endif

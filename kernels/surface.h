@@ -1,4 +1,5 @@
 // What a view sees, pixel by pixel: depth, normal, colour; and where a pixel's surface is (kernels/shared/view.h).
+// Scalars throughout, float3 only to hand them over: CPU devices then vectorise across work-items.
 // CLPV_SURFACE_PAPER 1: normals and colours as 8-bit normalised integers, the paper's RSM format; 0: as float4.
 #ifndef CLPV_SURFACE_H
 #define CLPV_SURFACE_H
@@ -25,16 +26,22 @@ static inline float2 clpv_screen(const ClpvView view, const float px, const floa
 
 // The surface point [m] at depth [m] behind pixel (px, py).
 static inline float3 clpv_position(const ClpvView view, const float px, const float py, const float depth) {
-  const float2 s = clpv_screen(view, px, py) * (view.orthographic != 0.0f ? 1.0f : depth);
-  return clpv_float3(view.eye) + depth * clpv_float3(view.forward) + s.x * clpv_float3(view.right) +
-         s.y * clpv_float3(view.up);
+  const float2 s = clpv_screen(view, px, py);
+  const float scale = view.orthographic != 0.0f ? 1.0f : depth;
+  const float sx = scale * s.x, sy = scale * s.y;
+#define CLPV_AT(a) (view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a])
+  return (float3)(CLPV_AT(0), CLPV_AT(1), CLPV_AT(2));
+#undef CLPV_AT
 }
 
 // Unit direction from the eye through the pixel.
 static inline float3 clpv_ray(const ClpvView view, const float px, const float py) {
-  if (view.orthographic != 0.0f) return clpv_float3(view.forward);
   const float2 s = clpv_screen(view, px, py);
-  return normalize(clpv_float3(view.forward) + s.x * clpv_float3(view.right) + s.y * clpv_float3(view.up));
+  const float sx = view.orthographic != 0.0f ? 0.0f : s.x, sy = view.orthographic != 0.0f ? 0.0f : s.y;
+  const float scale = rsqrt(1.0f + sx * sx + sy * sy);
+#define CLPV_ALONG(a) (scale * (view.forward[a] + sx * view.right[a] + sy * view.up[a]))
+  return (float3)(CLPV_ALONG(0), CLPV_ALONG(1), CLPV_ALONG(2));
+#undef CLPV_ALONG
 }
 
 // Area [m^2] of the pixel's footprint across its ray: perspective, distance^2 times the pixel's solid angle.
@@ -47,9 +54,13 @@ static inline float clpv_footprint(const ClpvView view, const float px, const fl
 
 static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, const uint pixel) {
 #if CLPV_SURFACE_PAPER
-  return normalize(convert_float3(normals[pixel].xyz) * (2.0f / 255.0f) - 1.0f);
+  __global const uchar* n = (__global const uchar*)(normals + pixel);
+  const float x = n[0] * (2.0f / 255.0f) - 1.0f, y = n[1] * (2.0f / 255.0f) - 1.0f, z = n[2] * (2.0f / 255.0f) - 1.0f;
+  const float scale = rsqrt(x * x + y * y + z * z);
+  return (float3)(scale * x, scale * y, scale * z);
 #else
-  return normals[pixel].xyz;
+  __global const float* n = (__global const float*)(normals + pixel);
+  return (float3)(n[0], n[1], n[2]);
 #endif
 }
 
@@ -64,9 +75,11 @@ static inline void clpv_store_normal(__global SurfaceTexel* normals, const uint 
 // `scale`: what a stored 1 means (the light's largest flux a texel; 1 for albedo).
 static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, const uint pixel, const float scale) {
 #if CLPV_SURFACE_PAPER
-  return convert_float3(colours[pixel].xyz) * (scale / 255.0f);
+  __global const uchar* c = (__global const uchar*)(colours + pixel);
+  return (float3)(c[0] * (scale / 255.0f), c[1] * (scale / 255.0f), c[2] * (scale / 255.0f));
 #else
-  return colours[pixel].xyz;
+  __global const float* c = (__global const float*)(colours + pixel);
+  return (float3)(c[0], c[1], c[2]);
 #endif
 }
 

@@ -23,7 +23,7 @@ std::size_t round_up(std::size_t value, std::size_t step) { return (value + step
 }  // namespace
 
 CellSorter::CellSorter(Session& session) : session_(session) {
-  const ProgramSource source{.file = "sort_by_cell.cl"};
+  const ProgramSource source{"sort_by_cell.cl", {}, {}};
   count_runs_ = session.kernel(source, "count_runs");
   scatter_runs_ = session.kernel(source, "scatter_runs");
   count_texels_ = session.kernel(source, "count_texels");

@@ -1,0 +1,109 @@
+#include "pipeline/inject.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "device/arguments.hpp"
+#include "kernels/shared/sort.h"
+#include "pipeline/inject_source.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+// Segments are short enough that a wall seen by a whole view still makes many work-items, and few enough that one
+// work-item joins those of a single cell.
+constexpr std::size_t kLeastSegment = 32, kMostBlocks = 16384;
+constexpr std::size_t kPhases = 8;  // of trilinear injection
+const cl::NDRange kTexels(64, 1);
+const cl::NDRange kSegments(16);  // long and few work-items: small groups let all compute units have some
+
+std::size_t segment_length(std::size_t texels) {
+  std::size_t length = kLeastSegment;
+  while (length * kMostBlocks < texels) length *= 2;
+  return length;
+}
+
+std::size_t block_count(std::size_t texels) {
+  const std::size_t length = segment_length(texels);
+  return (texels + length - 1) / length;
+}
+
+std::size_t texel_count(const Surface& surface) {
+  return std::size_t{surface.view.width} * surface.view.height;
+}
+
+void require_shape(const Volume& volume, const VolumeShape& wanted, const char* what) {
+  const VolumeShape& found = volume.shape();
+  if (found.n != wanted.n || found.coefficients != wanted.coefficients || found.channels != wanted.channels) {
+    throw Error(ExitCode::run_time, "{} volume has {}^3 x {} x {} values, injection is made for {}^3 x {} x {}", what,
+                found.n, found.coefficients, found.channels, wanted.n, wanted.coefficients, wanted.channels);
+  }
+}
+
+}  // namespace
+
+Injector::Injector(Session& session, const Basis& basis, const InjectOptions& options)
+    : session_(session), basis_(basis), options_(options), sorter_(session) {}
+
+Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
+  const auto [found, made] = kernels_.try_emplace({kind, format});
+  if (made) {
+    const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
+    ProgramSource source{"inject.cl", {}, inject_source(basis_, trilinear)};
+    source.literals = {{"CLPV_GRID", std::to_string(options_.grid)},
+                       {"CLPV_GEOMETRY", light ? "0" : "1"},
+                       {"CLPV_TRILINEAR", trilinear ? "1" : "0"},
+                       {"CLPV_TWO_SIDED", options_.two_sided ? "1" : "0"},
+                       {"CLPV_UNIT_FLUX", options_.unit_flux_lobes ? "1" : "0"},
+                       {"CLPV_SURFACE_PAPER", format == RsmFormat::paper ? "1" : "0"}};
+    found->second = {session_.kernel(source, "find_cells"), session_.kernel(source, "sum_segments"),
+                     session_.kernel(source, "join_segments")};
+  }
+  return found->second;
+}
+
+void Injector::reserve(std::size_t texels) {
+  sorter_.reserve(texels);
+  if (texels <= capacity_) return;
+  const std::size_t lanes = options_.trilinear ? 8 : 1, coefficients = static_cast<std::size_t>(basis_.size());
+  const std::size_t blocks = block_count(texels);
+  details_ = session_.buffer(texels * (options_.trilinear ? sizeof(cl_float4) : sizeof(cl_float)), "injection, texels");
+  partials_ = session_.buffer(2 * blocks * 3 * coefficients * lanes * sizeof(cl_float), "injection, partial sums");
+  firsts_ = session_.buffer(blocks * sizeof(cl_uint), "injection, segments");
+  capacity_ = texels;
+}
+
+void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume) {
+  const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
+  const std::size_t texels = texel_count(surface);
+  if (texels == 0) return;
+  reserve(texels);
+  Kernels& kernel = kernels(kind, surface.format);
+  set_arguments(kernel.find_cells, surface.view, grid, surface.depth, surface.normal, surface.colour,
+                surface.colour_scale, sorter_.keys(), details_);
+  session_.launch(kernel.find_cells, cl::NDRange(surface.view.width, surface.view.height), kTexels);
+  sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
+
+  const auto length = static_cast<cl_uint>(segment_length(texels)), blocks = static_cast<cl_uint>(block_count(texels));
+  for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
+    set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase, surface.normal,
+                  surface.colour, surface.colour_scale, details_, volume.buffer(), partials_, firsts_);
+    session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
+    set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.buffer(), partials_,
+                  firsts_);
+    session_.launch(kernel.join_segments, cl::NDRange(blocks), kSegments);
+  }
+}
+
+void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
+  require_shape(light, {options_.grid, basis_.size(), 3}, "light");
+  inject(Kind::light, rsm, grid, light);
+}
+
+void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry) {
+  require_shape(geometry, {options_.grid + 1, basis_.size(), 1}, "geometry");
+  inject(Kind::geometry, surface, grid, geometry);
+}
+
+}  // namespace clpv

@@ -1,0 +1,56 @@
+// Injection: what views see becomes light and blocking in the cells of volumes (docs/method.md, 'Injection').
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <map>
+#include <utility>
+
+#include "basis/basis.hpp"
+#include "device/session.hpp"
+#include "kernels/shared/grid.h"
+#include "pipeline/sort_by_cell.hpp"
+#include "pipeline/surface.hpp"
+#include "pipeline/volume.hpp"
+
+namespace clpv {
+
+struct InjectOptions {
+  int grid = 32;                 ///< cells along each axis
+  bool trilinear = false;        ///< a virtual point light spreads over the 8 cells round it; else its own cell's
+  bool two_sided = true;         ///< surfels block from both sides; else only what travels against their normal
+  bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
+};
+
+/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own texels in
+/// their order in the surface. Keeps scratch memory for the largest surface injected.
+class Injector {
+ public:
+  Injector(Session& session, const Basis& basis, const InjectOptions& options);
+
+  /// Adds the virtual point lights of an RSM to `light` [W/sr]: `grid` cells, 3 channels.
+  /// Texels that are empty, dark, not finite or outside the grid add nothing.
+  void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light);
+
+  /// Merges what `surface`, an RSM or a G-buffer, sees into `geometry`: grid + 1 samples a side, 1 channel. A
+  /// sample becomes the surface's blocking share where that has the larger mean.
+  void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry);
+
+ private:
+  enum class Kind { light, geometry };
+  struct Kernels {
+    cl::Kernel find_cells, sum_segments, join_segments;
+  };
+  Kernels& kernels(Kind kind, RsmFormat format);
+  void reserve(std::size_t texels);
+  void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);
+
+  Session& session_;
+  const Basis& basis_;
+  InjectOptions options_;
+  CellSorter sorter_;
+  std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;
+  std::size_t capacity_ = 0;
+  cl::Buffer details_, partials_, firsts_;
+};
+
+}  // namespace clpv

@@ -1,0 +1,21 @@
+// Kernel text that injection generates for a basis. Knows no OpenCL.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "basis/basis.hpp"
+
+namespace clpv {
+
+/// What kernels/inject.cl is compiled with besides literals: the basis's functions and
+///   Coefficients clpv_lobe_integrals(x, y, z)   alpha of the lobe round the unit normal
+///   float clpv_flux(Coefficients alpha)         Int of the lobe with those integrals alpha [sr]
+///   float clpv_mean(Coefficients c)             mean over all directions
+/// and, for trilinear injection, Sum (a value for each of 8 cells a coefficient) and clpv_project_sum.
+std::string inject_source(const Basis& basis, bool trilinear);
+
+/// How many keys of cells there are: each key is below (kernels/inject_cells.h).
+std::size_t inject_keys(int grid, bool trilinear, bool geometry);
+
+}  // namespace clpv

@@ -1,0 +1,134 @@
+#include "reference/inject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "reference/view.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr double kLeastCosine = 0.1;  // of a surfel seen edge-on
+
+glm::dvec3 vector(const glm::vec4& v) {
+  return {v.x, v.y, v.z};
+}
+
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// A^-1 alpha round `normal`, scaled to a flux of pi where asked for.
+std::vector<double> lobe(const Basis& basis, const glm::dvec3& normal, bool unit_flux) {
+  std::vector<double> c = basis.clamped_cosine(normal);
+  if (!unit_flux) return c;
+  const double scale = std::numbers::pi / basis.energy(c);
+  for (double& value : c) value *= scale;
+  return c;
+}
+
+void add(Volume& volume, int channel, const glm::ivec3& cell, double weight, const std::vector<double>& c) {
+  if (!volume.inside(cell.x, cell.y, cell.z)) return;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    volume.at(channel, static_cast<int>(i), cell.x, cell.y, cell.z) += weight * c[i];
+  }
+}
+
+/// Area of the pixel's surface across its ray over the cell's: distance^2 x solid angle / s^2 in perspective.
+double footprint_share(const ClpvView& view, std::size_t pixel, double depth, double cell) {
+  const double area = 4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
+  if (view.orthographic != 0) return area / (cell * cell);
+  const glm::dvec3 eye(view.eye[0], view.eye[1], view.eye[2]);
+  const glm::dvec3 p = surface_position(view, static_cast<double>(pixel % view.width),
+                                        static_cast<double>(pixel / view.width), depth);
+  const double distance = glm::length(p - eye), cosine = depth / distance;
+  return distance * distance * area * cosine * cosine * cosine / (cell * cell);
+}
+
+glm::dvec3 ray(const ClpvView& view, std::size_t pixel) {
+  const glm::dvec3 forward(view.forward[0], view.forward[1], view.forward[2]);
+  if (view.orthographic != 0) return forward;
+  const glm::dvec3 eye(view.eye[0], view.eye[1], view.eye[2]);
+  const auto px = static_cast<double>(pixel % view.width), py = static_cast<double>(pixel / view.width);
+  return glm::normalize(surface_position(view, px, py, 1.0) - eye);
+}
+
+bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
+  const glm::dvec3 normal = vector(surface.normal[pixel]);
+  return surface.depth[pixel] > 0 && std::isfinite(surface.depth[pixel]) && finite(normal) &&
+         glm::dot(normal, normal) > 0;
+}
+
+/// One source's blocking shares, before it is merged with others.
+Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis, bool two_sided) {
+  Volume blocking(static_cast<int>(grid.n) + 1, basis.size(), 1);
+  for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
+    if (!has_surface(surface, pixel)) continue;
+    const glm::dvec3 normal = vector(surface.normal[pixel]);
+    const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
+    const double share = footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
+    const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
+    add(blocking, 0, corner, share, lobe(basis, normal, false));
+    if (two_sided) add(blocking, 0, corner, share, lobe(basis, -normal, false));
+  }
+  return blocking;
+}
+
+std::vector<double> cell_of(const Volume& volume, int x, int y, int z) {
+  std::vector<double> c;
+  for (int i = 0; i < volume.coefficients; ++i) c.push_back(volume.value(0, i, x, y, z));
+  return c;
+}
+
+}  // namespace
+
+glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light) {
+  const glm::dvec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
+  const auto px = static_cast<double>(pixel % surface.view.width);
+  const auto py = static_cast<double>(pixel / surface.view.width);
+  const glm::dvec3 p = surface_position(surface.view, px, py, surface.depth[pixel]);
+  return (p - origin) / static_cast<double>(grid.cell) + (light ? 0.5 : 0.0) * vector(surface.normal[pixel]);
+}
+
+void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis, const InjectOptions& options,
+                  Volume& light) {
+  for (std::size_t pixel = 0; pixel < rsm.depth.size(); ++pixel) {
+    const glm::dvec3 flux = vector(rsm.colour[pixel]);
+    if (!has_surface(rsm, pixel) || !finite(flux)) continue;
+    const std::vector<double> c = lobe(basis, vector(rsm.normal[pixel]), options.unit_flux_lobes);
+    const glm::dvec3 point = grid_point(rsm, pixel, grid, true);
+    for (int channel = 0; channel < 3; ++channel) {
+      const double intensity = flux[channel] / std::numbers::pi;
+      if (!options.trilinear) {
+        add(light, channel, glm::ivec3(glm::floor(point)), intensity, c);
+        continue;
+      }
+      const glm::ivec3 base(glm::floor(point - 0.5));
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 cell = base + glm::ivec3(corner % 2, corner / 2 % 2, corner / 4);
+        const glm::dvec3 near = 1.0 - glm::abs(point - 0.5 - glm::dvec3(cell));
+        add(light, channel, cell, intensity * near.x * near.y * near.z, c);
+      }
+    }
+  }
+}
+
+void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
+                     const InjectOptions& options, Volume& geometry) {
+  const Volume blocking = blocking_of(surface, grid, basis, options.two_sided);
+  for (int z = 0; z < geometry.n; ++z) {
+    for (int y = 0; y < geometry.n; ++y) {
+      for (int x = 0; x < geometry.n; ++x) {
+        const std::vector<double> found = cell_of(blocking, x, y, z);
+        if (basis.energy(found) <= basis.energy(cell_of(geometry, x, y, z))) continue;
+        for (int i = 0; i < geometry.coefficients; ++i) {
+          geometry.at(0, i, x, y, z) = found[static_cast<std::size_t>(i)];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace clpv::reference
