@@ -1,4 +1,4 @@
-// Injection: what a view sees becomes light or blocking in the cells of a volume (docs/method.md, 'Injection').
+// Injection: what a view sees becomes light or blocking in the cells of a volume (MATH section 4).
 //
 // CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W] at p + n s/2, half a cell off its surface
 // so that the surface does not light itself; its cell gains (P/pi) c(n), c(n) the clamped cosine round n.
@@ -30,11 +30,10 @@ typedef float4 Detail;
 typedef float Detail;
 #endif
 
-// Bitwise and scalar, like all of find_cells: work-items then vectorise on CPU devices.
 static inline bool all_finite(const float3 v) {
-  return (fabs(v.x) <= MAXFLOAT) & (fabs(v.y) <= MAXFLOAT) & (fabs(v.z) <= MAXFLOAT);
+  return fabs(v.x) <= MAXFLOAT && fabs(v.y) <= MAXFLOAT && fabs(v.z) <= MAXFLOAT;
 }
-static inline bool not_zero(const float3 v) { return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f); }
+static inline bool not_zero(const float3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
 
 static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
                                   const float depth, const float3 normal) {
@@ -44,6 +43,7 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 }
 
 // keys[texel]: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
+// Scalars, and no floor(): either keeps work-items from vectorising on PoCL, at three times the cost.
 __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* depths,
                          __global const SurfaceTexel* normals, __global const SurfaceTexel* colours,
                          const float colour_scale, __global uint* keys, __global Detail* details) {
@@ -56,19 +56,21 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
   const float per_metre = 1.0f / grid.cell;
   float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
         z = (position.z - grid.origin[2]) * per_metre;
-  bool counts = (depth > 0.0f) & all_finite(normal) & not_zero(normal);
+  bool counts = depth > 0.0f && all_finite(normal) && not_zero(normal);
 #if CLPV_GEOMETRY
   details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
 #else
   x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
   const float3 flux = clpv_load_colour(colours, texel, colour_scale);
-  counts = counts & all_finite(flux) & not_zero(flux);
+  counts = counts && all_finite(flux) && not_zero(flux);
 #endif
-  // A point that is not finite is inside no cell.
-  const float3 cell = (float3)(CLPV_ROUND(x), CLPV_ROUND(y), CLPV_ROUND(z));
-  keys[texel] = counts & in_grid(cell) ? cell_key(cell) : CLPV_NO_CELL;
+  x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
+  // A point that is not finite is in no grid.
+  counts = counts && in_grid(x, y, z);
+  const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
+  keys[texel] = counts ? cell_key(cx, cy, cz) : CLPV_NO_CELL;
 #if CLPV_TRILINEAR
-  details[texel] = (float4)(x + 0.5f - cell.x, y + 0.5f - cell.y, z + 0.5f - cell.z, 0.0f);
+  details[texel] = (float4)(x - (float)cx, y - (float)cy, z - (float)cz, 0.0f);
 #endif
 }
 

@@ -1,8 +1,8 @@
 // Injection's cells: which one a point falls into, as a key to sort by, and how a cell's sum gets into the volume.
 //
-//   CLPV_ROUND(coordinate)          of a point in units of cells: that of its cell; trilinear: of its corner
-//   bool in_grid(cell)              whether there is such a cell
-//   uint cell_key(cell)             for a cell in the grid
+//   CLPV_CELL_SHIFT                 added to a point in units of cells, its whole part is the number of its cell
+//   bool in_grid(x, y, z)           whether a point so shifted has a cell
+//   uint cell_key(x, y, z)          key of a cell
 //   uint phase_of(key)              keys of one phase may be delivered at the same time
 //   void deliver(volume, key, sums) adds (light) or merges (geometry) the sum of a cell's texels
 //
@@ -39,22 +39,22 @@ typedef struct {
 #undef CLPV_DO
 } Sums;
 
+// Keys stand for cells, or for corners, which lie half a cell off the cells' centres.
 #if CLPV_TRILINEAR || CLPV_GEOMETRY
 #define CLPV_KEYS (CLPV_GRID + 1)
-#define CLPV_ROUND(coordinate) floor((coordinate) + 0.5f)
+#define CLPV_CELL_SHIFT 0.5f
 #else
 #define CLPV_KEYS CLPV_GRID
-#define CLPV_ROUND(coordinate) floor(coordinate)
+#define CLPV_CELL_SHIFT 0.0f
 #endif
 #define CLPV_HALF_KEYS ((CLPV_KEYS + 1) / 2)
 
-static inline bool in_grid(const float3 cell) {
-  const float top = (float)(CLPV_KEYS - 1);
-  return (cell.x >= 0.0f) & (cell.y >= 0.0f) & (cell.z >= 0.0f) & (cell.x <= top) & (cell.y <= top) & (cell.z <= top);
+static inline bool in_grid(const float x, const float y, const float z) {
+  const float top = (float)CLPV_KEYS;
+  return x >= 0.0f && y >= 0.0f && z >= 0.0f && x < top && y < top && z < top;
 }
 
-static inline uint cell_key(const float3 cell) {
-  const uint x = (uint)cell.x, y = (uint)cell.y, z = (uint)cell.z;
+static inline uint cell_key(const uint x, const uint y, const uint z) {
 #if CLPV_TRILINEAR
   const uint parity = x % 2 + 2 * (y % 2) + 4 * (z % 2);
   return ((parity * CLPV_HALF_KEYS + z / 2) * CLPV_HALF_KEYS + y / 2) * CLPV_HALF_KEYS + x / 2;

@@ -11,8 +11,8 @@
 namespace clpv {
 namespace {
 
-// Segments are short enough that a wall seen by a whole view still makes many work-items, and few enough that one
-// work-item joins those of a single cell.
+// Segments are short enough that a wall seen by a whole view still makes many work-items, and few enough that
+// one work-item joins those of a single cell.
 constexpr std::size_t kLeastSegment = 32, kMostBlocks = 16384;
 constexpr std::size_t kPhases = 8;  // of trilinear injection
 const cl::NDRange kTexels(64, 1);
@@ -36,8 +36,9 @@ std::size_t texel_count(const Surface& surface) {
 void require_shape(const Volume& volume, const VolumeShape& wanted, const char* what) {
   const VolumeShape& found = volume.shape();
   if (found.n != wanted.n || found.coefficients != wanted.coefficients || found.channels != wanted.channels) {
-    throw Error(ExitCode::run_time, "{} volume has {}^3 x {} x {} values, injection is made for {}^3 x {} x {}", what,
-                found.n, found.coefficients, found.channels, wanted.n, wanted.coefficients, wanted.channels);
+    throw Error(ExitCode::run_time,
+                "{} volume has {}^3 x {} x {} values, injection is made for {}^3 x {} x {}", what, found.n,
+                found.coefficients, found.channels, wanted.n, wanted.coefficients, wanted.channels);
   }
 }
 
@@ -66,10 +67,13 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
 void Injector::reserve(std::size_t texels) {
   sorter_.reserve(texels);
   if (texels <= capacity_) return;
-  const std::size_t lanes = options_.trilinear ? 8 : 1, coefficients = static_cast<std::size_t>(basis_.size());
+  const std::size_t lanes = options_.trilinear ? 8 : 1,
+                    coefficients = static_cast<std::size_t>(basis_.size());
   const std::size_t blocks = block_count(texels);
-  details_ = session_.buffer(texels * (options_.trilinear ? sizeof(cl_float4) : sizeof(cl_float)), "injection, texels");
-  partials_ = session_.buffer(2 * blocks * 3 * coefficients * lanes * sizeof(cl_float), "injection, partial sums");
+  details_ = session_.buffer(texels * (options_.trilinear ? sizeof(cl_float4) : sizeof(cl_float)),
+                             "injection, texels");
+  partials_ =
+      session_.buffer(2 * blocks * 3 * coefficients * lanes * sizeof(cl_float), "injection, partial sums");
   firsts_ = session_.buffer(blocks * sizeof(cl_uint), "injection, segments");
   capacity_ = texels;
 }
@@ -85,13 +89,15 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, V
   session_.launch(kernel.find_cells, cl::NDRange(surface.view.width, surface.view.height), kTexels);
   sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
 
-  const auto length = static_cast<cl_uint>(segment_length(texels)), blocks = static_cast<cl_uint>(block_count(texels));
+  const auto length = static_cast<cl_uint>(segment_length(texels)),
+             blocks = static_cast<cl_uint>(block_count(texels));
   for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
-    set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase, surface.normal,
-                  surface.colour, surface.colour_scale, details_, volume.buffer(), partials_, firsts_);
-    session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
-    set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.buffer(), partials_,
+    set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
+                  surface.normal, surface.colour, surface.colour_scale, details_, volume.buffer(), partials_,
                   firsts_);
+    session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
+    set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.buffer(),
+                  partials_, firsts_);
     session_.launch(kernel.join_segments, cl::NDRange(blocks), kSegments);
   }
 }

@@ -1,4 +1,4 @@
-// Injection: what views see becomes light and blocking in the cells of volumes (docs/method.md, 'Injection').
+// Injection: what views see becomes light and blocking in the cells of volumes (MATH section 4).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -15,14 +15,14 @@
 namespace clpv {
 
 struct InjectOptions {
-  int grid = 32;                 ///< cells along each axis
-  bool trilinear = false;        ///< a virtual point light spreads over the 8 cells round it; else its own cell's
-  bool two_sided = true;         ///< surfels block from both sides; else only what travels against their normal
+  int grid = 32;           ///< cells along each axis
+  bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
+  bool two_sided = true;   ///< surfels block from both sides; else only what travels against their normal
   bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
 };
 
-/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own texels in
-/// their order in the surface. Keeps scratch memory for the largest surface injected.
+/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own
+/// texels in their order in the surface. Keeps scratch memory for the largest surface injected.
 class Injector {
  public:
   Injector(Session& session, const Basis& basis, const InjectOptions& options);

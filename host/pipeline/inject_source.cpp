@@ -13,7 +13,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kNegligible = 1e-12;  // below any single-precision coefficient beside it: rounding of A's inverse
+constexpr double kNegligible =
+    1e-12;  // below any single-precision coefficient beside it: rounding of A's inverse
 
 /// A function that is a fixed weighted sum of coefficients.
 std::string weighted_sum(const std::string& name, std::span<const double> weights, double scale) {
@@ -35,7 +36,8 @@ std::string eight_cells(const Basis& basis) {
       const double entry = basis.gram_inverse()(i, j);
       if (std::abs(entry) < kNegligible) continue;
       const std::string factor = fmt::format("(float8)({})", float_literal(entry));
-      sum = sum.empty() ? fmt::format("{} * a.c{}", factor, j) : fmt::format("fma({}, a.c{}, {})", factor, j, sum);
+      sum = sum.empty() ? fmt::format("{} * a.c{}", factor, j)
+                        : fmt::format("fma({}, a.c{}, {})", factor, j, sum);
     }
     text += fmt::format("  r.c{} = {};\n", i, sum);
   }

@@ -13,12 +13,15 @@ namespace {
 static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
 constexpr std::size_t kMostTexels = std::size_t{1} << (32 - CLPV_RUN_BITS);  // a run's entry has no more bits
-// Chunks are as many as keep a GPU busy and the table of counts small, each long enough to pay for its column.
+// Chunks are as many as keep a GPU busy and the table of counts small, each long enough to pay for its
+// column.
 constexpr std::size_t kMostChunks = 512, kLeastChunk = 256;
 // Work-items here are long and few: small groups let all compute units have some.
 const cl::NDRange kLocal(16);
 
-std::size_t round_up(std::size_t value, std::size_t step) { return (value + step - 1) / step * step; }
+std::size_t round_up(std::size_t value, std::size_t step) {
+  return (value + step - 1) / step * step;
+}
 
 }  // namespace
 
@@ -37,7 +40,8 @@ CellSorter::CellSorter(Session& session) : session_(session) {
 void CellSorter::reserve(std::size_t texels) {
   if (texels <= capacity_) return;
   if (texels > kMostTexels) {
-    throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels, kMostTexels);
+    throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels,
+                kMostTexels);
   }
   keys_ = session_.buffer(texels * sizeof(cl_uint), "sort by cell, keys");
   runs_ = session_.buffer(texels * sizeof(cl_uint2), "sort by cell, runs");

@@ -8,7 +8,8 @@
 
 namespace clpv {
 
-/// Texels in the order of their cells, those of a cell in their own order. Memory for the largest surface so far.
+/// Texels in the order of their cells, those of a cell in their own order. Memory for the largest surface so
+/// far.
 class CellSorter {
  public:
   explicit CellSorter(Session& session);

@@ -38,7 +38,8 @@ void add(Volume& volume, int channel, const glm::ivec3& cell, double weight, con
 
 /// Area of the pixel's surface across its ray over the cell's: distance^2 x solid angle / s^2 in perspective.
 double footprint_share(const ClpvView& view, std::size_t pixel, double depth, double cell) {
-  const double area = 4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
+  const double area =
+      4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
   if (view.orthographic != 0) return area / (cell * cell);
   const glm::dvec3 eye(view.eye[0], view.eye[1], view.eye[2]);
   const glm::dvec3 p = surface_position(view, static_cast<double>(pixel % view.width),
@@ -92,8 +93,8 @@ glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const Clpv
   return (p - origin) / static_cast<double>(grid.cell) + (light ? 0.5 : 0.0) * vector(surface.normal[pixel]);
 }
 
-void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis, const InjectOptions& options,
-                  Volume& light) {
+void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
+                  const InjectOptions& options, Volume& light) {
   for (std::size_t pixel = 0; pixel < rsm.depth.size(); ++pixel) {
     const glm::dvec3 flux = vector(rsm.colour[pixel]);
     if (!has_surface(rsm, pixel) || !finite(flux)) continue;

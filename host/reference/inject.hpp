@@ -10,14 +10,15 @@
 namespace clpv::reference {
 
 /// Adds the virtual point lights of `rsm` to `light`: grid.n cells, 3 channels.
-void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis, const InjectOptions& options,
-                  Volume& light);
+void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
+                  const InjectOptions& options, Volume& light);
 
 /// Merges what `surface` sees into `geometry`: grid.n + 1 samples a side, 1 channel.
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                      const InjectOptions& options, Volume& geometry);
 
-/// Where a pixel's surface is, in units of cells from the grid's origin. Light: moved half a cell off the surface.
+/// Where a pixel's surface is, in units of cells from the grid's origin. Light: moved half a cell off the
+/// surface.
 glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light);
 
 }  // namespace clpv::reference
