@@ -1,0 +1,114 @@
+#include "pipeline/scene_buffers.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "pipeline/mip_chain.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw Error(ExitCode::bad_input, message);
+}
+
+/// Kernels trust every index: what does not fit is refused here, whoever made the scene.
+void check_indices(const Scene& scene) {
+  require(scene.triangles.size() < (1u << 31) && scene.vertices.size() < (1u << 31),
+          fmt::format("{}: {} triangles and {} vertices; allowed: below 2^31 each", scene.path, scene.triangles.size(),
+                      scene.vertices.size()));
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& t = scene.triangles[i];
+    const unsigned top = std::max({t.vertex[0], t.vertex[1], t.vertex[2]});
+    require(top < scene.vertices.size() && t.material < scene.materials.size(),
+            fmt::format("{}: triangle {} uses vertex {} of {} and material {} of {}", scene.path, i, top,
+                        scene.vertices.size(), t.material, scene.materials.size()));
+  }
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    for (const unsigned texture : {scene.materials[i].texture, scene.materials[i].emissive_texture}) {
+      require(texture == CLPV_NO_TEXTURE || texture < scene.textures.size(),
+              fmt::format("{}: material {} uses texture {} of {}", scene.path, i, texture, scene.textures.size()));
+    }
+  }
+}
+
+void check_texture(const Scene& scene, const Texture& texture) {
+  constexpr std::uint32_t kLargest = 1u << (CLPV_TEXTURE_LEVELS - 1);
+  require(texture.width >= 1 && texture.height >= 1 && texture.width <= kLargest && texture.height <= kLargest,
+          fmt::format("{}: texture {} is {} x {}; allowed: 1 to {} along each side", scene.path, texture.name,
+                      texture.width, texture.height, kLargest));
+  require(texture.rgba.size() == std::size_t{4} * texture.width * texture.height,
+          fmt::format("{}: texture {} has {} bytes for {} x {} texels", scene.path, texture.name, texture.rgba.size(),
+                      texture.width, texture.height));
+}
+
+struct TextureTable {
+  std::vector<ClpvTexture> levels;
+  std::vector<std::uint32_t> texels;
+};
+
+void append(TextureTable& table, const std::vector<Texture>& chain) {
+  for (std::size_t level = 0; level < CLPV_TEXTURE_LEVELS; ++level) {
+    if (level >= chain.size()) {
+      table.levels.push_back(table.levels.back());
+      continue;
+    }
+    const Texture& texture = chain[level];
+    const std::size_t offset = table.texels.size();
+    const std::size_t count = std::size_t{texture.width} * texture.height;
+    require(offset + count <= std::numeric_limits<std::uint32_t>::max(), "more than 2^32 texels in all textures");
+    table.levels.push_back(
+        {static_cast<unsigned>(offset), texture.width, texture.height, texture.wrap_u + 16 * texture.wrap_v});
+    table.texels.resize(offset + count);
+    std::memcpy(&table.texels[offset], texture.rgba.data(), texture.rgba.size());
+  }
+}
+
+TextureTable make_table(const Scene& scene) {
+  std::vector<bool> masked(scene.textures.size(), false);
+  for (const Material& material : scene.materials) {
+    if ((material.flags & CLPV_MATERIAL_MASKED) != 0 && material.texture != CLPV_NO_TEXTURE) {
+      masked[material.texture] = true;
+    }
+  }
+  TextureTable table;
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    check_texture(scene, scene.textures[i]);
+    append(table, mip_chain(scene.textures[i], masked[i]));
+  }
+  return table;
+}
+
+Bounds bounds_of(const std::vector<Vertex>& vertices) {
+  if (vertices.empty()) return {};
+  glm::vec3 lower(std::numeric_limits<float>::max()), upper(std::numeric_limits<float>::lowest());
+  for (const Vertex& v : vertices) {
+    const glm::vec3 p(v.position[0], v.position[1], v.position[2]);
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
+  }
+  return {lower, upper};
+}
+
+}  // namespace
+
+SceneBuffers upload_scene(Session& session, const Scene& scene) {
+  check_indices(scene);
+  const TextureTable table = make_table(scene);
+  SceneBuffers buffers;
+  buffers.vertices = session.upload(scene.vertices, "vertices");
+  buffers.triangles = session.upload(scene.triangles, "triangles");
+  buffers.materials = session.upload(scene.materials, "materials");
+  buffers.textures = session.upload(table.levels, "texture table");
+  buffers.texels = session.upload(table.texels, "textures");
+  buffers.vertex_count = static_cast<unsigned>(scene.vertices.size());
+  buffers.triangle_count = static_cast<unsigned>(scene.triangles.size());
+  buffers.material_count = static_cast<unsigned>(scene.materials.size());
+  buffers.texture_count = static_cast<unsigned>(scene.textures.size());
+  buffers.bounds = bounds_of(scene.vertices);
+  return buffers;
+}
+
+}  // namespace clpv

@@ -1,0 +1,168 @@
+#include "pipeline/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kLightNear = 0.01;         // [m]; a lamp's own glass may be as close as that
+constexpr double kSmallestMargin = 0.01;    // [m] between an orthographic eye and the nearest surface
+constexpr double kRelativeMargin = 1e-3;    // the same, as a part of the scene's depth
+
+struct Axes {
+  glm::dvec3 right, up, forward;
+};
+
+/// right x up = -forward, `up` as near to `upwards` as that allows.
+Axes axes(const glm::dvec3& forward, const glm::dvec3& upwards) {
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, upwards));
+  return {right, glm::cross(right, forward), forward};
+}
+
+/// Axes across a light's direction, with the world axis it is least aligned with as `upwards`.
+Axes light_axes(const glm::dvec3& direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  glm::dvec3 upwards(0, 0, 1);
+  if (size.y <= size.x && size.y <= size.z) upwards = {0, 1, 0};
+  if (size.x < size.y && size.x < size.z) upwards = {1, 0, 0};
+  return axes(direction, upwards);
+}
+
+void store(float out[3], const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i]);
+}
+
+glm::dvec3 vector(const float v[3]) { return {v[0], v[1], v[2]}; }
+
+ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int height) {
+  ClpvView view{};
+  store(view.eye, eye);
+  store(view.right, axes.right);
+  store(view.up, axes.up);
+  store(view.forward, axes.forward);
+  view.width = static_cast<unsigned>(width);
+  view.height = static_cast<unsigned>(height);
+  return view;
+}
+
+/// The depths along `forward` that a box spans.
+glm::dvec2 span_along(const Bounds& bounds, const glm::dvec3& axis) {
+  const glm::dvec3 centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper));
+  const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
+  const double middle = glm::dot(centre, axis), reach = glm::dot(half, glm::abs(axis));
+  return {middle - reach, middle + reach};
+}
+
+/// An orthographic view centred at (x, y) of the plane across the light, its depths those of `bounds`.
+ClpvView orthographic_view(const Axes& axes, double x, double y, double half_width, double half_height,
+                           const Bounds& bounds, int size) {
+  const glm::dvec2 depths = span_along(bounds, axes.forward);
+  const double margin = kSmallestMargin + kRelativeMargin * (depths.y - depths.x);
+  ClpvView view = make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward, size, size);
+  view.orthographic = 1;
+  view.half_width = static_cast<float>(half_width);
+  view.half_height = static_cast<float>(half_height);
+  view.near_depth = static_cast<float>(0.5 * margin);
+  view.far_depth = static_cast<float>(depths.y - depths.x + 2 * margin);
+  return view;
+}
+
+ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double tangent, int size,
+                                const Bounds& bounds) {
+  const glm::dvec3 eye = vector(light.position);
+  const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(bounds.lower) - eye), glm::abs(glm::dvec3(bounds.upper) - eye));
+  double farthest = glm::length(reach);
+  if (light.range > 0) farthest = std::min(farthest, static_cast<double>(light.range));
+  ClpvView view = make_view(axes, eye, size, size);
+  view.half_width = view.half_height = static_cast<float>(tangent);
+  view.near_depth = static_cast<float>(kLightNear);
+  view.far_depth = static_cast<float>(std::max(farthest * (1 + kRelativeMargin), 2 * kLightNear));
+  return view;
+}
+
+/// Outer half-angle [rad] of a spot light: where cos(angle) * cone_scale + cone_offset is 0.
+double outer_angle(const ClpvLight& light) {
+  if (light.cone_scale <= 0) return 3.14159265358979;  // the cone does not narrow: lit all round
+  return std::acos(std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
+}
+
+bool needs_six_views(const ClpvLight& light) {
+  return light.kind == CLPV_LIGHT_POINT ||
+         (light.kind == CLPV_LIGHT_SPOT && outer_angle(light) > kWidestSpotView * (1 + 1e-4));
+}
+
+std::vector<ClpvView> six_views(const ClpvLight& light, const Bounds& bounds, int size) {
+  const std::array<ClpvView, 6> views = point_views(light, size, bounds);
+  return {views.begin(), views.end()};
+}
+
+}  // namespace
+
+ClpvView camera_view(const Camera& camera, int width, int height) {
+  ClpvView view = make_view(axes(glm::normalize(glm::dvec3(camera.forward)), camera.up), camera.eye, width, height);
+  const double tangent = std::tan(0.5 * camera.vertical_fov);
+  view.half_height = static_cast<float>(tangent);
+  view.half_width = static_cast<float>(tangent * width / height);
+  view.near_depth = camera.near_depth;
+  view.far_depth = std::numeric_limits<float>::max();
+  return view;
+}
+
+ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds, int size) {
+  if (size < 2) throw Error(ExitCode::usage, "an RSM of {} texels along each side; allowed: 2 and more", size);
+  const Axes frame = light_axes(glm::normalize(vector(light.direction)));
+  const double half = 0.5 * (static_cast<double>(cascade.n) + 1) * cascade.cell;
+  const glm::dvec3 centre = vector(cascade.origin) + 0.5 * static_cast<double>(cascade.n) * cascade.cell;
+  double middle[2], half_extent[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
+    const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube, along this axis
+    const double texel = 2 * reach / (size - 1);  // one texel to spare: snapping moves the window by up to one
+    const double first = std::floor((glm::dot(centre, along) - reach) / texel);
+    middle[axis] = (first + 0.5 * size) * texel;
+    half_extent[axis] = 0.5 * size * texel;
+  }
+  return orthographic_view(frame, middle[0], middle[1], half_extent[0], half_extent[1], bounds, size);
+}
+
+ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
+  if (needs_six_views(light)) {
+    throw Error(ExitCode::run_time, "a spot light with an outer half-angle of {:.4f} rad in one view; allowed: {:.4f}",
+                outer_angle(light), kWidestSpotView);
+  }
+  const double tangent = std::max(std::tan(outer_angle(light)), 1e-3);
+  return perspective_light_view(light_axes(glm::normalize(vector(light.direction))), light, tangent, size, bounds);
+}
+
+std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Bounds& bounds) {
+  std::array<ClpvView, 6> views;
+  for (int side = 0; side < 6; ++side) {
+    glm::dvec3 forward(0);
+    forward[side / 2] = side % 2 == 0 ? 1 : -1;
+    views[static_cast<std::size_t>(side)] = perspective_light_view(light_axes(forward), light, 1, size, bounds);
+  }
+  return views;
+}
+
+std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds, int size) {
+  if (needs_six_views(light)) return six_views(light, bounds, size);
+  if (light.kind == CLPV_LIGHT_SPOT) return {spot_view(light, size, bounds)};
+  return {directional_rsm_view(light, cascade, bounds, size)};
+}
+
+std::vector<ClpvView> shadow_views(const ClpvLight& light, const Bounds& bounds, int size) {
+  if (needs_six_views(light)) return six_views(light, bounds, size);
+  if (light.kind == CLPV_LIGHT_SPOT) return {spot_view(light, size, bounds)};
+  const Axes frame = light_axes(glm::normalize(vector(light.direction)));
+  const glm::dvec2 across = span_along(bounds, frame.right), along = span_along(bounds, frame.up);
+  const double spare = 1 + 2.0 / size;  // a texel round the scene, for filters that look at neighbours
+  return {orthographic_view(frame, 0.5 * (across.x + across.y), 0.5 * (along.x + along.y),
+                            std::max(0.5 * spare * (across.y - across.x), kSmallestMargin),
+                            std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size)};
+}
+
+}  // namespace clpv
