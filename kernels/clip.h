@@ -1,8 +1,9 @@
 // Clips a triangle against the near plane and the guard band, and turns points of a view into ClpvProjected.
 //
-// A point is (x, y, w, z): along right and up [m], what its screen position is divided by (perspective: the depth;
-// orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point, bit by bit: so the
-// plane is met on the way from the corner inside to the one outside, whichever triangle asks, and nothing is fused.
+// A point is (x, y, w, z): along right and up [m], what its screen position is divided by (perspective: the
+// depth; orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point,
+// bit by bit: so the plane is met on the way from the corner inside to the one outside, whichever triangle
+// asks, and nothing is fused.
 #ifndef CLPV_CLIP_H
 #define CLPV_CLIP_H
 
@@ -52,7 +53,8 @@ static inline float clpv_clip_distance(const ClpvView view, const float4 p, cons
 }
 
 // Keeps of the convex polygon `from` what is on the positive side of a plane; returns its number of corners.
-static inline int clpv_clip_plane(const ClpvView view, const float4* from, const int count, const int plane, float4* to) {
+static inline int clpv_clip_plane(const ClpvView view, const float4* from, const int count, const int plane,
+                                  float4* to) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const float4 a = from[i], b = from[i + 1 == count ? 0 : i + 1];

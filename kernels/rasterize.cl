@@ -6,8 +6,9 @@
 //   bin_triangles      counts, then lists, the triangles over each tile of 8 x 8 pixels
 //   draw_tiles         one work-item a tile: depth test of everything over it
 //
-// Lists are in no particular order (atomics hand out their places); the result does not depend on it, since a pixel keeps
-// the least key and, among equal ones, the least triangle. What a pixel looks like is resolve.cl's task.
+// Lists are in no particular order (atomics hand out their places); the result does not depend on it, since a
+// pixel keeps the least key and, among equal ones, the least triangle. What a pixel looks like is
+// resolve.cl's task.
 #include "clip.h"
 #include "texture.h"
 
@@ -44,14 +45,19 @@ static inline long screen_area(const ClpvProjected a, const ClpvProjected b, con
 }
 
 // First pixel whose centre is at or after a sub-pixel coordinate, last one whose centre is at or before it.
-static inline int first_centre(const int at) { return (at + CLPV_SUBPIXELS / 2 - 1) >> 8; }
-static inline int last_centre(const int at) { return (at - CLPV_SUBPIXELS / 2) >> 8; }
+static inline int first_centre(const int at) {
+  return (at + CLPV_SUBPIXELS / 2 - 1) >> 8;
+}
+static inline int last_centre(const int at) {
+  return (at - CLPV_SUBPIXELS / 2) >> 8;
+}
 
 // Appends a triangle of the screen to the list, unless it covers no pixel's centre or shows its culled back.
 // A count beyond `capacity` tells the host how many there are.
 static inline void append(const ClpvView view, const ClpvProjected a, ClpvProjected b, ClpvProjected c,
                           const Face face, const uint triangle, const uint flags, const uint cull,
-                          volatile __global uint* count, const uint capacity, __global ClpvRasterTriangle* list) {
+                          volatile __global uint* count, const uint capacity,
+                          __global ClpvRasterTriangle* list) {
   const long area = screen_area(a, b, c);
   if (area == 0 || (area > 0 && cull && !(flags & CLPV_MATERIAL_DOUBLE_SIDED))) return;
   const int left = max(first_centre(min(a.x, min(b.x, c.x))), 0);
@@ -106,7 +112,8 @@ __kernel void set_up(const ClpvView view, const uint first, const uint count, co
 __kernel void set_up_clipped(const ClpvView view, const uint count, const uint cull,
                              __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                              __global const ClpvMaterial* materials, volatile __global uint* counts,
-                             const uint capacity, __global ClpvRasterTriangle* list, __global const uint* to_clip) {
+                             const uint capacity, __global ClpvRasterTriangle* list,
+                             __global const uint* to_clip) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   const uint triangle = to_clip[i];
@@ -122,8 +129,9 @@ __kernel void set_up_clipped(const ClpvView view, const uint count, const uint c
   }
 }
 
-// An edge function: not negative at the pixel centres on the inner side of the edge from corner i to corner j, exactly.
-// Centres on the edge itself belong to it if it is a top or a left edge, so to one of the two triangles that share it.
+// An edge function: not negative at the pixel centres on the inner side of the edge from corner i to corner
+// j, exactly. Centres on the edge itself belong to it if it is a top or a left edge, so to one of the two
+// triangles that share it.
 typedef struct {
   long value;           // at the centre of a pixel
   long step_x, step_y;  // from a pixel to the next one right, and below
@@ -145,8 +153,8 @@ static inline long largest_in_tile(const Edge edge) {
   return edge.value + (CLPV_TILE - 1) * (max(edge.step_x, 0L) + max(edge.step_y, 0L));
 }
 
-// One work-item a listed triangle. `fill` 0: counts the tiles it is over in places[tile]; 1: places[tile] is where the
-// tile's next triangle goes in `binned`, and is advanced.
+// One work-item a listed triangle. `fill` 0: counts the tiles it is over in places[tile]; 1: places[tile] is
+// where the tile's next triangle goes in `binned`, and is advanced.
 __kernel void bin_triangles(const uint count, const uint tiles_x, const uint fill,
                             __global const ClpvRasterTriangle* list, volatile __global uint* places,
                             __global uint* binned) {
@@ -221,15 +229,16 @@ __kernel void draw_tiles(const ClpvView view, const uint tiles_x, const uint til
     const Edge e0 = edge_at(r, 0, 1, tile_x, tile_y + top);
     const Edge e1 = edge_at(r, 1, 2, tile_x, tile_y + top);
     const Edge e2 = edge_at(r, 2, 0, tile_x, tile_y + top);
-    long8 v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
+    long8 v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x,
+          v2 = e2.value + lane * e2.step_x;
     for (int row = top; row <= bottom; ++row) {
       const int8 inside = convert_int8((v0 | v1 | v2) >= 0L);
       v0 += e0.step_y;
       v1 += e1.step_y;
       v2 += e2.step_y;
-      const float8 key = clamp(r.key + r.key_y * (float)(tile_y + row - first_y) +
-                                   r.key_x * (column + (float)(tile_x - first_x)),
-                               r.nearest, r.farthest);
+      const float8 key = clamp(
+          r.key + r.key_y * (float)(tile_y + row - first_y) + r.key_x * (column + (float)(tile_x - first_x)),
+          r.nearest, r.farthest);
       const float8 old = tile_keys[row];
       const uint8 old_seen = tile_seen[row];
       int8 closer = inside & (key <= far_key) & ((key < old) | ((key == old) & (r.triangle < old_seen)));
@@ -240,8 +249,8 @@ __kernel void draw_tiles(const ClpvView view, const uint tiles_x, const uint til
         vstore8(closer, 0, lanes);
         vstore8(key, 0, lane_keys);
         for (int k = 0; k < 8; ++k) {
-          if (lanes[k] && !is_solid(view, r.triangle, tile_x + k, tile_y + row, lane_keys[k], vertices, triangles,
-                                    materials, textures, texels)) {
+          if (lanes[k] && !is_solid(view, r.triangle, tile_x + k, tile_y + row, lane_keys[k], vertices,
+                                    triangles, materials, textures, texels)) {
             lanes[k] = 0;
           }
         }

@@ -1,6 +1,6 @@
 // What each pixel sees, once rasterize.cl knows which triangle that is: depth, normal, and albedo or flux.
 // One work-item a pixel, in the order of the tiles.
-#include "light.h"
+#include "lighting.h"
 #include "shared/raster.h"
 #include "texture.h"
 #include "triangle.h"
@@ -16,8 +16,8 @@ static inline float depth_of(const ClpvView view, const float key) {
   return fmax(CLPV_ORTHOGRAPHIC ? key : -1.0f / key, view.near_depth);
 }
 
-__kernel void resolve_depth(const ClpvView view, const uint tiles_x, const uint count, __global const float* keys,
-                            __global float* depths) {
+__kernel void resolve_depth(const ClpvView view, const uint tiles_x, const uint count,
+                            __global const float* keys, __global float* depths) {
   const uint i = get_global_id(0);
   const int2 p = pixel_at(i, tiles_x);
   if (i >= count || p.x >= (int)view.width || p.y >= (int)view.height) return;
@@ -25,8 +25,8 @@ __kernel void resolve_depth(const ClpvView view, const uint tiles_x, const uint 
 }
 
 typedef struct {
-  float depth;      // [m]
-  float3 normal;    // unit, on the viewer's side
+  float depth;    // [m]
+  float3 normal;  // unit, on the viewer's side
   float3 albedo;
   float3 emissive;  // [W/m^2/sr]
 } Seen;
@@ -40,10 +40,10 @@ static inline float3 blend3(const float3 w, const float3 a, const float3 b, cons
 }
 
 // The surface of `triangle` behind pixel (px, py).
-static inline Seen look(const ClpvView view, const float px, const float py, const float depth, const uint triangle,
-                        __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                        __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
-                        __global const uchar4* texels) {
+static inline Seen look(const ClpvView view, const float px, const float py, const float depth,
+                        const uint triangle, __global const ClpvVertex* vertices,
+                        __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
+                        __global const ClpvTexture* textures, __global const uchar4* texels) {
   const ClpvTriangle t = triangles[triangle];
   __global const ClpvVertex* a = vertices + t.vertex[0];
   __global const ClpvVertex* b = vertices + t.vertex[1];
@@ -53,11 +53,13 @@ static inline Seen look(const ClpvView view, const float px, const float py, con
   const Weights weights = clpv_weights(face);
   const float3 w = clpv_weights_at(view, face, weights, px, py, depth);
   const float2 screen = clpv_screen(view, px, py);
-  const float3 ray = clpv_float3(view.forward) + (CLPV_ORTHOGRAPHIC ? (float3)(0.0f) : clpv_across(view, screen));
+  const float3 ray =
+      clpv_float3(view.forward) + (CLPV_ORTHOGRAPHIC ? (float3)(0.0f) : clpv_across(view, screen));
 
   Seen seen;
   seen.depth = depth;
-  // The side comes from the triangle itself: near a silhouette an interpolated normal may point away from the viewer.
+  // The side comes from the triangle itself: near a silhouette an interpolated normal may point away from the
+  // viewer.
   const float3 facing = dot(face.normal, ray) > 0.0f ? -face.normal : face.normal;
   float3 normal = blend3(w, vload3(0, a->normal), vload3(0, b->normal), vload3(0, c->normal));
   normal = dot(normal, facing) < 0.0f ? -normal : normal;
@@ -88,11 +90,12 @@ static inline Seen look(const ClpvView view, const float px, const float py, con
 }
 
 // `emissives` may be null.
-__kernel void resolve_camera(const ClpvView view, const uint tiles_x, const uint count, __global const float* keys,
-                             __global const uint* triangles_seen, __global const ClpvVertex* vertices,
-                             __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
-                             __global const ClpvTexture* textures, __global const uchar4* texels,
-                             __global float* depths, __global SurfaceTexel* normals, __global SurfaceTexel* colours,
+__kernel void resolve_camera(const ClpvView view, const uint tiles_x, const uint count,
+                             __global const float* keys, __global const uint* triangles_seen,
+                             __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
+                             __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
+                             __global const uchar4* texels, __global float* depths,
+                             __global SurfaceTexel* normals, __global SurfaceTexel* colours,
                              __global float4* emissives) {
   const uint i = get_global_id(0);
   const int2 p = pixel_at(i, tiles_x);
@@ -109,14 +112,12 @@ __kernel void resolve_camera(const ClpvView view, const uint tiles_x, const uint
   if (emissives) emissives[at] = (float4)(seen.emissive, 0.0f);
 }
 
-// What the light sends through a pixel [W]: irradiance x area, or radiant intensity x solid angle.
+// What the light sends through a pixel [W].
 static inline float3 incident_flux(const ClpvView view, const ClpvLight light, const float px, const float py,
                                    const float depth) {
-  const float footprint = clpv_footprint(view, px, py, depth);
-  if (light.kind == CLPV_LIGHT_DIRECTIONAL) return footprint * clpv_float3(light.intensity);
-  const float3 hit = clpv_to_point(view, px, py, depth);
-  const float distance = length(hit);
-  return clpv_radiant_intensity(light, hit / distance, distance) * (footprint / (distance * distance));
+  float3 towards;
+  return clpv_footprint(view, px, py, depth) *
+         clpv_light_irradiance(light, clpv_position(view, px, py, depth), &towards);
 }
 
 // `colour_scale`: Surface::colour_scale.
@@ -124,16 +125,17 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, const uint
                           __global const float* keys, __global const uint* triangles_seen,
                           __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                           __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
-                          __global const uchar4* texels, __global float* depths, __global SurfaceTexel* normals,
-                          __global SurfaceTexel* fluxes, const float colour_scale) {
+                          __global const uchar4* texels, __global float* depths,
+                          __global SurfaceTexel* normals, __global SurfaceTexel* fluxes,
+                          const float colour_scale) {
   const uint i = get_global_id(0);
   const int2 p = pixel_at(i, tiles_x);
   if (i >= count || p.x >= (int)view.width || p.y >= (int)view.height) return;
   Seen seen = {0.0f, (float3)(0.0f), (float3)(0.0f), (float3)(0.0f)};
   if (triangles_seen[i] != UINT_MAX) {
     const float depth = depth_of(view, keys[i]);
-    seen = look(view, (float)p.x, (float)p.y, depth, triangles_seen[i], vertices, triangles, materials, textures,
-                texels);
+    seen = look(view, (float)p.x, (float)p.y, depth, triangles_seen[i], vertices, triangles, materials,
+                textures, texels);
     seen.albedo *= incident_flux(view, light, (float)p.x, (float)p.y, depth);
   }
   const uint at = (uint)p.y * view.width + (uint)p.x;

@@ -1,12 +1,13 @@
-// Filtered look-ups in the scene's textures (kernels/shared/mesh.h): sRGB decoded before filtering, linear result.
+// Filtered look-ups in the scene's textures (kernels/shared/mesh.h): sRGB decoded before filtering, linear
+// result.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
 
 #include "shared/mesh.h"
 #include "srgb.h"
 
-// A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two ends then
-// clamp.
+// A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two
+// ends then clamp.
 static inline float clpv_fold(const float u, const uint wrap) {
   if (wrap == CLPV_WRAP_REPEAT) return u - floor(u);
   if (wrap == CLPV_WRAP_MIRROR) return fabs(u - 2.0f * rint(0.5f * u));
@@ -33,11 +34,13 @@ static inline Between clpv_between(const float u, const int size, const uint wra
 }
 
 static inline float4 clpv_decode(const uchar4 texel) {
-  return (float4)(clpv_srgb[texel.x], clpv_srgb[texel.y], clpv_srgb[texel.z], (float)texel.w * (1.0f / 255.0f));
+  return (float4)(clpv_srgb[texel.x], clpv_srgb[texel.y], clpv_srgb[texel.z],
+                  (float)texel.w * (1.0f / 255.0f));
 }
 
 // Bilinear, in one mip level. Linear colour and alpha.
-static inline float4 clpv_bilinear(const ClpvTexture texture, __global const uchar4* texels, const float2 uv) {
+static inline float4 clpv_bilinear(const ClpvTexture texture, __global const uchar4* texels,
+                                   const float2 uv) {
   const Between x = clpv_between(uv.x, (int)texture.width, texture.wrap & 15u);
   const Between y = clpv_between(uv.y, (int)texture.height, texture.wrap >> 4);
   __global const uchar4* upper = texels + texture.offset + (uint)y.first * texture.width;
@@ -47,7 +50,8 @@ static inline float4 clpv_bilinear(const ClpvTexture texture, __global const uch
 }
 
 // The same, of alpha alone.
-static inline float clpv_bilinear_alpha(const ClpvTexture texture, __global const uchar4* texels, const float2 uv) {
+static inline float clpv_bilinear_alpha(const ClpvTexture texture, __global const uchar4* texels,
+                                        const float2 uv) {
   const Between x = clpv_between(uv.x, (int)texture.width, texture.wrap & 15u);
   const Between y = clpv_between(uv.y, (int)texture.height, texture.wrap >> 4);
   __global const uchar4* upper = texels + texture.offset + (uint)y.first * texture.width;
@@ -57,10 +61,11 @@ static inline float clpv_bilinear_alpha(const ClpvTexture texture, __global cons
          (1.0f / 255.0f);
 }
 
-// Trilinear: mip levels chosen by the longer of the two steps in uv that a pixel makes, so that a texel of the level is
-// about as large as that.
+// Trilinear: mip levels chosen by the longer of the two steps in uv that a pixel makes, so that a texel of
+// the level is about as large as that.
 static inline float4 clpv_trilinear(__global const ClpvTexture* textures, __global const uchar4* texels,
-                                    const uint texture, const float2 uv, const float2 uv_x, const float2 uv_y) {
+                                    const uint texture, const float2 uv, const float2 uv_x,
+                                    const float2 uv_y) {
   __global const ClpvTexture* levels = textures + texture * CLPV_TEXTURE_LEVELS;
   const float2 size = (float2)((float)levels[0].width, (float)levels[0].height);
   const float2 x = uv_x * size, y = uv_y * size;

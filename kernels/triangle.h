@@ -1,7 +1,7 @@
 // A triangle of the scene as a view sees it: its plane, and what a pixel's ray hits on it.
 //
-// Everything is relative to the eye and built from edges, so that small triangles far from the origin lose no digits.
-// CLPV_ORTHOGRAPHIC 1: parallel rays; 0: rays through the eye.
+// Everything is relative to the eye and built from edges, so that small triangles far from the origin lose no
+// digits. CLPV_ORTHOGRAPHIC 1: parallel rays; 0: rays through the eye.
 #ifndef CLPV_TRIANGLE_H
 #define CLPV_TRIANGLE_H
 
@@ -18,8 +18,8 @@ typedef struct {
   float3 normal;        // edge1 x edge2; towards whom the triangle's front faces
 } Face;
 
-static inline Face clpv_face(const ClpvView view, __global const ClpvVertex* vertices, const uint a, const uint b,
-                             const uint c) {
+static inline Face clpv_face(const ClpvView view, __global const ClpvVertex* vertices, const uint a,
+                             const uint b, const uint c) {
   const float3 p = vload3(0, vertices[a].position);
   Face face;
   face.corner = p - clpv_float3(view.eye);
@@ -30,8 +30,12 @@ static inline Face clpv_face(const ClpvView view, __global const ClpvVertex* ver
 }
 
 // Steps on the screen from a pixel to the next one right, and below.
-static inline float clpv_step_x(const ClpvView view) { return 2.0f * view.half_width / (float)view.width; }
-static inline float clpv_step_y(const ClpvView view) { return -2.0f * view.half_height / (float)view.height; }
+static inline float clpv_step_x(const ClpvView view) {
+  return 2.0f * view.half_width / (float)view.width;
+}
+static inline float clpv_step_y(const ClpvView view) {
+  return -2.0f * view.half_height / (float)view.height;
+}
 
 static inline float3 clpv_across(const ClpvView view, const float2 s) {
   return s.x * clpv_float3(view.right) + s.y * clpv_float3(view.up);
@@ -47,8 +51,8 @@ static inline float3 clpv_to_point(const ClpvView view, const float px, const fl
 #endif
 }
 
-// The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite where
-// the plane is seen edge-on.
+// The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not
+// finite where the plane is seen edge-on.
 static inline float3 clpv_key_plane(const ClpvView view, const Face face, const float px, const float py) {
   const float3 across = clpv_across(view, clpv_screen(view, px, py));
   const float right = dot(face.normal, clpv_float3(view.right)) * clpv_step_x(view);
@@ -76,10 +80,10 @@ static inline Weights clpv_weights(const Face face) {
   return weights;
 }
 
-// The weights of all three vertices at `depth` behind a pixel. Kept inside the triangle: snapped to the sub-pixel grid
-// it may cover the centre of a pixel that it misses by a hair.
-static inline float3 clpv_weights_at(const ClpvView view, const Face face, const Weights weights, const float px,
-                                     const float py, const float depth) {
+// The weights of all three vertices at `depth` behind a pixel. Kept inside the triangle: snapped to the
+// sub-pixel grid it may cover the centre of a pixel that it misses by a hair.
+static inline float3 clpv_weights_at(const ClpvView view, const Face face, const Weights weights,
+                                     const float px, const float py, const float depth) {
   const float3 offset = clpv_to_point(view, px, py, depth) - face.corner;
   const float w1 = clamp(dot(offset, weights.gradient1), 0.0f, 1.0f);
   const float w2 = clamp(dot(offset, weights.gradient2), 0.0f, 1.0f - w1);

@@ -16,8 +16,8 @@ const std::array<float, 256>& decode_table() {
   return table;
 }
 
-/// Encoding by table: finer than the steepest part of the curve (slope 12.92) needs to hit the right byte or, at a
-/// boundary between two, its neighbour.
+/// Encoding by table: finer than the steepest part of the curve (slope 12.92) needs to hit the right byte or,
+/// at a boundary between two, its neighbour.
 std::uint8_t encode(float linear) {
   constexpr std::size_t kSteps = 1 << 14;
   static const std::vector<std::uint8_t> table = [] {
@@ -57,8 +57,8 @@ void filter_texel(const Texture& from, const Taps& x, const Taps& y, bool weigh_
   float alpha = 0;
   for (int j = 0; j < y.count; ++j) {
     for (int i = 0; i < x.count; ++i) {
-      const std::size_t at = static_cast<std::size_t>(y.first + static_cast<unsigned>(j)) * from.width + x.first +
-                             static_cast<unsigned>(i);
+      const std::size_t at = static_cast<std::size_t>(y.first + static_cast<unsigned>(j)) * from.width +
+                             x.first + static_cast<unsigned>(i);
       const std::uint8_t* texel = &from.rgba[4 * at];
       const float weight = x.weight[static_cast<std::size_t>(i)] * y.weight[static_cast<std::size_t>(j)];
       const glm::vec3 colour(linear[texel[0]], linear[texel[1]], linear[texel[2]]);
@@ -104,7 +104,8 @@ unsigned srgb_from_linear(double linear) {
 
 std::vector<Texture> mip_chain(const Texture& texture, bool weigh_by_alpha) {
   std::vector<Texture> levels{texture};
-  while (levels.back().width > 1 || levels.back().height > 1) levels.push_back(halved(levels.back(), weigh_by_alpha));
+  while (levels.back().width > 1 || levels.back().height > 1)
+    levels.push_back(halved(levels.back(), weigh_by_alpha));
   return levels;
 }
 

@@ -8,8 +8,8 @@
 namespace clpv {
 
 /// All levels of `texture`, itself first, each half the one before (rounded down, at least 1), to 1 x 1.
-/// Every texel is the mean, in linear light, of the part of the level before that it covers (two or three texels along
-/// each axis). `weigh_by_alpha`: colour is the alpha-weighted mean, for textures with holes.
+/// Every texel is the mean, in linear light, of the part of the level before that it covers (two or three
+/// texels along each axis). `weigh_by_alpha`: colour is the alpha-weighted mean, for textures with holes.
 std::vector<Texture> mip_chain(const Texture& texture, bool weigh_by_alpha);
 
 /// Linear value in 0..1 of an sRGB-encoded byte, and the byte nearest to a linear value (IEC 61966-2-1).

@@ -17,8 +17,8 @@ void require(bool holds, const std::string& message) {
 /// Kernels trust every index: what does not fit is refused here, whoever made the scene.
 void check_indices(const Scene& scene) {
   require(scene.triangles.size() < (1u << 31) && scene.vertices.size() < (1u << 31),
-          fmt::format("{}: {} triangles and {} vertices; allowed: below 2^31 each", scene.path, scene.triangles.size(),
-                      scene.vertices.size()));
+          fmt::format("{}: {} triangles and {} vertices; allowed: below 2^31 each", scene.path,
+                      scene.triangles.size(), scene.vertices.size()));
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     const Triangle& t = scene.triangles[i];
     const unsigned top = std::max({t.vertex[0], t.vertex[1], t.vertex[2]});
@@ -29,19 +29,21 @@ void check_indices(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     for (const unsigned texture : {scene.materials[i].texture, scene.materials[i].emissive_texture}) {
       require(texture == CLPV_NO_TEXTURE || texture < scene.textures.size(),
-              fmt::format("{}: material {} uses texture {} of {}", scene.path, i, texture, scene.textures.size()));
+              fmt::format("{}: material {} uses texture {} of {}", scene.path, i, texture,
+                          scene.textures.size()));
     }
   }
 }
 
 void check_texture(const Scene& scene, const Texture& texture) {
   constexpr std::uint32_t kLargest = 1u << (CLPV_TEXTURE_LEVELS - 1);
-  require(texture.width >= 1 && texture.height >= 1 && texture.width <= kLargest && texture.height <= kLargest,
-          fmt::format("{}: texture {} is {} x {}; allowed: 1 to {} along each side", scene.path, texture.name,
-                      texture.width, texture.height, kLargest));
+  require(
+      texture.width >= 1 && texture.height >= 1 && texture.width <= kLargest && texture.height <= kLargest,
+      fmt::format("{}: texture {} is {} x {}; allowed: 1 to {} along each side", scene.path, texture.name,
+                  texture.width, texture.height, kLargest));
   require(texture.rgba.size() == std::size_t{4} * texture.width * texture.height,
-          fmt::format("{}: texture {} has {} bytes for {} x {} texels", scene.path, texture.name, texture.rgba.size(),
-                      texture.width, texture.height));
+          fmt::format("{}: texture {} has {} bytes for {} x {} texels", scene.path, texture.name,
+                      texture.rgba.size(), texture.width, texture.height));
 }
 
 struct TextureTable {
@@ -58,7 +60,8 @@ void append(TextureTable& table, const std::vector<Texture>& chain) {
     const Texture& texture = chain[level];
     const std::size_t offset = table.texels.size();
     const std::size_t count = std::size_t{texture.width} * texture.height;
-    require(offset + count <= std::numeric_limits<std::uint32_t>::max(), "more than 2^32 texels in all textures");
+    require(offset + count <= std::numeric_limits<std::uint32_t>::max(),
+            "more than 2^32 texels in all textures");
     table.levels.push_back(
         {static_cast<unsigned>(offset), texture.width, texture.height, texture.wrap_u + 16 * texture.wrap_v});
     table.texels.resize(offset + count);

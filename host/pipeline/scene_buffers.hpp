@@ -13,15 +13,17 @@ struct SceneBuffers {
   cl::Buffer vertices;   ///< ClpvVertex
   cl::Buffer triangles;  ///< ClpvTriangle
   cl::Buffer materials;  ///< ClpvMaterial
-  cl::Buffer textures;   ///< ClpvTexture, CLPV_TEXTURE_LEVELS of them a texture: its mip levels, the last one repeated
+  cl::Buffer textures;   ///< ClpvTexture, CLPV_TEXTURE_LEVELS of them a texture: its mip levels, the last one
+                         ///< repeated
   cl::Buffer texels;     ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
   unsigned vertex_count = 0, triangle_count = 0, material_count = 0, texture_count = 0;
   Bounds bounds;  ///< of all vertices [m]
 };
 
-/// Copies a scene to the device. Mip levels are box-filtered in linear light; those of a texture that a masked
-/// material uses weigh colour by alpha, so that what is cut away does not tint what stays.
-/// Throws Error(bad_input) where an index or a texture's size does not fit, Error(run_time) where memory does not suffice.
+/// Copies a scene to the device. Mip levels are box-filtered in linear light; those of a texture that a
+/// masked material uses weigh colour by alpha, so that what is cut away does not tint what stays. Throws
+/// Error(bad_input) where an index or a texture's size does not fit, Error(run_time) where memory does not
+/// suffice.
 SceneBuffers upload_scene(Session& session, const Scene& scene);
 
 }  // namespace clpv

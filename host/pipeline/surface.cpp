@@ -10,7 +10,9 @@ namespace {
 
 using Bytes = std::vector<cl_uchar4>;
 
-std::size_t pixels(const ClpvView& view) { return static_cast<std::size_t>(view.width) * view.height; }
+std::size_t pixels(const ClpvView& view) {
+  return static_cast<std::size_t>(view.width) * view.height;
+}
 
 std::size_t texel_bytes(RsmFormat format) {
   return format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
@@ -40,14 +42,14 @@ Bytes encode(const std::vector<glm::vec4>& values, float scale, float offset) {
   return stored;
 }
 
-std::vector<glm::vec4> read_texels(Session& session, const cl::Buffer& buffer, std::size_t count, RsmFormat format,
-                                   float scale, float offset) {
+std::vector<glm::vec4> read_texels(Session& session, const cl::Buffer& buffer, std::size_t count,
+                                   RsmFormat format, float scale, float offset) {
   if (format == RsmFormat::paper) return decode(session.read<cl_uchar4>(buffer, count), scale, offset);
   return session.read<glm::vec4>(buffer, count);
 }
 
-void write_texels(Session& session, const cl::Buffer& buffer, const std::vector<glm::vec4>& values, RsmFormat format,
-                  float scale, float offset) {
+void write_texels(Session& session, const cl::Buffer& buffer, const std::vector<glm::vec4>& values,
+                  RsmFormat format, float scale, float offset) {
   if (format == RsmFormat::paper) {
     session.write(buffer, encode(values, scale, offset));
   } else {

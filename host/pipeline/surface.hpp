@@ -32,10 +32,12 @@ struct SurfaceImage {
   std::vector<glm::vec4> normal, colour, emissive;  ///< xyz; w unused
 };
 
-/// A surface of the view's size for a rasteriser to fill; contents undefined. `with_emissive`: has Surface::emissive.
+/// A surface of the view's size for a rasteriser to fill; contents undefined. `with_emissive`: has
+/// Surface::emissive.
 Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive);
 
-/// Paper format decoded; normals are 0 where there is no surface. Without Surface::emissive that field stays empty.
+/// Paper format decoded; normals are 0 where there is no surface. Without Surface::emissive that field stays
+/// empty.
 SurfaceImage read_surface(Session& session, const Surface& surface);
 /// Fields of `image` that are empty stay undefined on the device; emissive is made where it is not empty.
 Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format = RsmFormat::float32,

@@ -9,9 +9,9 @@
 namespace clpv {
 namespace {
 
-constexpr double kLightNear = 0.01;         // [m]; a lamp's own glass may be as close as that
-constexpr double kSmallestMargin = 0.01;    // [m] between an orthographic eye and the nearest surface
-constexpr double kRelativeMargin = 1e-3;    // the same, as a part of the scene's depth
+constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be as close as that
+constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
+constexpr double kRelativeMargin = 1e-3;  // the same, as a part of the scene's depth
 
 struct Axes {
   glm::dvec3 right, up, forward;
@@ -36,7 +36,9 @@ void store(float out[3], const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i]);
 }
 
-glm::dvec3 vector(const float v[3]) { return {v[0], v[1], v[2]}; }
+glm::dvec3 vector(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
 
 ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int height) {
   ClpvView view{};
@@ -62,7 +64,8 @@ ClpvView orthographic_view(const Axes& axes, double x, double y, double half_wid
                            const Bounds& bounds, int size) {
   const glm::dvec2 depths = span_along(bounds, axes.forward);
   const double margin = kSmallestMargin + kRelativeMargin * (depths.y - depths.x);
-  ClpvView view = make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward, size, size);
+  ClpvView view =
+      make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward, size, size);
   view.orthographic = 1;
   view.half_width = static_cast<float>(half_width);
   view.half_height = static_cast<float>(half_height);
@@ -74,7 +77,8 @@ ClpvView orthographic_view(const Axes& axes, double x, double y, double half_wid
 ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double tangent, int size,
                                 const Bounds& bounds) {
   const glm::dvec3 eye = vector(light.position);
-  const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(bounds.lower) - eye), glm::abs(glm::dvec3(bounds.upper) - eye));
+  const glm::dvec3 reach =
+      glm::max(glm::abs(glm::dvec3(bounds.lower) - eye), glm::abs(glm::dvec3(bounds.upper) - eye));
   double farthest = glm::length(reach);
   if (light.range > 0) farthest = std::min(farthest, static_cast<double>(light.range));
   ClpvView view = make_view(axes, eye, size, size);
@@ -103,7 +107,8 @@ std::vector<ClpvView> six_views(const ClpvLight& light, const Bounds& bounds, in
 }  // namespace
 
 ClpvView camera_view(const Camera& camera, int width, int height) {
-  ClpvView view = make_view(axes(glm::normalize(glm::dvec3(camera.forward)), camera.up), camera.eye, width, height);
+  ClpvView view = make_view(axes(glm::normalize(glm::dvec3(camera.forward)), glm::dvec3(camera.up)),
+                            glm::dvec3(camera.eye), width, height);
   const double tangent = std::tan(0.5 * camera.vertical_fov);
   view.half_height = static_cast<float>(tangent);
   view.half_width = static_cast<float>(tangent * width / height);
@@ -112,8 +117,10 @@ ClpvView camera_view(const Camera& camera, int width, int height) {
   return view;
 }
 
-ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds, int size) {
-  if (size < 2) throw Error(ExitCode::usage, "an RSM of {} texels along each side; allowed: 2 and more", size);
+ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
+                              int size) {
+  if (size < 2)
+    throw Error(ExitCode::usage, "an RSM of {} texels along each side; allowed: 2 and more", size);
   const Axes frame = light_axes(glm::normalize(vector(light.direction)));
   const double half = 0.5 * (static_cast<double>(cascade.n) + 1) * cascade.cell;
   const glm::dvec3 centre = vector(cascade.origin) + 0.5 * static_cast<double>(cascade.n) * cascade.cell;
@@ -121,7 +128,8 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
   for (int axis = 0; axis < 2; ++axis) {
     const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
     const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube, along this axis
-    const double texel = 2 * reach / (size - 1);  // one texel to spare: snapping moves the window by up to one
+    const double texel =
+        2 * reach / (size - 1);  // one texel to spare: snapping moves the window by up to one
     const double first = std::floor((glm::dot(centre, along) - reach) / texel);
     middle[axis] = (first + 0.5 * size) * texel;
     half_extent[axis] = 0.5 * size * texel;
@@ -131,11 +139,13 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
 
 ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
   if (needs_six_views(light)) {
-    throw Error(ExitCode::run_time, "a spot light with an outer half-angle of {:.4f} rad in one view; allowed: {:.4f}",
+    throw Error(ExitCode::run_time,
+                "a spot light with an outer half-angle of {:.4f} rad in one view; allowed: {:.4f}",
                 outer_angle(light), kWidestSpotView);
   }
   const double tangent = std::max(std::tan(outer_angle(light)), 1e-3);
-  return perspective_light_view(light_axes(glm::normalize(vector(light.direction))), light, tangent, size, bounds);
+  return perspective_light_view(light_axes(glm::normalize(vector(light.direction))), light, tangent, size,
+                                bounds);
 }
 
 std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Bounds& bounds) {
@@ -143,12 +153,14 @@ std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Boun
   for (int side = 0; side < 6; ++side) {
     glm::dvec3 forward(0);
     forward[side / 2] = side % 2 == 0 ? 1 : -1;
-    views[static_cast<std::size_t>(side)] = perspective_light_view(light_axes(forward), light, 1, size, bounds);
+    views[static_cast<std::size_t>(side)] =
+        perspective_light_view(light_axes(forward), light, 1, size, bounds);
   }
   return views;
 }
 
-std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds, int size) {
+std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
+                                int size) {
   if (needs_six_views(light)) return six_views(light, bounds, size);
   if (light.kind == CLPV_LIGHT_SPOT) return {spot_view(light, size, bounds)};
   return {directional_rsm_view(light, cascade, bounds, size)};

@@ -39,12 +39,13 @@ typedef struct {
 
 #define CLPV_SIZEOF_MATERIAL 48
 
-// Mip levels a texture has in the table, whatever its size: past 1 x 1 that level repeats. Level l of texture t is
-// entry t * CLPV_TEXTURE_LEVELS + l. The largest side is 2^(CLPV_TEXTURE_LEVELS - 1).
+// Mip levels a texture has in the table, whatever its size: past 1 x 1 that level repeats. Level l of texture
+// t is entry t * CLPV_TEXTURE_LEVELS + l. The largest side is 2^(CLPV_TEXTURE_LEVELS - 1).
 #define CLPV_TEXTURE_LEVELS 16
 
 typedef struct {
-  unsigned int offset;  // of texel (0, 0) in the texel buffer: 4 bytes a texel, sRGB-encoded RGB, linear alpha
+  unsigned int
+      offset;  // of texel (0, 0) in the texel buffer: 4 bytes a texel, sRGB-encoded RGB, linear alpha
   unsigned int width, height;
   unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v
 } ClpvTexture;

@@ -5,12 +5,12 @@
 #define CLPV_SUBPIXELS 256  // vertices snap to 1/256 pixel
 #define CLPV_TILE 8         // a tile is 8 x 8 pixels; one work-item owns it, a row of it is one float8
 
-// Coordinates in 1/CLPV_SUBPIXELS pixel stay below 2^29, so that products of two differences fit 64 bits: what
-// lies farther off than this many pixels is clipped.
+// Coordinates in 1/CLPV_SUBPIXELS pixel stay below 2^29, so that products of two differences fit 64 bits:
+// what lies farther off than this many pixels is clipped.
 #define CLPV_GUARD_PIXELS 1048576.0f
 
-// Where a vertex is relative to the view. A triangle with a bit of the first six in common in all its corners is out
-// of sight; one with any of the last three in any corner is clipped.
+// Where a vertex is relative to the view. A triangle with a bit of the first six in common in all its corners
+// is out of sight; one with any of the last three in any corner is clipped.
 #define CLPV_LEFT 1
 #define CLPV_RIGHT 2
 #define CLPV_ABOVE 4
@@ -23,20 +23,20 @@
 #define CLPV_NEEDS_CLIPPING (CLPV_BEHIND | CLPV_OUT_OF_GUARD)
 
 typedef struct {
-  int x, y;        // 1/CLPV_SUBPIXELS pixel, from the left and top border; unset where it needs clipping
-  float key;       // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
+  int x, y;            // 1/CLPV_SUBPIXELS pixel, from the left and top border; unset where it needs clipping
+  float key;           // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
   unsigned int where;  // bits as above
 } ClpvProjected;
 
 #define CLPV_SIZEOF_PROJECTED 16
 
 typedef struct {
-  int x[3], y[3];             // corners as in ClpvProjected, clockwise on the screen
-  float key, key_x, key_y;    // at pixel `first`, and its change from pixel to pixel
-  float nearest, farthest;    // least and greatest key of the corners
-  unsigned int first, last;   // pixels it may cover: least and greatest x, plus 65536 y
-  unsigned int triangle;      // index in the scene
-  unsigned int masked;        // 1: its material has holes
+  int x[3], y[3];            // corners as in ClpvProjected, clockwise on the screen
+  float key, key_x, key_y;   // at pixel `first`, and its change from pixel to pixel
+  float nearest, farthest;   // least and greatest key of the corners
+  unsigned int first, last;  // pixels it may cover: least and greatest x, plus 65536 y
+  unsigned int triangle;     // index in the scene
+  unsigned int masked;       // 1: its material has holes
   unsigned int unused;
 } ClpvRasterTriangle;
 

@@ -1,0 +1,181 @@
+#include "pipeline/rasterize.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "kernels/shared/raster.h"
+
+namespace clpv {
+namespace {
+
+static_assert(sizeof(ClpvProjected) == CLPV_SIZEOF_PROJECTED &&
+              sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
+
+constexpr std::size_t kGroup = 64;
+constexpr std::size_t kTileGroup = 8;  // tiles differ in work: small groups even it out between cores
+
+/// Entries of the tiles' lists held at a time: beyond it (hundreds of screen-filling layers) triangles are
+/// drawn in several goes, so that memory stays bounded.
+constexpr std::size_t kMostBinned = std::size_t{1} << 25;
+
+unsigned tiles_along(unsigned pixels) {
+  return (pixels + CLPV_TILE - 1) / CLPV_TILE;
+}
+unsigned tile_count(const ClpvView& view) {
+  return tiles_along(view.width) * tiles_along(view.height);
+}
+unsigned padded_pixels(const ClpvView& view) {
+  return tile_count(view) * CLPV_TILE * CLPV_TILE;
+}
+
+ProgramSource program(const char* file, const ClpvView& view, RsmFormat format = RsmFormat::float32) {
+  ProgramSource source;
+  source.file = file;
+  source.literals = {{"CLPV_ORTHOGRAPHIC", view.orthographic != 0 ? "1" : "0"},
+                     {"CLPV_SURFACE_PAPER", format == RsmFormat::paper ? "1" : "0"}};
+  return source;
+}
+
+template <typename... Args>
+void set_args(cl::Kernel& kernel, const Args&... args) {
+  cl_uint index = 0;
+  (kernel.setArg(index++, args), ...);
+}
+
+/// The largest flux a texel of `view` can have [W]: albedo 1, at the middle of the view, where texels see
+/// most.
+float largest_flux(const ClpvLight& light, const ClpvView& view) {
+  const double texel =
+      4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
+  const double flux = texel * *std::max_element(light.intensity, light.intensity + 3);
+  return flux > 0 ? static_cast<float>(flux) : 1.0f;
+}
+
+}  // namespace
+
+Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene) : session_(session), scene_(scene) {
+  grown(counts_, 2 * sizeof(cl_uint), "counters of the rasteriser");
+  grown(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
+  grown(projected_, scene.vertex_count * sizeof(ClpvProjected), "projected vertices");
+  grown(listed_, (scene.triangle_count / 2 + kGroup) * sizeof(ClpvRasterTriangle), "triangles to draw");
+}
+
+cl::Buffer& Rasterizer::grown(Scratch& scratch, std::size_t bytes, const char* what) {
+  if (bytes > scratch.bytes || scratch.buffer() == nullptr) {
+    scratch.buffer = session_.buffer(bytes, what);
+    scratch.bytes = bytes;
+  }
+  return scratch.buffer;
+}
+
+void Rasterizer::find_visible(const Pass& pass) {
+  const ProgramSource source = program("rasterize.cl", pass.view);
+  const std::size_t pixels = padded_pixels(pass.view);
+  grown(keys_, pixels * sizeof(cl_float), "keys of the depth test");
+  grown(seen_, pixels * sizeof(cl_uint), "triangles seen");
+  if (scene_.vertex_count > 0) {
+    cl::Kernel project = session_.kernel(source, "project_vertices");
+    set_args(project, pass.view, scene_.vertex_count, scene_.vertices, projected_.buffer);
+    session_.launch(project, scene_.vertex_count, kGroup);
+  }
+  draw(pass, 0, scene_.triangle_count, true);
+}
+
+/// Lists the triangles of a range that may cover a pixel, growing the list where it is too short. Returns how
+/// many.
+unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
+  if (count == 0) return 0;
+  const ProgramSource source = program("rasterize.cl", pass.view);
+  const cl_uint cull = pass.cull_back_faces ? 1 : 0;
+  for (;;) {
+    const auto capacity = static_cast<cl_uint>(listed_.bytes / sizeof(ClpvRasterTriangle));
+    session_.fill_zero(counts_.buffer, counts_.bytes);
+    cl::Kernel all = session_.kernel(source, "set_up");
+    set_args(all, pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials,
+             projected_.buffer, counts_.buffer, capacity, listed_.buffer, to_clip_.buffer);
+    session_.launch(all, count, kGroup);
+    std::vector<cl_uint> counts = session_.read<cl_uint>(counts_.buffer, 2);
+    if (counts[1] > 0) {
+      cl::Kernel clipped = session_.kernel(source, "set_up_clipped");
+      set_args(clipped, pass.view, counts[1], cull, scene_.vertices, scene_.triangles, scene_.materials,
+               counts_.buffer, capacity, listed_.buffer, to_clip_.buffer);
+      session_.launch(clipped, counts[1], kGroup);
+      counts = session_.read<cl_uint>(counts_.buffer, 2);
+    }
+    if (counts[0] <= capacity) return counts[0];
+    grown(listed_, counts[0] * sizeof(ClpvRasterTriangle), "triangles to draw");
+  }
+}
+
+void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
+  if (listed == 0) return;
+  cl::Kernel kernel = session_.kernel(program("rasterize.cl", view), "bin_triangles");
+  set_args(kernel, listed, tiles_along(view.width), cl_uint{fill}, listed_.buffer, places_.buffer,
+           binned_.buffer);
+  session_.launch(kernel, listed, kGroup);
+}
+
+/// Turns the counts of triangles over each tile into the places where the tiles' lists start, one after
+/// another. Returns the entries of all lists; beyond kMostBinned nothing is laid out.
+std::size_t Rasterizer::lay_out_tiles(const ClpvView& view) {
+  std::vector<cl_uint> places = session_.read<cl_uint>(places_.buffer, tile_count(view));
+  const std::size_t total = std::accumulate(places.begin(), places.end(), std::size_t{0});
+  if (total > kMostBinned) return total;
+  std::exclusive_scan(places.begin(), places.end(), places.begin(), cl_uint{0});
+  session_.write(places_.buffer, places);
+  return total;
+}
+
+/// Draws a range of triangles; `fresh`: onto nothing, else onto what is there. Halves the range where the
+/// tiles' lists would grow too long.
+void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
+  const ClpvView& view = pass.view;
+  const unsigned listed = set_up(pass, first, count);
+  grown(places_, tile_count(view) * sizeof(cl_uint), "tiles");
+  grown(binned_, sizeof(cl_uint), "triangles by tile");
+  session_.fill_zero(places_.buffer, tile_count(view) * sizeof(cl_uint));
+  bin(view, listed, false);
+  const std::size_t total = lay_out_tiles(view);
+  if (total > kMostBinned && count > 1) {
+    draw(pass, first, count / 2, fresh);
+    draw(pass, first + count / 2, count - count / 2, false);
+    return;
+  }
+  grown(binned_, total * sizeof(cl_uint), "triangles by tile");
+  bin(view, listed, true);
+  cl::Kernel tiles = session_.kernel(program("rasterize.cl", view), "draw_tiles");
+  set_args(tiles, view, tiles_along(view.width), tile_count(view), cl_uint{fresh}, listed_.buffer,
+           places_.buffer, binned_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
+           scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
+  session_.launch(tiles, tile_count(view), kTileGroup);
+}
+
+void Rasterizer::rasterize_camera(Surface& surface) {
+  const ClpvView& view = surface.view;
+  find_visible({view, true});
+  cl::Kernel resolve = session_.kernel(program("resolve.cl", view, surface.format), "resolve_camera");
+  set_args(resolve, view, tiles_along(view.width), padded_pixels(view), keys_.buffer, seen_.buffer,
+           scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth,
+           surface.normal, surface.colour, surface.emissive);
+  session_.launch(resolve, padded_pixels(view), kGroup);
+}
+
+void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
+  const ClpvView& view = surface.view;
+  if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
+  find_visible({view, false});
+  cl::Kernel resolve = session_.kernel(program("resolve.cl", view, surface.format), "resolve_rsm");
+  set_args(resolve, view, light, tiles_along(view.width), padded_pixels(view), keys_.buffer, seen_.buffer,
+           scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth,
+           surface.normal, surface.colour, surface.colour_scale);
+  session_.launch(resolve, padded_pixels(view), kGroup);
+}
+
+void Rasterizer::rasterize_shadow(const ClpvView& view, cl::Buffer& depth) {
+  find_visible({view, false});
+  cl::Kernel resolve = session_.kernel(program("resolve.cl", view), "resolve_depth");
+  set_args(resolve, view, tiles_along(view.width), padded_pixels(view), keys_.buffer, depth);
+  session_.launch(resolve, padded_pixels(view), kGroup);
+}
+
+}  // namespace clpv

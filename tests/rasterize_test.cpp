@@ -1,0 +1,324 @@
+// The rasteriser against closed forms: coverage, depth, normals, flux, clipping, culling, holes,
+// repeatability.
+#include "pipeline/rasterize.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "pipeline/view.hpp"
+#include "scene_builder.hpp"
+
+namespace clpv {
+namespace {
+
+using testing::add_material;
+using testing::add_quad;
+using testing::add_triangle;
+using testing::add_vertex;
+using testing::directional_light;
+using testing::test_session;
+
+Camera camera_at(const glm::vec3& eye, const glm::vec3& forward, const glm::vec3& up = {0, 1, 0}) {
+  Camera camera;
+  camera.eye = eye;
+  camera.forward = glm::normalize(forward);
+  camera.up = up;
+  return camera;
+}
+
+ClpvView small_camera(int width = 48, int height = 32) {
+  return camera_view(camera_at({0, 0, 0}, {0, 0, -1}), width, height);
+}
+
+SurfaceImage camera_image(const Scene& scene, const ClpvView& view) {
+  Session& session = test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, true);
+  rasterizer.rasterize_camera(surface);
+  return read_surface(session, surface);
+}
+
+SurfaceImage rsm_image(const Scene& scene, const ClpvLight& light, const ClpvView& view,
+                       RsmFormat format = RsmFormat::float32) {
+  Session& session = test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, format, false);
+  rasterizer.rasterize_rsm(light, surface);
+  return read_surface(session, surface);
+}
+
+std::vector<float> shadow_depth(const Scene& scene, const ClpvView& view) {
+  Session& session = test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  const std::size_t count = static_cast<std::size_t>(view.width) * view.height;
+  cl::Buffer depth = session.buffer(count * sizeof(float), "depth");
+  rasterizer.rasterize_shadow(view, depth);
+  return session.read<float>(depth, count);
+}
+
+std::size_t covered(const std::vector<float>& depth) {
+  return static_cast<std::size_t>(std::count_if(depth.begin(), depth.end(), [](float d) { return d != 0; }));
+}
+
+/// A wall across the camera's view, 4 m before it, larger than what it sees.
+Scene wall(float distance = 4) {
+  Scene scene;
+  add_quad(scene, {-20, -20, -distance}, {40, 0, 0}, {0, 40, 0}, add_material(scene, {0.25f, 0.5f, 0.75f}));
+  return scene;
+}
+
+TEST(Rasterize, EmptySceneIsExactlyNothing) {
+  const SurfaceImage image = camera_image({}, small_camera(19, 13));
+  EXPECT_EQ(covered(image.depth), 0u);
+  for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0));
+  for (const glm::vec4& colour : image.colour) EXPECT_EQ(glm::vec3(colour), glm::vec3(0));
+}
+
+TEST(Rasterize, WallFillsEveryPixel) {
+  const SurfaceImage image = camera_image(wall(), small_camera(45, 31));
+  for (const float depth : image.depth) EXPECT_FLOAT_EQ(depth, 4);
+  for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
+  for (const glm::vec4& colour : image.colour) for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(colour[c], 0.25f * static_cast<float>(c + 1));
+}
+
+TEST(Rasterize, BackFacesAreCulledUnlessDoubleSided) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  add_quad(scene, {20, -20, -4}, {-40, 0, 0}, {0, 40, 0}, material);
+  EXPECT_EQ(covered(camera_image(scene, small_camera()).depth), 0u);
+  scene.materials[material].flags = CLPV_MATERIAL_DOUBLE_SIDED;
+  const SurfaceImage image = camera_image(scene, small_camera());
+  EXPECT_EQ(covered(image.depth), image.depth.size());
+  for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
+}
+
+TEST(Rasterize, LightSeesBothSides) {
+  for (const float side : {1.0f, -1.0f}) {
+    Scene scene;
+    add_quad(scene, {-10, 0, -10 * side}, {20, 0, 0}, {0, 0, 20 * side}, add_material(scene));
+    const ClpvLight light = directional_light({0.2f, -1, 0.1f});
+    const ClpvView view =
+        directional_rsm_view(light, {{-2, -2, -2}, 0.5f, 8, {}}, {{-10, -1, -10}, {10, 5, 10}}, 16);
+    const SurfaceImage image = rsm_image(scene, light, view);
+    EXPECT_EQ(covered(image.depth), image.depth.size());
+    for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 1, 0));
+  }
+}
+
+TEST(Rasterize, DepthOfATiltedPlane) {
+  Scene scene;  // z = -5 + x / 2 - y / 4
+  add_quad(scene, {-20, -20, -10}, {40, 0, 20}, {0, 40, -10}, add_material(scene));
+  const ClpvView view = small_camera(64, 48);
+  const SurfaceImage image = camera_image(scene, view);
+  for (unsigned y = 0; y < view.height; ++y) {
+    for (unsigned x = 0; x < view.width; ++x) {
+      const double sx = (2 * (x + 0.5) / view.width - 1) * view.half_width;
+      const double sy = (1 - 2 * (y + 0.5) / view.height) * view.half_height;
+      const double depth = 5 / (1 + 0.5 * sx - 0.25 * sy);  // -d = -5 + d sx / 2 - d sy / 4
+      ASSERT_NEAR(image.depth[y * view.width + x], depth, 2e-6 * depth) << x << "," << y;
+    }
+  }
+}
+
+/// How often each pixel of `view` is covered by the triangles of `scene`, drawn one at a time.
+std::vector<int> coverage(const Scene& scene, const ClpvView& view) {
+  std::vector<int> count(static_cast<std::size_t>(view.width) * view.height, 0);
+  Scene one = scene;
+  for (const Triangle& triangle : scene.triangles) {
+    one.triangles = {triangle};
+    const std::vector<float> depth = shadow_depth(one, view);
+    for (std::size_t i = 0; i < depth.size(); ++i) count[i] += depth[i] != 0 ? 1 : 0;
+  }
+  return count;
+}
+
+/// A plane of cells x cells quads with moved corners, two triangles each, that reaches beyond the view.
+/// `step`: corners move in multiples of it, as a part of a quad's edge; 0: anywhere.
+Scene jittered_plane(int cells, float extent, float depth, float step) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(-0.3f, 0.3f);
+  Scene scene;
+  const unsigned material = add_material(scene);
+  const float edge = 2 * extent / static_cast<float>(cells);
+  const auto jitter = [&] {
+    const float by = uniform(random);
+    return edge * (step > 0 ? step * std::round(by / step) : by);
+  };
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const glm::vec3 p(-extent + edge * static_cast<float>(i) + jitter(),
+                        -extent + edge * static_cast<float>(j) + jitter(), -depth + 0.3f * uniform(random));
+      add_vertex(scene, p, {0, 0, 1});
+    }
+  }
+  const auto row = static_cast<unsigned>(cells + 1);
+  for (unsigned j = 0; j + 1 < row; ++j) {
+    for (unsigned i = 0; i + 1 < row; ++i) {
+      const unsigned a = j * row + i;
+      scene.triangles.push_back({{a, a + 1, a + row + 1}, material});
+      scene.triangles.push_back({{a, a + row + 1, a + row}, material});
+    }
+  }
+  return scene;
+}
+
+ClpvView orthographic_square(float half, int size, float near_depth = 0.1f, float far_depth = 100) {
+  ClpvView view = small_camera(size, size);
+  view.orthographic = 1;
+  view.half_width = view.half_height = half;
+  view.near_depth = near_depth;
+  view.far_depth = far_depth;
+  return view;
+}
+
+TEST(Rasterize, SharedEdgesLeaveNoHoleAndDrawNothingTwice) {
+  const Scene anywhere = jittered_plane(7, 5, 4, 0);
+  EXPECT_THAT(coverage(anywhere, small_camera(40, 24)), ::testing::Each(1)) << "perspective";
+  EXPECT_THAT(coverage(anywhere, orthographic_square(2, 32)), ::testing::Each(1)) << "orthographic";
+}
+
+TEST(Rasterize, EdgesThroughPixelCentresBelongToOneTriangle) {
+  // Quads of 4 pixels whose corners move by half pixels: corners and edges meet pixel centres all the time.
+  const Scene scene = jittered_plane(8, 2, 4, 0.125f);
+  EXPECT_THAT(coverage(scene, orthographic_square(1.5f, 24)), ::testing::Each(1));
+}
+
+TEST(Rasterize, NearPlaneCutsWithoutHoles) {
+  // A floor that passes under and behind the eye: everything below the horizon is covered, once.
+  Scene scene;
+  const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_DOUBLE_SIDED);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(-0.2f, 0.2f);
+  for (int j = 0; j <= 6; ++j) {
+    for (int i = 0; i <= 6; ++i) {
+      add_vertex(scene, {i - 3.2f + uniform(random), -0.3f, 2.9f - j + uniform(random)}, {0, 1, 0});
+    }
+  }
+  for (unsigned j = 0; j < 6; ++j) {
+    for (unsigned i = 0; i < 6; ++i) {
+      const unsigned a = j * 7 + i;
+      scene.triangles.push_back({{a, a + 1, a + 8}, material});
+      scene.triangles.push_back({{a, a + 8, a + 7}, material});
+    }
+  }
+  Camera camera = camera_at({0, 0, 0}, {0, -1, -1}, {0, 0.7071068f, -0.7071068f});
+  camera.vertical_fov = 1.4f;
+  const ClpvView view = camera_view(camera, 36, 36);
+  const std::vector<int> count = coverage(scene, view);
+  for (const int c : count) EXPECT_LE(c, 1);
+  const SurfaceImage image = camera_image(scene, view);
+  for (unsigned y = 0; y < 36; ++y) {
+    for (unsigned x = 0; x < 36; ++x) {
+      const glm::vec3 ray =
+          glm::vec3(view.forward[0], view.forward[1], view.forward[2]) +
+          (2 * (x + 0.5f) / 36 - 1) * view.half_width * glm::vec3(1, 0, 0) +
+          (1 - 2 * (y + 0.5f) / 36) * view.half_height * glm::vec3(view.up[0], view.up[1], view.up[2]);
+      const float depth = ray.y < 0 ? -0.3f / ray.y : 1e9f;
+      const glm::vec3 hit = depth * ray;
+      if (depth > view.near_depth * 1.01f && std::abs(hit.x) < 2.3f && std::abs(hit.z) < 2.3f) {
+        ASSERT_EQ(count[y * 36 + x], 1) << x << "," << y;
+        ASSERT_NEAR(image.depth[y * 36 + x], depth, 1e-5f * depth);
+      }
+    }
+  }
+}
+
+TEST(Rasterize, FarawayCornersAreClippedToTheGuardBand) {
+  // 40,000 km to each side: without clipping its corners overflow the screen's integers.
+  Scene scene;
+  add_quad(scene, {-4e7f, -4e7f, -4}, {8e7f, 0, 0}, {0, 8e7f, 0}, add_material(scene));
+  for (const float depth : camera_image(scene, small_camera()).depth) EXPECT_NEAR(depth, 4, 1e-4);
+  for (const float depth : shadow_depth(scene, orthographic_square(1, 16))) EXPECT_NEAR(depth, 4, 1e-4);
+}
+
+TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
+  Scene scene;
+  const unsigned red = add_material(scene, {1, 0, 0}), green = add_material(scene, {0, 1, 0});
+  add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, red);
+  add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, green);
+  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.x, 1);
+  add_quad(scene, {-9, -9, -3.99f}, {18, 0, 0}, {0, 18, 0}, green);
+  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.y, 1);
+}
+
+TEST(Rasterize, OrthographicDepthsBeforeTheNearOneClampToItAndFarOnesDrop) {
+  const ClpvView view = orthographic_square(1, 8, 2, 10);
+  EXPECT_THAT(shadow_depth(wall(4), view), ::testing::Each(4.0f));
+  EXPECT_THAT(shadow_depth(wall(1), view), ::testing::Each(2.0f));   // before the near depth
+  EXPECT_THAT(shadow_depth(wall(-3), view), ::testing::Each(2.0f));  // behind the eye
+  EXPECT_THAT(shadow_depth(wall(11), view), ::testing::Each(0.0f));
+}
+
+TEST(Rasterize, FluxOfAWhitePlaneIsIrradianceTimesArea) {
+  Scene scene;
+  add_quad(scene, {-10, 0, 10}, {20, 0, 0}, {0, 0, -20}, add_material(scene));
+  const ClpvLight light = directional_light({0.3f, -1, 0.2f}, {1, 2, 3});
+  const ClpvView view =
+      directional_rsm_view(light, {{-2, -2, -2}, 0.5f, 8, {}}, {{-10, 0, -10}, {10, 0, 10}}, 32);
+  glm::dvec3 sum(0);
+  for (const glm::vec4& flux : rsm_image(scene, light, view).colour) sum += glm::dvec3(flux);
+  const double area = 4.0 * view.half_width * view.half_height;
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], (c + 1) * area, 1e-6 * area * (c + 1));
+}
+
+TEST(Rasterize, FluxInAWhiteRoomIsAllThatAPointLightSends) {
+  Scene scene;  // a cube about the light, seen from inside
+  const unsigned material = add_material(scene);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0f, 1.0f}) {
+      glm::vec3 corner(-2), u(0), v(0);
+      corner[axis] = 2 * side;
+      u[(axis + 1) % 3] = v[(axis + 2) % 3] = 4;
+      add_quad(scene, corner, u, v, material);
+    }
+  }
+  const ClpvLight light = testing::point_light({0.3f, 0.2f, -0.4f}, {1, 1, 1});
+  double sum = 0;
+  for (const ClpvView& view : point_views(light, 32, {glm::vec3(-2), glm::vec3(2)})) {
+    const SurfaceImage image = rsm_image(scene, light, view);
+    EXPECT_EQ(covered(image.depth), image.depth.size());
+    for (const glm::vec4& flux : image.colour) sum += flux.x;
+  }
+  // The midpoint rule of 32 x 32 texels over a cube's side.
+  EXPECT_NEAR(sum, 4 * glm::pi<double>(), 4e-4 * 4 * glm::pi<double>());
+}
+
+TEST(Rasterize, PaperFormatKeepsEightBits) {
+  Scene scene;
+  add_quad(scene, {-10, 0, 10}, {20, 0, 0}, {0, 0, -20}, add_material(scene, {0.9f, 0.5f, 0.1f}));
+  const ClpvLight light = directional_light({0.3f, -1, 0.2f}, glm::vec3(3));
+  const ClpvView view =
+      directional_rsm_view(light, {{-2, -2, -2}, 0.5f, 8, {}}, {{-10, 0, -10}, {10, 0, 10}}, 16);
+  const SurfaceImage exact = rsm_image(scene, light, view);
+  const SurfaceImage coarse = rsm_image(scene, light, view, RsmFormat::paper);
+  EXPECT_EQ(exact.depth, coarse.depth);
+  const float most = 3 * 4 * view.half_width * view.half_height / (16 * 16);
+  for (std::size_t i = 0; i < exact.colour.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(exact.colour[i][c], coarse.colour[i][c], most * 0.5f / 255 * 1.0001f);
+      EXPECT_NEAR(exact.normal[i][c], coarse.normal[i][c], 0.5f / 127);
+    }
+  }
+}
+
+TEST(Rasterize, TwoRunsGiveTheSameBytes) {
+  Scene scene = jittered_plane(20, 3, 4, 0);
+  const Scene other = jittered_plane(13, 3, 4, 0.01f);
+  const auto first = static_cast<unsigned>(scene.vertices.size());
+  scene.vertices.insert(scene.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (Triangle triangle : other.triangles) {
+    for (unsigned& v : triangle.vertex) v += first;
+    scene.triangles.push_back(triangle);
+  }
+  const ClpvView view = small_camera(160, 90);
+  const SurfaceImage once = camera_image(scene, view), again = camera_image(scene, view);
+  EXPECT_EQ(once.depth, again.depth);
+  EXPECT_EQ(once.normal, again.normal);
+  EXPECT_EQ(once.colour, again.colour);
+}
+
+}  // namespace
+}  // namespace clpv
