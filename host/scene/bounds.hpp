@@ -1,0 +1,42 @@
+// How much a scene may ask for. Scenes are untrusted: each bound is checked before anything of that size is
+// allocated.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace clpv::bounds {
+
+// Text. Real glTF nests some ten levels deep; extras a few more. Parsers downstream may recurse.
+inline constexpr int kJsonNesting = 64;
+inline constexpr std::uint64_t kJsonBytes = 256ull << 20;  // base64 buffers included
+
+// Bytes. All buffers of a model together, and one image file; a .glb holds both kinds and the JSON.
+inline constexpr std::uint64_t kBufferBytes = 2ull << 30;
+inline constexpr std::uint64_t kImageFileBytes = 256ull << 20;
+inline constexpr std::uint64_t kGlbBytes = kBufferBytes + kJsonBytes;
+
+// Decoded images. 16384 is the largest texture side common devices take; 1 GiB of texels is 64 of 2048 x
+// 2048.
+inline constexpr std::uint32_t kImageSide = 16384;
+inline constexpr std::uint64_t kTexelBytes = 1ull << 30;
+
+// Entries of any one array of the JSON (nodes, meshes, accessors, ...), and depth of the node tree.
+inline constexpr std::size_t kListEntries = 1u << 20;
+inline constexpr int kNodeDepth = 1024;
+
+// Geometry after instancing: 32 Mi vertices of 48 bytes are 1.5 GiB, 32 Mi triangles of 16 bytes are 0.5 GiB.
+inline constexpr std::uint64_t kVertices = 32ull << 20;
+inline constexpr std::uint64_t kTriangles = 32ull << 20;
+
+// Each light costs its own RSMs and shadow map.
+inline constexpr std::size_t kLights = 64;
+inline constexpr std::size_t kCameras = 1024;
+
+// Coordinates [m]: at 1e7 a float resolves 1 m, far too little to light anything.
+inline constexpr double kCoordinate = 1e7;
+
+// Notes to the user kept word for word; the rest are counted.
+inline constexpr std::size_t kNotes = 32;
+
+}  // namespace clpv::bounds

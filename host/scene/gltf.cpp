@@ -1,0 +1,41 @@
+#include "scene/gltf.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <future>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "scene/gltf_document.hpp"
+#include "scene/gltf_material.hpp"
+#include "scene/gltf_mesh.hpp"
+#include "scene/gltf_nodes.hpp"
+#include "scene/gltf_view.hpp"
+#include "scene/texture_image.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+
+Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Notes& notes) {
+  const GltfDocument document = read_gltf_document(path);
+  Scene scene;
+  if (!document.ignored_extensions.empty()) {
+    notes.add(fmt::format("extensions used but not read: {}", fmt::join(document.ignored_extensions, ", ")));
+  }
+  if (document.animated) notes.add("animations are not played: shown as stored");
+  const auto nodes = flatten_nodes(document, glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
+  const MaterialSet materials = read_materials(document, notes);
+  auto textures = std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
+  append_meshes(document, nodes, materials, scene, notes);  // while the images are decoded
+  append_views(document, nodes, metres_per_unit, scene, notes);
+  scene.textures = textures.get();
+  scene.materials = materials.materials;
+  const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);  // glTF's default material
+  if (std::none_of(scene.triangles.begin(), scene.triangles.end(),
+                   [&](auto& t) { return t.material == last; })) {
+    scene.materials.pop_back();
+  }
+  return scene;
+}
+
+}  // namespace clpv

@@ -1,0 +1,41 @@
+// Random access to a glTF accessor: strided, normalised, sparse or all zeros. Nothing is copied.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/gltf_document.hpp"
+
+namespace clpv {
+
+class GltfAccessor {
+ public:
+  /// The document must outlive it. Throws Error(bad_input) for bad sparse indices.
+  GltfAccessor(const GltfDocument& document, int index);
+
+  std::size_t count() const { return accessor_->count; }
+  int components() const { return components_; }
+  int component_type() const { return accessor_->componentType; }
+  bool normalized() const { return accessor_->normalized; }
+  std::string place() const;  ///< its JSON pointer
+
+  /// One component of an element (which must be in range): normalised integers in [0, 1] or [-1, 1].
+  double number(std::size_t element, int component) const;
+  /// An unsigned integer scalar.
+  std::uint32_t index(std::size_t element) const;
+
+ private:
+  const std::uint8_t* address(std::size_t element, int component) const;
+
+  const tinygltf::Accessor* accessor_;
+  int index_;
+  int components_ = 0;
+  std::size_t component_bytes_ = 0, element_bytes_ = 0, stride_ = 0;
+  std::span<const std::uint8_t> values_;         ///< empty: zeros
+  std::vector<std::uint32_t> sparse_;            ///< elements replaced, ascending
+  std::span<const std::uint8_t> sparse_values_;  ///< densely packed
+};
+
+}  // namespace clpv

@@ -1,0 +1,129 @@
+// A metal reflects nothing diffusely in glTF; here its base colour does, since light propagation volumes
+// carry diffuse light only and a black Sponza would teach nothing. Metalness, roughness and normal maps are
+// not read.
+#include "scene/gltf_material.hpp"
+
+#include <algorithm>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr float kBlendCutoff = 0.5f;  // BLEND is drawn as MASK with this cutoff
+
+using tinygltf::Value;
+
+double number_in(const Value& object, const char* key, double fallback) {
+  return object.Has(key) ? object.Get(key).GetNumberAsDouble() : fallback;
+}
+
+glm::dvec2 pair_in(const Value& object, const char* key, glm::dvec2 fallback) {
+  if (!object.Has(key)) return fallback;
+  return {object.Get(key).Get(0).GetNumberAsDouble(), object.Get(key).Get(1).GetNumberAsDouble()};
+}
+
+/// KHR_texture_transform: scale, then rotation, then offset. Its rotation is counter-clockwise as seen with v
+/// pointing down (KhronosGroup/glTF issue 1563), so u turns towards -v.
+UvMapping mapping_of(int set, const tinygltf::ExtensionMap& extensions) {
+  UvMapping mapping{set};
+  const auto found = extensions.find("KHR_texture_transform");
+  if (found == extensions.end()) return mapping;
+  const Value& given = found->second;
+  const glm::dvec2 offset = pair_in(given, "offset", {0, 0}), scale = pair_in(given, "scale", {1, 1});
+  const double angle = number_in(given, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+  mapping.transform =
+      glm::dmat3(c * scale.x, -s * scale.x, 0, s * scale.y, c * scale.y, 0, offset.x, offset.y, 1);
+  mapping.set = static_cast<int>(number_in(given, "texCoord", set));
+  return mapping;
+}
+
+std::uint32_t wrap_of(int gltf) {
+  return gltf == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? CLPV_WRAP_CLAMP
+         : gltf == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? CLPV_WRAP_MIRROR
+                                                         : CLPV_WRAP_REPEAT;
+}
+
+/// The index of a texture in the set, which grows by it at its first use.
+std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set) {
+  const tinygltf::Texture& source = document.model.textures[static_cast<std::size_t>(texture)];
+  if (source.source < 0) {
+    refuse(document.file, fmt::format("/textures/{}", texture), "no source", "a source: a PNG or JPEG image");
+  }
+  TextureRequest wanted{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
+  if (source.sampler >= 0) {
+    const tinygltf::Sampler& sampler = document.model.samplers[static_cast<std::size_t>(source.sampler)];
+    wanted.wrap_u = wrap_of(sampler.wrapS);
+    wanted.wrap_v = wrap_of(sampler.wrapT);
+  }
+  const auto found = std::find(set.textures.begin(), set.textures.end(), wanted);
+  const auto index = static_cast<std::uint32_t>(found - set.textures.begin());
+  if (found == set.textures.end()) set.textures.push_back(wanted);
+  return index;
+}
+
+void read_alpha(const tinygltf::Material& source, const std::string& place, Material& made, Notes& notes) {
+  if (source.alphaMode == "MASK") {
+    made.flags |= CLPV_MATERIAL_MASKED;
+    made.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+  } else if (source.alphaMode == "BLEND") {
+    made.flags |= CLPV_MATERIAL_MASKED;
+    made.alpha_cutoff = kBlendCutoff;
+    notes.add(fmt::format("{} ('{}') blends: masked at alpha {} instead", place, source.name, kBlendCutoff));
+  }
+  if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+}
+
+Material blank_material() {
+  Material made{};
+  std::fill(std::begin(made.base_colour), std::end(made.base_colour), 1.0f);
+  made.texture = made.emissive_texture = CLPV_NO_TEXTURE;
+  return made;
+}
+
+void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set, Notes& notes) {
+  const tinygltf::Material& source = document.model.materials[index];
+  const std::string place = fmt::format("/materials/{}", index);
+  Material made = blank_material();
+  const auto& pbr = source.pbrMetallicRoughness;
+  std::copy_n(pbr.baseColorFactor.begin(), 4, made.base_colour);
+  double strength = 1;
+  if (const auto found = source.extensions.find("KHR_materials_emissive_strength");
+      found != source.extensions.end()) {
+    strength = number_in(found->second, "emissiveStrength", 1);
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    made.emissive[i] = static_cast<float>(source.emissiveFactor[i] * strength);
+  read_alpha(source, place, made, notes);
+
+  UvMapping mapping;
+  if (pbr.baseColorTexture.index >= 0) {
+    made.texture = request(pbr.baseColorTexture.index, document, set);
+    mapping = mapping_of(pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions);
+  }
+  const bool emits = made.emissive[0] + made.emissive[1] + made.emissive[2] > 0;
+  if (source.emissiveTexture.index >= 0 && emits) {
+    made.emissive_texture = request(source.emissiveTexture.index, document, set);
+    const UvMapping own = mapping_of(source.emissiveTexture.texCoord, source.emissiveTexture.extensions);
+    if (made.texture == CLPV_NO_TEXTURE) {
+      mapping = own;
+    } else if (!(own == mapping)) {
+      notes.add(place +
+                "/emissiveTexture: looked up with the base colour's texture coordinates, not with its own");
+    }
+  }
+  set.materials.push_back(made);
+  set.mappings.push_back(mapping);
+}
+
+}  // namespace
+
+MaterialSet read_materials(const GltfDocument& document, Notes& notes) {
+  MaterialSet set;
+  for (std::size_t i = 0; i < document.model.materials.size(); ++i) read_material(document, i, set, notes);
+  set.materials.push_back(blank_material());
+  set.mappings.emplace_back();
+  return set;
+}
+
+}  // namespace clpv

@@ -1,0 +1,260 @@
+#include "scene/gltf_primitive.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "scene/bounds.hpp"
+#include "scene/gltf_accessor.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr glm::dvec3 kUp{0, 1, 0};  // the normal of vertices that only degenerate triangles use
+constexpr double kShortest = 1e-6;  // a shorter stored normal is none
+
+/// A primitive's attributes, checked against each other.
+struct Attributes {
+  GltfAccessor position;
+  std::optional<GltfAccessor> normal, uv, colour;
+};
+
+class PrimitiveReader {
+ public:
+  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source, std::string place)
+      : document_(document), source_(source), place_(std::move(place)) {}
+
+  Attributes attributes(const UvMapping& mapping, bool textured, Notes& notes) const;
+  std::optional<GltfAccessor> indices() const;
+  LocalVertex vertex(const Attributes& from, std::uint32_t index, const UvMapping& mapping) const;
+  [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
+    refuse(document_.file, place_, found, allowed);
+  }
+
+ private:
+  std::optional<GltfAccessor> attribute(const std::string& name, int least_components, int most_components,
+                                        std::size_t count) const;
+  double component(const GltfAccessor& from, const char* name, std::uint32_t index, int i) const;
+
+  const GltfDocument& document_;
+  const tinygltf::Primitive& source_;
+  std::string place_;
+};
+
+std::optional<GltfAccessor> PrimitiveReader::attribute(const std::string& name, int least_components,
+                                                       int most_components, std::size_t count) const {
+  const auto found = source_.attributes.find(name);
+  if (found == source_.attributes.end()) return std::nullopt;
+  GltfAccessor accessor(document_, found->second);
+  const std::string place = fmt::format("{}/attributes/{}", place_, name);
+  if (accessor.components() < least_components || accessor.components() > most_components ||
+      document_.model.accessors[static_cast<std::size_t>(found->second)].type > TINYGLTF_TYPE_VEC4) {
+    refuse(document_.file, place, fmt::format("elements of {} components", accessor.components()),
+           fmt::format("VEC{}{}", least_components,
+                       most_components > least_components ? fmt::format(" or VEC{}", most_components) : ""));
+  }
+  if (count != 0 && accessor.count() != count) {
+    refuse(document_.file, place, fmt::format("{} elements", accessor.count()),
+           fmt::format("as many as POSITION, {}", count));
+  }
+  return accessor;
+}
+
+Attributes PrimitiveReader::attributes(const UvMapping& mapping, bool textured, Notes& notes) const {
+  const auto position = attribute("POSITION", 3, 3, 0);
+  if (!position) refuse_here("no attribute POSITION", "POSITION, a VEC3");
+  const std::string set = fmt::format("TEXCOORD_{}", mapping.set);
+  Attributes made{*position, attribute("NORMAL", 3, 3, position->count()), std::nullopt,
+                  attribute("COLOR_0", 3, 4, position->count())};
+  if (textured) {
+    made.uv = attribute(set, 2, 2, position->count());
+    if (!made.uv)
+      notes.add(fmt::format("{}: its material wants {}, which it lacks: 0, 0 instead", place_, set));
+  }
+  return made;
+}
+
+std::optional<GltfAccessor> PrimitiveReader::indices() const {
+  if (source_.indices < 0) return std::nullopt;
+  GltfAccessor accessor(document_, source_.indices);
+  const int type = accessor.component_type();
+  if (accessor.components() != 1 || accessor.normalized() ||
+      (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+       type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
+    refuse(document_.file, accessor.place(), "indices that are no unsigned integer scalars",
+           "SCALAR of componentType 5121, 5123 or 5125, not normalized");
+  }
+  return accessor;
+}
+
+double PrimitiveReader::component(const GltfAccessor& from, const char* name, std::uint32_t index,
+                                  int i) const {
+  const double value = from.number(index, i);
+  if (!std::isfinite(value)) {
+    refuse_here(fmt::format("{} in component {} of {} of vertex {}", value, i, name, index),
+                "finite numbers");
+  }
+  return value;
+}
+
+LocalVertex PrimitiveReader::vertex(const Attributes& from, std::uint32_t index,
+                                    const UvMapping& mapping) const {
+  LocalVertex made{{}, {}, {}, glm::vec4(1), index};
+  for (int i = 0; i < 3; ++i) made.position[i] = component(from.position, "POSITION", index, i);
+  for (int i = 0; i < 3 && from.normal; ++i) made.normal[i] = component(*from.normal, "NORMAL", index, i);
+  if (from.uv) {
+    const glm::dvec3 uv(component(*from.uv, "TEXCOORD", index, 0), component(*from.uv, "TEXCOORD", index, 1),
+                        1);
+    made.uv = glm::vec2(mapping.transform * uv);
+    if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
+      refuse_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
+                  "finite numbers");
+    }
+  }
+  for (int i = 0; from.colour && i < from.colour->components(); ++i) {
+    made.colour[i] = static_cast<float>(std::clamp(component(*from.colour, "COLOR_0", index, i), 0.0, 1.0));
+  }
+  return made;
+}
+
+/// How many triangles `corners` corners make; nothing where the mode does not allow that many.
+std::optional<std::uint64_t> triangle_count(int mode, std::uint64_t corners) {
+  if (corners < 3 || (mode == TINYGLTF_MODE_TRIANGLES && corners % 3 != 0)) return std::nullopt;
+  return mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners - 2;
+}
+
+/// The corners of triangle `i`, in the order that makes its front counter-clockwise (glTF 2.0,
+/// section 3.7.2.1).
+glm::uvec3 corners_of(int mode, std::uint32_t i) {
+  switch (mode) {
+    case TINYGLTF_MODE_TRIANGLE_STRIP:
+      return {i, i + 1 + i % 2, i + 2 - i % 2};
+    case TINYGLTF_MODE_TRIANGLE_FAN:
+      return {i + 1, i + 2, 0};
+    default:
+      return {3 * i, 3 * i + 1, 3 * i + 2};
+  }
+}
+
+glm::dvec3 geometric_normal(const LocalPrimitive& primitive, const glm::uvec3& t) {
+  const glm::dvec3& a = primitive.vertices[t.x].position;
+  const glm::dvec3 n = glm::cross(primitive.vertices[t.y].position - a, primitive.vertices[t.z].position - a);
+  const double length = glm::length(n);
+  return length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
+}
+
+/// Each triangle gets three vertices of its own with its normal (glTF 2.0, section 3.7.2.1: flat normals).
+void split_flat(LocalPrimitive& primitive) {
+  std::vector<LocalVertex> split;
+  split.reserve(primitive.triangles.size() * 3);
+  for (glm::uvec3& triangle : primitive.triangles) {
+    const glm::dvec3 normal = geometric_normal(primitive, triangle);
+    for (int i = 0; i < 3; ++i) {
+      split.push_back(primitive.vertices[triangle[i]]);
+      split.back().normal = normal == glm::dvec3(0) ? kUp : normal;
+      triangle[i] = static_cast<std::uint32_t>(split.size() - 1);
+    }
+  }
+  primitive.vertices = std::move(split);
+}
+
+/// Stored normals become unit; those of no length take their triangle's.
+void normalize_stored(LocalPrimitive& primitive) {
+  std::vector<bool> missing(primitive.vertices.size(), false);
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    glm::dvec3& normal = primitive.vertices[i].normal;
+    missing[i] = glm::length(normal) < kShortest;
+    normal = missing[i] ? glm::dvec3(0) : glm::normalize(normal);
+  }
+  if (std::find(missing.begin(), missing.end(), true) == missing.end()) return;
+  for (const glm::uvec3& triangle : primitive.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      if (missing[triangle[i]])
+        primitive.vertices[triangle[i]].normal += geometric_normal(primitive, triangle);
+    }
+  }
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    glm::dvec3& normal = primitive.vertices[i].normal;
+    if (missing[i]) normal = glm::length(normal) < kShortest ? kUp : glm::normalize(normal);
+  }
+}
+
+}  // namespace
+
+void VertexMap::restart(std::size_t count) {
+  if (entries_.size() < count) entries_.resize(count);
+  if (++stamp_ == 0) {  // wrapped: old stamps would look new
+    std::fill(entries_.begin(), entries_.end(), Entry{});
+    stamp_ = 1;
+  }
+}
+
+std::uint32_t VertexMap::slot(std::uint32_t source, std::uint32_t& fresh) {
+  Entry& entry = entries_[source];
+  if (entry.stamp != stamp_) entry = {stamp_, fresh++};
+  return entry.slot;
+}
+
+LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, std::size_t index,
+                              const MaterialSet& materials, std::uint64_t left_vertices,
+                              std::uint64_t left_triangles, VertexMap& map, Notes& notes) {
+  const tinygltf::Primitive& source = document.model.meshes[mesh].primitives[index];
+  LocalPrimitive made;
+  made.place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
+  const int mode = source.mode < 0 ? TINYGLTF_MODE_TRIANGLES : source.mode;
+  if (mode < TINYGLTF_MODE_TRIANGLES) {
+    notes.add(fmt::format("{}: made of {}, which are not drawn", made.place,
+                          mode == TINYGLTF_MODE_POINTS ? "points" : "lines"));
+    return made;
+  }
+  made.material = static_cast<std::uint32_t>(
+      source.material < 0 ? static_cast<int>(materials.materials.size()) - 1 : source.material);
+  const Material& material = materials.materials[made.material];
+  const UvMapping& mapping = materials.mappings[made.material];
+  const PrimitiveReader reader(document, source, made.place);
+  const bool textured = material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
+  const Attributes attributes = reader.attributes(mapping, textured, notes);
+  const std::optional<GltfAccessor> indices = reader.indices();
+  const std::uint64_t corners = indices ? indices->count() : attributes.position.count();
+  const auto triangles = triangle_count(mode, corners);
+  if (!triangles) {
+    reader.refuse_here(fmt::format("{} corners", corners),
+                       mode == TINYGLTF_MODE_TRIANGLES ? "a multiple of 3, at least 3" : "at least 3");
+  }
+  if (*triangles > left_triangles) {
+    reader.refuse_here(fmt::format("{} more triangles", *triangles),
+                       fmt::format("{} left of {} in all", left_triangles, bounds::kTriangles));
+  }
+  const std::size_t count = attributes.position.count();
+  if (count > bounds::kVertices || (!attributes.normal && 3 * *triangles > left_vertices)) {
+    reader.refuse_here(
+        fmt::format("{} vertices", std::max<std::uint64_t>(count, attributes.normal ? 0 : 3 * *triangles)),
+        fmt::format("{} left of {} in all", left_vertices, bounds::kVertices));
+  }
+
+  map.restart(count);
+  made.triangles.reserve(*triangles);
+  for (std::uint32_t i = 0; i < *triangles; ++i) {
+    const glm::uvec3 corner = corners_of(mode, i);
+    glm::uvec3 triangle;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = indices ? indices->index(corner[k]) : corner[k];
+      if (vertex >= count) {
+        reader.refuse_here(fmt::format("index {} at {}", vertex, corner[k]),
+                           fmt::format("0 to {}", count - 1));
+      }
+      auto fresh = static_cast<std::uint32_t>(made.vertices.size());
+      triangle[k] = map.slot(vertex, fresh);
+      if (fresh > made.vertices.size()) made.vertices.push_back(reader.vertex(attributes, vertex, mapping));
+    }
+    made.triangles.push_back(triangle);
+  }
+  if (attributes.normal) {
+    normalize_stored(made);
+  } else {
+    split_flat(made);
+  }
+  return made;
+}
+
+}  // namespace clpv

@@ -1,0 +1,52 @@
+// One mesh primitive in its own space: triangles over just the vertices they use. Internal to the loader.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/gltf_document.hpp"
+#include "scene/gltf_material.hpp"
+#include "scene/notes.hpp"
+
+namespace clpv {
+
+struct LocalVertex {
+  glm::dvec3 position, normal;
+  glm::vec2 uv;
+  glm::vec4 colour;
+  std::uint32_t source;  ///< its index in the accessors, for messages
+};
+
+struct LocalPrimitive {
+  std::string place;  ///< "/meshes/3/primitives/0"
+  std::vector<LocalVertex> vertices;
+  std::vector<glm::uvec3> triangles;
+  std::uint32_t material = 0;
+};
+
+/// Vertices of an accessor -> vertices of a primitive, made anew for each primitive without clearing:
+/// primitives often share one huge accessor and use a small part of it.
+class VertexMap {
+ public:
+  /// Starts a new map for `count` source vertices.
+  void restart(std::size_t count);
+  /// The slot of a source vertex; `fresh` is taken, and increased, at its first use.
+  std::uint32_t slot(std::uint32_t source, std::uint32_t& fresh);
+
+ private:
+  struct Entry {
+    std::uint32_t stamp = 0, slot = 0;
+  };
+  std::vector<Entry> entries_;
+  std::uint32_t stamp_ = 0;
+};
+
+/// Reads primitive `index` of mesh `mesh`. No triangles, and a note, where it is made of points or lines.
+/// `left_vertices`, `left_triangles`: how much more the scene may hold. Throws Error(bad_input).
+LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, std::size_t index,
+                              const MaterialSet& materials, std::uint64_t left_vertices,
+                              std::uint64_t left_triangles, VertexMap& map, Notes& notes);
+
+}  // namespace clpv

@@ -1,0 +1,276 @@
+#include "scene/gltf_schema.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "scene/bounds.hpp"
+#include "scene/input.hpp"
+#include "scene/json_schema.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double kAny = 1e30;         // finite, and its products with coordinates fit a double
+constexpr double kMany = 4294967295;  // counts and offsets: more than any bounded buffer holds
+constexpr double kTiny = 1e-9;        // stands for "greater than 0"
+const std::string kPunctual = "/extensions/KHR_lights_punctual";
+
+/// Extensions that are read. Whatever else a file requires is refused by name.
+constexpr std::array kExtensions = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
+                                    "KHR_materials_emissive_strength"};
+
+using Rules = std::vector<Rule>;
+
+void append(Rules& rules, Rules more) {
+  rules.insert(rules.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// The top level. Lists come first, so that later rules may index them.
+Rules document_rules() {
+  using namespace rule;
+  Rules rules = {object("").must(), object("/asset").must(), text("/asset/version").must(),
+                 object("/extensions")};
+  for (const char* name : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "materials",
+                           "textures", "images", "samplers", "animations", "skins"}) {
+    rules.push_back(list(std::string("/") + name, 0, bounds::kListEntries));
+    rules.push_back(object(std::string("/") + name + "/*"));
+  }
+  append(rules, {list("/cameras", 0, bounds::kCameras), object("/cameras/*"), object(kPunctual),
+                 list(kPunctual + "/lights", 0, bounds::kLights), object(kPunctual + "/lights/*")});
+  for (const char* name : {"extensionsUsed", "extensionsRequired"}) {
+    rules.push_back(list(std::string("/") + name, 0, 1024));
+    rules.push_back(text(std::string("/") + name + "/*"));
+  }
+  return rules;
+}
+
+Rules node_rules() {
+  using namespace rule;
+  const std::string light = "/nodes/*/extensions/KHR_lights_punctual";
+  return {index("/scene", "/scenes"),
+          list("/scenes/*/nodes", 0, bounds::kListEntries),
+          index("/scenes/*/nodes/*", "/nodes"),
+          text("/nodes/*/name"),
+          list("/nodes/*/children", 0, bounds::kListEntries),
+          index("/nodes/*/children/*", "/nodes"),
+          index("/nodes/*/mesh", "/meshes"),
+          index("/nodes/*/camera", "/cameras"),
+          index("/nodes/*/skin", "/skins"),
+          vector("/nodes/*/matrix", 16, -kAny, kAny),
+          vector("/nodes/*/translation", 3, -kAny, kAny),
+          vector("/nodes/*/rotation", 4, -1.001, 1.001),
+          vector("/nodes/*/scale", 3, -kAny, kAny),
+          object("/nodes/*/extensions"),
+          object(light),
+          index(light + "/light", kPunctual + "/lights").must()};
+}
+
+Rules geometry_rules() {
+  using namespace rule;
+  const std::string primitive = "/meshes/*/primitives/*";
+  return {text("/meshes/*/name"),
+          list("/meshes/*/primitives", 1, bounds::kListEntries).must(),
+          object(primitive),
+          object(primitive + "/attributes").must(),
+          index(primitive + "/attributes/*", "/accessors"),
+          index(primitive + "/indices", "/accessors"),
+          index(primitive + "/material", "/materials"),
+          integer(primitive + "/mode", 0, 6),
+          list(primitive + "/targets", 0, 1024),
+          object(primitive + "/targets/*"),
+          index(primitive + "/targets/*/*", "/accessors"),
+          integer("/accessors/*/count", 1, kMany).must(),
+          integer("/accessors/*/byteOffset", 0, kMany),
+          index("/accessors/*/bufferView", "/bufferViews"),
+          choice("/accessors/*/componentType", {5120, 5121, 5122, 5123, 5125, 5126}).must(),
+          text("/accessors/*/type", {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}).must(),
+          flag("/accessors/*/normalized"),
+          object("/accessors/*/sparse"),
+          integer("/accessors/*/sparse/count", 1, kMany).must(),
+          object("/accessors/*/sparse/indices").must(),
+          index("/accessors/*/sparse/indices/bufferView", "/bufferViews").must(),
+          integer("/accessors/*/sparse/indices/byteOffset", 0, kMany),
+          choice("/accessors/*/sparse/indices/componentType", {5121, 5123, 5125}).must(),
+          object("/accessors/*/sparse/values").must(),
+          index("/accessors/*/sparse/values/bufferView", "/bufferViews").must(),
+          integer("/accessors/*/sparse/values/byteOffset", 0, kMany),
+          index("/bufferViews/*/buffer", "/buffers").must(),
+          integer("/bufferViews/*/byteOffset", 0, kMany),
+          integer("/bufferViews/*/byteLength", 1, kMany).must(),
+          integer("/bufferViews/*/byteStride", 4, 252),
+          integer("/buffers/*/byteLength", 1, static_cast<double>(bounds::kBufferBytes)).must(),
+          text("/buffers/*/uri")};
+}
+
+/// A reference to a texture, as materials hold them.
+Rules texture_info_rules(const std::string& place) {
+  using namespace rule;
+  const std::string transform = place + "/extensions/KHR_texture_transform";
+  return {object(place),
+          index(place + "/index", "/textures").must(),
+          integer(place + "/texCoord", 0, 255),
+          object(place + "/extensions"),
+          object(transform),
+          vector(transform + "/offset", 2, -kAny, kAny),
+          number(transform + "/rotation", -kAny, kAny),
+          vector(transform + "/scale", 2, -kAny, kAny),
+          integer(transform + "/texCoord", 0, 255)};
+}
+
+Rules material_rules() {
+  using namespace rule;
+  const std::string strength = "/materials/*/extensions/KHR_materials_emissive_strength";
+  Rules rules = {text("/materials/*/name"),
+                 object("/materials/*/pbrMetallicRoughness"),
+                 vector("/materials/*/pbrMetallicRoughness/baseColorFactor", 4, 0, 1),
+                 vector("/materials/*/emissiveFactor", 3, 0, 1),
+                 text("/materials/*/alphaMode", {"OPAQUE", "MASK", "BLEND"}),
+                 number("/materials/*/alphaCutoff", 0, kAny),
+                 flag("/materials/*/doubleSided"),
+                 object("/materials/*/extensions"),
+                 object(strength),
+                 number(strength + "/emissiveStrength", 0, 1e9),
+                 index("/textures/*/source", "/images"),
+                 index("/textures/*/sampler", "/samplers"),
+                 choice("/samplers/*/wrapS", {10497, 33071, 33648}),
+                 choice("/samplers/*/wrapT", {10497, 33071, 33648}),
+                 text("/images/*/uri"),
+                 text("/images/*/mimeType"),
+                 index("/images/*/bufferView", "/bufferViews")};
+  append(rules, texture_info_rules("/materials/*/pbrMetallicRoughness/baseColorTexture"));
+  append(rules, texture_info_rules("/materials/*/emissiveTexture"));
+  return rules;
+}
+
+Rules view_rules() {
+  using namespace rule;
+  const std::string light = kPunctual + "/lights/*";
+  return {text("/cameras/*/name"),
+          text("/cameras/*/type", {"perspective", "orthographic"}).must(),
+          object("/cameras/*/perspective"),
+          number("/cameras/*/perspective/yfov", kTiny, std::numbers::pi - kTiny).must(),
+          number("/cameras/*/perspective/znear", kTiny, kAny).must(),
+          text(light + "/name"),
+          text(light + "/type", {"directional", "point", "spot"}).must(),
+          vector(light + "/color", 3, 0, kAny),
+          number(light + "/intensity", 0, kAny),
+          number(light + "/range", kTiny, kAny),
+          object(light + "/spot"),
+          number(light + "/spot/innerConeAngle", 0, std::numbers::pi / 2),
+          number(light + "/spot/outerConeAngle", kTiny, std::numbers::pi / 2 + kTiny)};
+}
+
+void check_asset(const json& document, const std::string& file) {
+  const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
+  if (!version.starts_with("2.")) refuse(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
+  if (!document.contains("extensionsRequired")) return;
+  for (std::size_t i = 0; i < document["extensionsRequired"].size(); ++i) {
+    const std::string& name = document["extensionsRequired"][i].get_ref<const std::string&>();
+    if (!reads_extension(name)) {
+      refuse(file, fmt::format("/extensionsRequired/{}", i),
+             "'" + name.substr(0, 80) + "', which is not supported",
+             fmt::format("{}", fmt::join(kExtensions, ", ")));
+    }
+  }
+}
+
+void check_views(const json& document, const std::string& file) {
+  if (!document.contains("bufferViews")) return;
+  for (std::size_t i = 0; i < document["bufferViews"].size(); ++i) {
+    const json& view = document["bufferViews"][i];
+    const std::string place = fmt::format("/bufferViews/{}", i);
+    const std::uint64_t end =
+        view.value("byteOffset", std::uint64_t{0}) + view["byteLength"].get<std::uint64_t>();
+    const std::size_t buffer = view["buffer"];
+    const std::uint64_t size = document["buffers"][buffer]["byteLength"];
+    if (end > size) {
+      refuse(file, place, fmt::format("bytes up to {}", end),
+             fmt::format("at most the {} of /buffers/{}", size, buffer));
+    }
+    if (const std::uint64_t stride = view.value("byteStride", std::uint64_t{4}); stride % 4 != 0) {
+      refuse(file, place + "/byteStride", fmt::format("{}", stride), "a multiple of 4 from 4 to 252");
+    }
+  }
+}
+
+std::uint64_t component_bytes(std::int64_t component_type) {
+  return component_type <= 5121 ? 1 : component_type <= 5123 ? 2 : 4;
+}
+
+/// Bytes of one element; a matrix's columns start at multiples of 4 bytes.
+std::uint64_t element_bytes(const std::string& type, std::uint64_t component) {
+  if (type == "SCALAR") return component;
+  const std::uint64_t n = static_cast<std::uint64_t>(type.back() - '0');
+  if (type.starts_with("VEC")) return n * component;
+  return n * ((n * component + 3) / 4 * 4);
+}
+
+/// `count` elements of `element` bytes, `stride` apart, from `offset` on, within a view.
+void check_extent(const json& document, const json& reader, std::uint64_t count, std::uint64_t element,
+                  bool strided, const std::string& file, const std::string& place) {
+  const std::size_t index = reader["bufferView"];
+  const json& view = document["bufferViews"][index];
+  const std::uint64_t stride = strided ? view.value("byteStride", element) : element;
+  if (stride < element) {
+    refuse(file, place, fmt::format("elements of {} bytes", element),
+           fmt::format("at most the byteStride {} of /bufferViews/{}", stride, index));
+  }
+  const std::uint64_t end = reader.value("byteOffset", std::uint64_t{0}) + (count - 1) * stride + element;
+  const std::uint64_t size = view["byteLength"];
+  if (end > size) {
+    refuse(file, place, fmt::format("{} elements up to byte {}", count, end),
+           fmt::format("at most the {} bytes of /bufferViews/{}", size, index));
+  }
+}
+
+void check_accessors(const json& document, const std::string& file) {
+  if (!document.contains("accessors")) return;
+  for (std::size_t i = 0; i < document["accessors"].size(); ++i) {
+    const json& accessor = document["accessors"][i];
+    const std::string place = fmt::format("/accessors/{}", i);
+    const std::uint64_t count = accessor["count"];
+    const std::uint64_t element = element_bytes(accessor["type"], component_bytes(accessor["componentType"]));
+    if (accessor.contains("bufferView")) check_extent(document, accessor, count, element, true, file, place);
+    if (!accessor.contains("sparse")) continue;
+    const json& sparse = accessor["sparse"];
+    const std::uint64_t replaced = sparse["count"];
+    if (replaced > count) {
+      refuse(file, place + "/sparse/count", fmt::format("{}", replaced),
+             fmt::format("1 to the accessor's {}", count));
+    }
+    check_extent(document, sparse["indices"], replaced, component_bytes(sparse["indices"]["componentType"]),
+                 false, file, place + "/sparse/indices");
+    check_extent(document, sparse["values"], replaced, element, false, file, place + "/sparse/values");
+  }
+}
+
+}  // namespace
+
+bool reads_extension(const std::string& name) {
+  return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
+}
+
+void check_gltf(const json& document, const std::string& file) {
+  static const Rules rules = [] {
+    Rules all = document_rules();
+    append(all, node_rules());
+    append(all, geometry_rules());
+    append(all, material_rules());
+    append(all, view_rules());
+    return all;
+  }();
+  check_rules(document, rules, file);
+  check_asset(document, file);
+  check_views(document, file);
+  check_accessors(document, file);
+}
+
+}  // namespace clpv

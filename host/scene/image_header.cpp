@@ -1,0 +1,68 @@
+// Decoders allocate by the header's size before a caller is asked (libjpeg for progressive images,
+// OpenImageIO for interlaced ones), so the size is read here first. PNG: ISO 15948, section 11.2.2. JPEG: ITU
+// T.81, annex B.
+#include "scene/image_header.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace clpv {
+namespace {
+
+using Data = std::span<const std::uint8_t>;
+
+std::uint32_t big_endian(Data bytes, std::size_t offset, std::size_t size) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < size; ++i) value = value << 8 | bytes[offset + i];
+  return value;
+}
+
+bool starts_with(Data bytes, Data prefix) {
+  return bytes.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), bytes.begin());
+}
+
+bool contains(Data bytes, Data wanted) {
+  return std::search(bytes.begin(), bytes.end(), wanted.begin(), wanted.end()) != bytes.end();
+}
+
+std::optional<ImageHeader> png_header(Data bytes) {
+  constexpr std::size_t kWidth = 16, kHeight = 20, kHeaderEnd = 33;  // signature, then the IHDR chunk
+  constexpr std::array<std::uint8_t, 4> kHeaderType = {'I', 'H', 'D', 'R'};
+  constexpr std::array<std::uint8_t, 4> kEndType = {'I', 'E', 'N', 'D'};
+  if (bytes.size() < kHeaderEnd || !starts_with(bytes.subspan(12), kHeaderType)) return std::nullopt;
+  const Data tail = bytes.subspan(kHeaderEnd);
+  return ImageHeader{ImageFormat::png, big_endian(bytes, kWidth, 4), big_endian(bytes, kHeight, 4),
+                     contains(tail, kEndType)};
+}
+
+std::optional<ImageHeader> jpeg_header(Data bytes) {
+  constexpr std::array<std::uint8_t, 2> kEnd = {0xff, 0xd9};
+  for (std::size_t at = 2; at + 9 < bytes.size() && bytes[at] == 0xff;) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == 0xff) {  // fill byte
+      ++at;
+      continue;
+    }
+    // A frame header is any of SOF0..15 but the tables DHT, JPG and DAC that share the range.
+    const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame) {
+      return ImageHeader{ImageFormat::jpeg, big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2),
+                         contains(bytes.subspan(at), kEnd)};
+    }
+    at += 2 + big_endian(bytes, at + 2, 2);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ImageHeader> read_image_header(Data bytes) {
+  constexpr std::array<std::uint8_t, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  constexpr std::array<std::uint8_t, 3> kJpeg = {0xff, 0xd8, 0xff};
+  if (starts_with(bytes, kPng)) return png_header(bytes);
+  if (starts_with(bytes, kJpeg)) return jpeg_header(bytes);
+  return std::nullopt;
+}
+
+}  // namespace clpv

@@ -1,0 +1,148 @@
+#include "scene/input.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "scene/bounds.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace fs = std::filesystem;
+namespace {
+
+/// A URI as it may stand in a message: short, and without control characters.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kShown = 80;
+  std::string out(text.substr(0, kShown));
+  for (char& c : out) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return text.size() > kShown ? out + "..." : out;
+}
+
+/// Depth of brackets outside strings; stops at the first depth beyond the bound. Needs no recursion, unlike
+/// parsers.
+void check_nesting(std::string_view text, const std::string& file) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      if (c == '"') quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > bounds::kJsonNesting) {
+        refuse(file, {}, fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
+               fmt::format("at most {} levels", bounds::kJsonNesting));
+      }
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+}
+
+std::optional<std::string> percent_decoded(std::string_view uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%') {
+      out += uri[i];
+      continue;
+    }
+    if (i + 2 >= uri.size() || !std::isxdigit(static_cast<unsigned char>(uri[i + 1])) ||
+        !std::isxdigit(static_cast<unsigned char>(uri[i + 2]))) {
+      return std::nullopt;
+    }
+    out += static_cast<char>(std::stoi(std::string(uri.substr(i + 1, 2)), nullptr, 16));
+    i += 2;
+  }
+  return out;
+}
+
+bool has_scheme(std::string_view uri) {
+  const std::size_t colon = uri.find(':');
+  return colon != std::string_view::npos && colon > 0 &&
+         uri.substr(0, colon).find('/') == std::string_view::npos;
+}
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  const auto [in_folder, in_path] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return in_folder == folder.end();
+}
+
+}  // namespace
+
+void refuse(const std::string& file, std::string_view place, std::string_view found,
+            std::string_view allowed) {
+  throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place, place.empty() ? "" : ": ",
+              found, allowed);
+}
+
+Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (!fs::exists(status))
+    refuse(file, place, fmt::format("no file '{}'", path.string()), "an existing file");
+  if (!fs::is_regular_file(status)) {
+    refuse(file, place,
+           fmt::format("'{}', {}", path.string(), fs::is_directory(status) ? "a folder" : "no regular file"),
+           "a regular file");
+  }
+  const std::uint64_t size = fs::file_size(path, failure);
+  if (failure || size > limit) {
+    refuse(file, place, fmt::format("'{}' of {} bytes", path.string(), size),
+           fmt::format("at most {} bytes", limit));
+  }
+  Bytes bytes(size);
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size) {
+    refuse(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
+  }
+  return bytes;
+}
+
+nlohmann::json parse_json(std::string_view text, const std::string& file) {
+  check_nesting(text, file);
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& error) {  // its text carries line and column
+    std::string what = error.what();
+    std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
+    refuse(file, {}, "no JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
+  }
+}
+
+fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::string& file,
+                     std::string_view place) {
+  const std::string kAllowed = "a relative path to a file in the model's folder or below";
+  const std::optional<std::string> decoded = percent_decoded(uri);
+  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) {
+    refuse(file, place, fmt::format("malformed URI '{}'", shown(uri)), kAllowed);
+  }
+  if (has_scheme(*decoded)) refuse(file, place, fmt::format("URI '{}' with a scheme", shown(uri)), kAllowed);
+  std::string portable = *decoded;
+  std::replace(portable.begin(), portable.end(), '\\', '/');
+  const fs::path lexical = (folder / portable).lexically_normal();
+  if (portable.front() == '/' || !lies_in(lexical, folder.lexically_normal())) {
+    refuse(file, place, fmt::format("URI '{}', which leaves the model's folder", shown(uri)), kAllowed);
+  }
+  std::error_code failure;
+  const fs::path real = fs::canonical(folder / *decoded, failure);
+  if (failure) refuse(file, place, fmt::format("URI '{}', no such file", shown(uri)), kAllowed);
+  if (!lies_in(real, fs::canonical(folder))) {
+    refuse(file, place, fmt::format("URI '{}', a link that leaves the model's folder", shown(uri)), kAllowed);
+  }
+  if (!fs::is_regular_file(real)) {
+    refuse(file, place,
+           fmt::format("URI '{}', {}", shown(uri), fs::is_directory(real) ? "a folder" : "no regular file"),
+           kAllowed);
+  }
+  return real;
+}
+
+}  // namespace clpv

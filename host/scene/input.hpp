@@ -1,0 +1,34 @@
+// Reading untrusted files: whole, bounded, and only from where a scene may read.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clpv {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Throws Error(bad_input): "FILE: PLACE: found FOUND; allowed: ALLOWED". PLACE is a JSON pointer or empty.
+[[noreturn]] void refuse(const std::string& file, std::string_view place, std::string_view found,
+                         std::string_view allowed);
+
+/// A regular file's contents. `place` names who asked for it. Throws Error(bad_input) where it is missing, no
+/// regular file, unreadable, or longer than `limit` bytes.
+Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const std::string& file,
+                std::string_view place = {});
+
+/// Parses JSON whose nesting is bounded first. Throws Error(bad_input) with line and column of a syntax
+/// error.
+nlohmann::json parse_json(std::string_view text, const std::string& file);
+
+/// The file that a relative URI of `file` means, percent-decoded, links resolved.
+/// Throws Error(bad_input) for schemes, absolute paths, whatever leaves `folder`, and what is no regular
+/// file.
+std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri,
+                                  const std::string& file, std::string_view place);
+
+}  // namespace clpv

@@ -1,0 +1,182 @@
+#include "scene/texture_image.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <atomic>
+#include <exception>
+#include <future>
+#include <map>
+#include <optional>
+#include <thread>
+
+#include "scene/bounds.hpp"
+#include "scene/image_header.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+/// An encoded image, bounded and of known format, ready to be decoded.
+struct Encoded {
+  std::string place, name;
+  Bytes owned;                          ///< of a file or data URI
+  std::span<const std::uint8_t> bytes;  ///< owned, or part of a buffer
+  ImageHeader header;
+};
+
+std::string first_bytes(std::span<const std::uint8_t> bytes) {
+  std::string out;
+  for (const std::uint8_t byte : bytes.subspan(0, std::min<std::size_t>(bytes.size(), 8))) {
+    out += fmt::format("{}{:02x}", out.empty() ? "" : " ", byte);
+  }
+  return out;
+}
+
+void read_encoded(const GltfDocument& document, int index, Encoded& encoded) {
+  const GltfImage& image = document.images[static_cast<std::size_t>(index)];
+  encoded.place = fmt::format("/images/{}", index);
+  if (image.buffer_view) {
+    encoded.bytes = document.view(*image.buffer_view);
+    encoded.name = encoded.place;
+  } else if (image.uri.starts_with("data:")) {
+    encoded.owned = decode_data_uri(image.uri, document.file, encoded.place + "/uri");
+    encoded.bytes = encoded.owned;
+    encoded.name = encoded.place;
+  } else {
+    const auto path = resolve_uri(document.folder, image.uri, document.file, encoded.place + "/uri");
+    encoded.owned = read_file(path, bounds::kImageFileBytes, document.file, encoded.place + "/uri");
+    encoded.bytes = encoded.owned;
+    encoded.name = path.filename().string();
+  }
+}
+
+void check_encoded(const GltfDocument& document, Encoded& encoded) {
+  const auto header = read_image_header(encoded.bytes);
+  if (!header) {
+    refuse(document.file, encoded.place,
+           fmt::format("'{}' that begins with bytes {}", encoded.name, first_bytes(encoded.bytes)),
+           "a PNG or JPEG image, whatever its name");
+  }
+  if (header->width == 0 || header->height == 0 || header->width > bounds::kImageSide ||
+      header->height > bounds::kImageSide) {
+    refuse(document.file, encoded.place,
+           fmt::format("'{}' of {} x {} pixels", encoded.name, header->width, header->height),
+           fmt::format("1 to {} pixels a side", bounds::kImageSide));
+  }
+  if (!header->complete) {
+    refuse(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name), "a whole image");
+  }
+  encoded.header = *header;
+}
+
+/// 1 or 2 channels are grey (and alpha), 3 or 4 RGB (and alpha).
+std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& pixels, int channels) {
+  const std::size_t count = pixels.size() / static_cast<std::size_t>(channels);
+  std::vector<std::uint8_t> rgba(count * 4);
+  const bool grey = channels < 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* from = &pixels[i * static_cast<std::size_t>(channels)];
+    rgba[4 * i] = from[0];
+    rgba[4 * i + 1] = from[grey ? 0 : 1];
+    rgba[4 * i + 2] = from[grey ? 0 : 2];
+    rgba[4 * i + 3] = channels == 2 ? from[1] : channels >= 4 ? from[3] : 255;
+  }
+  return rgba;
+}
+
+std::vector<std::uint8_t> decode(const GltfDocument& document, const Encoded& encoded) {
+  const auto fail = [&](const std::string& why) {
+    refuse(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, why),
+           "a readable PNG or JPEG image");
+  };
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(encoded.bytes.data()), encoded.bytes.size());
+  const char* name = encoded.header.format == ImageFormat::png ? "memory.png" : "memory.jpg";
+  OIIO::ImageSpec wishes;
+  wishes["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not times alpha
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const auto input = OIIO::ImageInput::open(name, &wishes, proxy);
+  if (!input) fail(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width != static_cast<int>(encoded.header.width) ||
+      spec.height != static_cast<int>(encoded.header.height)) {
+    fail(fmt::format("its header says {} x {}, its decoder {} x {}", encoded.header.width,
+                     encoded.header.height, spec.width, spec.height));
+  }
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(spec.width) *
+                                   static_cast<std::size_t>(spec.height) *
+                                   static_cast<std::size_t>(spec.nchannels));
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, pixels.data()))
+    fail(input->geterror());
+  return spec.nchannels == 4 ? pixels : to_rgba(pixels, spec.nchannels);
+}
+
+/// Runs `work(i)` for i in 0..count-1 on all cores; the exception of the least i is the one rethrown.
+template <typename Work>
+void for_all(std::size_t count, const Work& work) {
+  std::vector<std::exception_ptr> failures(count);
+  std::atomic<std::size_t> next{0};
+  const auto worker = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::future<void>> workers;
+  const std::size_t threads = std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
+  for (std::size_t i = 1; i < threads; ++i) workers.push_back(std::async(std::launch::async, worker));
+  worker();
+  for (auto& each : workers) each.get();
+  for (const auto& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+}  // namespace
+
+std::vector<Texture> load_textures(const GltfDocument& document,
+                                   const std::vector<TextureRequest>& requests) {
+  std::map<int, std::size_t> slots;  // image -> place in `encoded`
+  for (const TextureRequest& request : requests) slots.try_emplace(request.image, 0);
+  std::vector<Encoded> encoded(slots.size());
+  std::vector<int> images;
+  for (auto& [image, slot] : slots) {
+    slot = images.size();
+    images.push_back(image);
+  }
+  std::uint64_t file_bytes = 0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    read_encoded(document, images[i], encoded[i]);
+    check_encoded(document, encoded[i]);
+    file_bytes += encoded[i].owned.size();
+    if (file_bytes > bounds::kBufferBytes) {
+      refuse(document.file, encoded[i].place, fmt::format("{} bytes of image files so far", file_bytes),
+             fmt::format("at most {} in all", bounds::kBufferBytes));
+    }
+  }
+  std::uint64_t texel_bytes = 0;
+  for (const TextureRequest& request : requests) {
+    const Encoded& image = encoded[slots[request.image]];
+    texel_bytes += 4ull * image.header.width * image.header.height;
+    if (texel_bytes > bounds::kTexelBytes) {
+      refuse(document.file, image.place, fmt::format("{} bytes of texels so far", texel_bytes),
+             fmt::format("at most {} in all", bounds::kTexelBytes));
+    }
+  }
+  std::vector<std::vector<std::uint8_t>> decoded(encoded.size());
+  for_all(encoded.size(), [&](std::size_t i) { decoded[i] = decode(document, encoded[i]); });
+  std::vector<Texture> textures;
+  for (const TextureRequest& request : requests) {
+    const std::size_t slot = slots[request.image];
+    const ImageHeader& header = encoded[slot].header;
+    textures.push_back(
+        {header.width, header.height, request.wrap_u, request.wrap_v, decoded[slot], encoded[slot].name});
+  }
+  return textures;
+}
+
+}  // namespace clpv
