@@ -98,15 +98,15 @@ Matrix Matrix::transposed() const {
   return r;
 }
 
-Matrix inverse(const Matrix& a) {
+Matrix solve(const Matrix& a, const Matrix& b) {
   const int n = a.rows();
   const std::vector<Wide> lower = cholesky(a);
   const auto l = [&](int i, int j) { return lower[static_cast<std::size_t>(i) * n + j]; };
-  Matrix r(n, n);
+  Matrix r(n, b.columns());
   std::vector<Wide> x(static_cast<std::size_t>(n));
-  for (int column = 0; column < n; ++column) {
+  for (int column = 0; column < b.columns(); ++column) {
     for (int i = 0; i < n; ++i) {
-      Wide sum = i == column ? 1 : 0;
+      Wide sum = b(i, column);
       for (int k = 0; k < i; ++k) sum -= l(i, k) * x[static_cast<std::size_t>(k)];
       x[static_cast<std::size_t>(i)] = sum / l(i, i);
     }
@@ -118,6 +118,10 @@ Matrix inverse(const Matrix& a) {
     for (int i = 0; i < n; ++i) r(i, column) = static_cast<double>(x[static_cast<std::size_t>(i)]);
   }
   return r;
+}
+
+Matrix inverse(const Matrix& a) {
+  return solve(a, Matrix::identity(a.rows()));
 }
 
 double condition_number(const Matrix& a) {

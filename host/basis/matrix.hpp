@@ -38,6 +38,9 @@ class Matrix {
   std::vector<double> values_;
 };
 
+/// X with A X = B for a symmetric positive definite A, in extended precision: relative error 1e-19 times A's
+/// condition number plus a rounding. Throws Error(run_time) where A is not.
+Matrix solve(const Matrix& a, const Matrix& b);
 /// Inverse of a symmetric positive definite matrix. Throws Error(run_time) where it is not.
 Matrix inverse(const Matrix& a);
 /// Ratio of the largest to the smallest eigenvalue of a symmetric positive definite matrix.
