@@ -84,54 +84,56 @@ std::vector<std::string> mean_blocker(LinearCode& code, const glm::ivec3& normal
   return means;
 }
 
-/// 1 - clamp(B, 0, 1) for each given direction, looked up in one mean blocker.
-void transmit(LinearCode& code, const Basis& basis, const Mirrors& mirrors, const glm::ivec3& normal,
-              const std::vector<glm::dvec3>& directions, const std::vector<int>& ways,
-              std::string& assignments) {
+struct Generated {
+  std::string neighbours;  // body of CLPV_EACH_NEIGHBOUR
+  LinearCode arrive, transmittance;
+  std::vector<std::string> gains;
+  std::string transmittances;  // declarations of t0, t1, ...
+  std::vector<int> ways;       // which of them there are
+  int count = 0;
+};
+
+/// Declares t<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker looked up in
+/// its direction in the mean over the corners towards `normal`.
+void transmit(Generated& out, const Basis& basis, const Mirrors& mirrors, const glm::ivec3& normal,
+              const std::vector<glm::dvec3>& directions, const std::vector<int>& ways) {
+  LinearCode& code = out.transmittance;
   const auto corners = static_cast<double>(corners_towards(normal).size());
   Matrix rows(static_cast<int>(directions.size()), basis.size());
   for (int r = 0; r < rows.rows(); ++r) {
     basis.evaluate(directions[static_cast<std::size_t>(r)], rows.row(r));
-    for (double& value : rows.row(r)) value /= corners;
+    for (double& value : rows.row(r)) value *= 0.5 / corners;
   }
   const int moving = (normal.x != 0) + (normal.y != 0) + (normal.z != 0);
   const auto symmetries = moving == 1 ? mirrors.across(axis_of(normal)) : std::vector<SignedPermutation>{};
-  const auto blockers = code.product(rows, mean_blocker(code, normal, basis.size()), symmetries);
+  const auto halves = code.product(rows, mean_blocker(code, normal, basis.size()), symmetries);
   for (std::size_t r = 0; r < ways.size(); ++r) {
     const std::string through =
-        code.name(fmt::format("1.0f - clamp({}, 0.0f, 1.0f)", blockers[r]), {.additions = 3});
-    assignments += fmt::format("  t.t{} = {};\n", ways[r], through);
+        code.name(fmt::format("0.5f + (fabs(0.5f - {0}) - fabs({0}))", halves[r]), {.additions = 3});
+    out.transmittances += fmt::format("  const float t{} = {};\n", ways[r], through);
+    out.ways.push_back(ways[r]);
   }
 }
 
-struct Generated {
-  std::string neighbours, arguments;  // CLPV_EACH_NEIGHBOUR's body, CLPV_NEIGHBOUR_ARGUMENTS
-  LinearCode arrive, transmittance;
-  std::vector<std::string> gains;
-  std::string transmittances;  // assignments to t
-  int count = 0, ways = 0;
-};
-
 void add_neighbour(Generated& out, const glm::ivec3& travel) {
   out.neighbours += fmt::format(" DO({}, {}, {}, {})", out.count, -travel.x, -travel.y, -travel.z);
-  out.arguments += fmt::format("{}a{}", out.count == 0 ? "" : ", ", out.count);
   ++out.count;
 }
 
 /// Fluxes of the travelling state through the 30 faces: F = flux . c, or with fluxes travelling F = (flux L)
 /// . phi.
-Matrix face_rows(const FaceTransport& faces, State source) {
+Matrix half_face_rows(const FaceTransport& faces, State source) {
   const int n = static_cast<int>(faces.faces.front().flux.size());
   Matrix rows(static_cast<int>(faces.faces.size()), n);
   for (int f = 0; f < rows.rows(); ++f) {
     for (int i = 0; i < n; ++i)
-      rows(f, i) = faces.faces[static_cast<std::size_t>(f)].flux[static_cast<std::size_t>(i)];
+      rows(f, i) = 0.5 * faces.faces[static_cast<std::size_t>(f)].flux[static_cast<std::size_t>(i)];
   }
   return source == State::fluxes ? rows * faces.lobes : rows;
 }
 
 void generate_faces(Generated& out, const Basis& basis, const FaceTransport& faces, const StepForm& form) {
-  const Matrix rows = face_rows(faces, form.source);
+  const Matrix rows = half_face_rows(faces, form.source);
   const Mirrors mirrors = mirrors_of(basis, form.source);
   std::array<std::string, 6> through;
   through.fill("0.0f");
@@ -144,21 +146,20 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
                                            mirrors.across(axis_of(travel)));
     for (int f = 0; f < 5; ++f) {
       const int way = 5 * k + f;
-      std::string flux = out.arrive.name(fmt::format("fmax({}, 0.0f)", fluxes[static_cast<std::size_t>(f)]),
-                                         {.additions = 1});
+      const std::string& half = fluxes[static_cast<std::size_t>(f)];
+      std::string flux = out.arrive.name(fmt::format("{0} + fabs({0})", half), {.additions = 1});
       std::string& sum =
           through[static_cast<std::size_t>(axis_index(faces.faces[static_cast<std::size_t>(way)].normal))];
       if (!form.blocking) {
         sum = out.arrive.add(sum, flux);
       } else if (sum == "0.0f") {
-        sum = out.arrive.name(fmt::format("{} * t.t{}", flux, way), {.multiplications = 1});
+        sum = out.arrive.name(fmt::format("{} * t{}", flux, way), {.multiplications = 1});
       } else {
-        sum = out.arrive.name(fmt::format("fma({}, t.t{}, {})", flux, way, sum), {.fused = 1});
+        sum = out.arrive.name(fmt::format("fma({}, t{}, {})", flux, way, sum), {.fused = 1});
       }
     }
     add_neighbour(out, travel);
   }
-  out.ways = 30;
   const std::vector<std::string> received(through.begin(), through.end());
   if (form.target == State::fluxes) {
     out.gains = received;
@@ -177,8 +178,7 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
       directions.push_back(-face.direction);
       ways.push_back(f);
     }
-    transmit(out.transmittance, basis, blocker_mirrors, kAxes[static_cast<std::size_t>(n)], directions, ways,
-             out.transmittances);
+    transmit(out, basis, blocker_mirrors, kAxes[static_cast<std::size_t>(n)], directions, ways);
   }
 }
 
@@ -220,15 +220,13 @@ void generate_operators(Generated& out, const Basis& basis, const OperatorTransp
     }
     const bool blocked = form.blocking && neighbour.offset != glm::ivec3(0);
     for (const std::string& field : fields(fmt::format("a{}", k), n)) {
-      inputs.push_back(blocked ? fmt::format("({} * t.t{})", field, k) : field);
+      inputs.push_back(blocked ? fmt::format("({} * t{})", field, k) : field);
     }
     if (blocked) {
-      transmit(out.transmittance, basis, mirrors, -neighbour.offset, {-neighbour.direction}, {k},
-               out.transmittances);
+      transmit(out, basis, mirrors, -neighbour.offset, {-neighbour.direction}, {k});
     }
     add_neighbour(out, neighbour.offset);
   }
-  out.ways = count;
   for (int r = 0; form.blocking && r < static_cast<int>(inputs.size()); ++r) {
     bool used = false;
     for (int row = 0; row < n; ++row) used = used || rows(row, r) != 0;
@@ -245,7 +243,7 @@ void generate_operators(Generated& out, const Basis& basis, const OperatorTransp
 }
 
 std::string expand_function(const Transport& transport, const Basis& basis, State target) {
-  std::string text = "static inline Coefficients clpv_expand(const Target sum) {\n";
+  std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target sum) {\n";
   if (target == State::coefficients) {
     text += "  Coefficients r;\n";
     for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = sum.c{0};\n", i);
@@ -260,22 +258,22 @@ std::string expand_function(const Transport& transport, const Basis& basis, Stat
   return text + "  return r;\n}\n";
 }
 
-std::string functions(const Generated& out, const StepForm& form) {
+/// `statements` as the body of a macro. Not a function: compilers that pass structs in vector registers would keep
+/// work-items from being vectorised.
+std::string macro(const std::string& name, const std::string& statements) {
+  std::string text = "#define " + name;
+  for (const char c : statements) text += c == '\n' ? std::string(" \\\n") : std::string(1, c);
+  return text + "\n\n";
+}
+
+std::string macros(const Generated& out, const StepForm& form) {
   std::string text;
-  if (form.blocking) {
-    text += "typedef struct {\n";
-    for (int w = 0; w < out.ways; ++w) text += fmt::format("  float t{};\n", w);
-    text += "} Transmittance;\nstatic inline Transmittance clpv_transmittance(";
-    for (int c = 0; c < kCorners; ++c) text += fmt::format("{}const Coefficients g{}", c == 0 ? "" : ", ", c);
-    text +=
-        ") {\n" + out.transmittance.text() + "  Transmittance t;\n" + out.transmittances + "  return t;\n}\n";
-  }
-  text += "static inline Target clpv_arrive(";
-  for (int k = 0; k < out.count; ++k) text += fmt::format("{}const Source a{}", k == 0 ? "" : ", ", k);
-  if (form.blocking) text += ", const Transmittance t";
-  text += ") {\n" + out.arrive.text() + "  Target r;\n";
-  for (std::size_t i = 0; i < out.gains.size(); ++i) text += fmt::format("  r.c{} = {};\n", i, out.gains[i]);
-  return text + "  return r;\n}\n";
+  if (form.blocking)
+    text += macro("CLPV_TRANSMITTANCE", "\n" + out.transmittance.text() + out.transmittances);
+  std::string gained = "\n" + out.arrive.text() + "  Target gained;\n";
+  for (std::size_t i = 0; i < out.gains.size(); ++i)
+    gained += fmt::format("  gained.c{} = {};\n", i, out.gains[i]);
+  return text + macro("CLPV_ARRIVE", gained);
 }
 
 }  // namespace
@@ -302,9 +300,8 @@ TransportSource transport_source(const Basis& basis, const Transport& transport,
                 cell_macros("Target", "TARGET", result.target_count) +
                 fmt::format("#define CLPV_SOURCE_N {}\n#define CLPV_TARGET_N {}\n", result.source_count,
                             result.target_count) +
-                fmt::format("#define CLPV_EACH_NEIGHBOUR(DO){}\n#define CLPV_NEIGHBOUR_ARGUMENTS {}\n",
-                            out.neighbours, out.arguments) +
-                functions(out, form) + expand_function(transport, basis, form.target);
+                fmt::format("#define CLPV_EACH_NEIGHBOUR(DO){}\n", out.neighbours) + macros(out, form) +
+                expand_function(transport, basis, form.target);
   return result;
 }
 

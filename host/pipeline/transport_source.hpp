@@ -21,13 +21,12 @@ struct StepForm {
   bool blocking = false;
 };
 
-/// Generated text and its cost. The text defines, for kernels/propagate.cl,
-///   CLPV_SOURCE_N, CLPV_EACH_SOURCE(DO), CLPV_TARGET_N, CLPV_EACH_TARGET(DO), CLPV_N,
-///   CLPV_EACH_COEFFICIENT(DO) CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz): light arrives from the cell at (x
-///   + dx, y + dy, z + dz) CLPV_NEIGHBOUR_ARGUMENTS  a0, a1, ... : what those cells hold static Transmittance
-///   clpv_transmittance(g0 .. g7)         with blocking: 1 - B of each way, from the 8 corners static Target
-///   clpv_arrive(a0, ..., [Transmittance t])     what the cell gains static Coefficients clpv_expand(Target
-///   sum)               the coefficients of a sum of gains
+/// Generated text and its cost. The text defines, for kernels/propagate.cl, the structs Source, Target and Coefficients
+/// with their counts and CLPV_EACH_ macros (cell_macros), and
+///   CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz): light arrives from the cell at (x + dx, y + dy, z + dz)
+///   CLPV_TRANSMITTANCE        with blocking: declares t0, t1, ... = 1 - B of each way, from corners g0 .. g7
+///   CLPV_ARRIVE               declares `gained`, what the cell gains from its neighbours a0, a1, ... (and t0, t1, ...)
+///   clpv_expand(sum)          the coefficients of a sum of gains
 struct TransportSource {
   std::string text;
   OperationCount arrive;         ///< a cell and channel

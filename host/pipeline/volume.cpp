@@ -64,7 +64,10 @@ std::string cell_macros(const std::string& type, const std::string& each, int co
 }
 
 std::string coefficient_macros(int coefficients) {
-  return fmt::format("#define CLPV_N {}\n", coefficients) +
+  // Inlined by the compiler's front end: left to later passes, structs would be passed in memory or in vector registers,
+  // and work-items would no longer vectorise on CPU devices.
+  return "#define CLPV_INLINE static inline __attribute__((always_inline))\n" +
+         fmt::format("#define CLPV_N {}\n", coefficients) +
          cell_macros("Coefficients", "COEFFICIENT", coefficients);
 }
 

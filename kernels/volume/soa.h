@@ -24,11 +24,11 @@
 #define CLPV_PITCH (CLPV_VOLUME_N + 2)
 #define CLPV_PLANE (CLPV_PITCH * CLPV_PITCH * CLPV_PITCH)
 
-static inline int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
+CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
   return channel * (CLPV_VOLUME_COUNT * CLPV_PLANE) + ((z + 1) * CLPV_PITCH + (y + 1)) * CLPV_PITCH + (x + 1);
 }
 
-static inline CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volume, const int channel, const int x,
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volume, const int channel, const int x,
                                                              const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
   CLPV_VOLUME_CELL cell;
@@ -38,7 +38,7 @@ static inline CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volu
   return cell;
 }
 
-static inline void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_VOLUME_OUT volume, const int channel, const int x, const int y,
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_VOLUME_OUT volume, const int channel, const int x, const int y,
                                                   const int z, const CLPV_VOLUME_CELL cell) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
 #define CLPV_DO(i) volume[at + i * CLPV_PLANE] = cell.c##i;
@@ -46,7 +46,7 @@ static inline void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_VOLUME_OUT volume, const 
 #undef CLPV_DO
 }
 
-static inline CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_VOLUME_IN volume, const int channel, const float x,
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_VOLUME_IN volume, const int channel, const float x,
                                                                const float y, const float z) {
   const float top = (float)(CLPV_VOLUME_N - 1);
   const float px = clamp(x, 0.0f, top), py = clamp(y, 0.0f, top), pz = clamp(z, 0.0f, top);
