@@ -1,0 +1,165 @@
+#include "pipeline/gather.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+// 64 pixels of a row share cells; 4 rows a group measured no slower than 1 and keeps the group count low.
+constexpr std::size_t kLocalX = 64, kLocalY = 1;
+constexpr double kNegligible =
+    1e-12;  // quadrature's noise in a matrix whose entry is 0; the others are near 1
+
+std::size_t pairs(int coefficients) {
+  return static_cast<std::size_t>(coefficients + 1) / 2;
+}
+
+/// CLPV_EACH_PAIR: of an odd number of coefficients the last is paired with zero.
+std::string pair_macros(int coefficients) {
+  std::string text = "#define CLPV_NONE(a) 0.0f\n", each = "#define CLPV_EACH_PAIR(DO)";
+  for (int i = 0; i < coefficients; ++i) text += fmt::format("#define CLPV_C{}(a) (a).c{}\n", i, i);
+  for (int i = 0; i < coefficients; i += 2) {
+    const std::string odd = i + 1 < coefficients ? fmt::format("CLPV_C{}", i + 1) : "CLPV_NONE";
+    each += fmt::format(" DO({}, CLPV_C{}, {})", i / 2, i, odd);
+  }
+  return text + each + "\n";
+}
+
+/// g(n): 4 b(-n), or alpha(-n) K.
+std::string gather_weights(const Transport& transport, int coefficients) {
+  std::string text = "static Coefficients clpv_gather_weights(const float3 n) {\n";
+  text += fmt::format("  const Coefficients a = {}(-n.x, -n.y, -n.z);\n  Coefficients g;\n",
+                      transport.gathers_cosine ? "clpv_cosine_integrals" : "clpv_basis");
+  for (int j = 0; j < coefficients; ++j) {
+    std::string sum;
+    for (int i = 0; i < coefficients; ++i) {
+      const double weight = transport.gathers_cosine ? transport.gather(i, j) : (i == j ? 4.0 : 0.0);
+      if (std::abs(weight) < kNegligible) continue;
+      const std::string literal = float_literal(weight);
+      sum = sum.empty() ? fmt::format("{} * a.c{}", literal, i)
+                        : fmt::format("fma({}, a.c{}, {})", literal, i, sum);
+    }
+    text += fmt::format("  g.c{} = {};\n", j, sum.empty() ? "0.0f" : sum);
+  }
+  return text + "  return g;\n}\n";
+}
+
+std::string floor_weights(const Basis& basis, const Transport& transport, double floor) {
+  std::string text = "static Coefficients clpv_floor_weights(void) {\n  Coefficients g;\n";
+  const double share = floor * isotropic_share(basis, transport);
+  for (int i = 0; i < basis.size(); ++i) {
+    text += fmt::format("  g.c{} = {};\n", i,
+                        float_literal(share * basis.integrals()[static_cast<std::size_t>(i)]));
+  }
+  return text + "  return g;\n}\n";
+}
+
+ProgramSource source_of(const Basis& basis, const Transport& transport, const GatherOptions& options) {
+  ProgramSource source{.file = "gather.cl"};
+  source.literals = {{"CLPV_GRID", std::to_string(options.grid)},
+                     {"CLPV_PAIRS", std::to_string(pairs(basis.size()))},
+                     {"CLPV_GATHER_OFFSET", float_literal(options.gather_offset)},
+                     {"CLPV_INVERSE_BLEND", float_literal(1 / options.blend_cells)},
+                     {"CLPV_LATE", options.late_light ? "1" : "0"},
+                     {"CLPV_FLOORED", options.floor > 0 ? "1" : "0"}};
+  source.generated = coefficient_macros(basis.size()) + pair_macros(basis.size()) + basis.kernel_source() +
+                     gather_weights(transport, basis.size());
+  if (options.floor > 0) source.generated += floor_weights(basis, transport, options.floor);
+  return source;
+}
+
+void require_sound(const GatherOptions& options) {
+  if (options.grid < 1) throw Error(ExitCode::usage, "gather: grid {} is not at least 1", options.grid);
+  if (!std::isfinite(options.gather_offset)) {
+    throw Error(ExitCode::usage, "gather: offset {} is not finite", options.gather_offset);
+  }
+  if (!(options.blend_cells > 0)) {
+    throw Error(ExitCode::usage, "gather: blend over {} cells; more than 0 allowed", options.blend_cells);
+  }
+  if (!(options.floor >= 0 && options.floor <= 1)) {
+    throw Error(ExitCode::usage, "gather: floor {} outside 0..1", options.floor);
+  }
+}
+
+}  // namespace
+
+double isotropic_share(const Basis& basis, const Transport& transport) {
+  if (!transport.gathers_cosine) return 1 / std::numbers::pi;  // 4 I / s^2, I = energy / (4 pi)
+  // The mean over n of alpha_i(n) is Int b_i dw / 4.
+  return basis.energy(transport.gather * basis.constant()) / (4 * 4 * std::numbers::pi);
+}
+
+Gatherer::Gatherer(Session& session, const Basis& basis, const Transport& transport,
+                   const GatherOptions& options)
+    : session_(session), options_(options), coefficients_(basis.size()) {
+  require_sound(options);
+  const ProgramSource source = source_of(basis, transport, options);
+  pack_ = session.kernel(source, "pack");
+  gather_ = session.kernel(source, "gather");
+}
+
+void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
+                           const std::vector<const Volume*>& volumes, std::size_t expected) const {
+  if (camera.format != RsmFormat::float32)
+    throw Error(ExitCode::run_time, "gather: the camera's view is not float32");
+  if (volumes.size() != expected) {
+    throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades, {} expected", volumes.size(),
+                grids.size(), expected);
+  }
+  for (const Volume* volume : volumes) {
+    const VolumeShape& shape = volume->shape();
+    if (shape.n != options_.grid || shape.coefficients != coefficients_ || shape.channels != 3) {
+      throw Error(ExitCode::run_time,
+                  "gather: volume of {}^3 cells, {} coefficients, {} channels; made for {}^3, {}, 3", shape.n,
+                  shape.coefficients, shape.channels, options_.grid, coefficients_);
+    }
+  }
+}
+
+void Gatherer::reserve(std::size_t volumes, std::size_t cascades) {
+  const auto n = static_cast<std::size_t>(options_.grid);
+  if (volumes > reserved_volumes_) {
+    packed_ = session_.buffer(volumes * n * n * n * pairs(coefficients_) * sizeof(cl_float8),
+                              "gather's packed volumes");
+    reserved_volumes_ = volumes;
+  }
+  if (cascades > reserved_grids_) {
+    grids_ = session_.buffer(cascades * sizeof(ClpvGrid), "gather's grids");
+    reserved_grids_ = cascades;
+  }
+}
+
+void Gatherer::pack(const Volume& volume, std::size_t slot) {
+  const auto n = static_cast<std::size_t>(options_.grid);
+  pack_.setArg(0, volume.buffer());
+  pack_.setArg(1, packed_);
+  pack_.setArg(2, static_cast<cl_uint>(slot * n * n * n));
+  session_.launch(pack_, cl::NDRange(n, n, n), cl::NDRange(n, 1, 1));
+}
+
+void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
+                      const std::vector<const Volume*>& accumulated, const std::vector<const Volume*>& late,
+                      cl::Buffer& irradiance) {
+  require_fit(camera, grids, accumulated, grids.size());
+  require_fit(camera, grids, late, options_.late_light ? grids.size() : 0);
+  const std::size_t per_cascade = options_.late_light ? 2 : 1;
+  reserve(grids.size() * per_cascade, grids.size());
+  session_.write(grids_, grids);
+  for (std::size_t c = 0; c < grids.size(); ++c) {
+    pack(*accumulated[c], c * per_cascade);
+    if (options_.late_light) pack(*late[c], c * per_cascade + 1);
+  }
+  gather_.setArg(0, camera.view);
+  gather_.setArg(1, camera.depth);
+  gather_.setArg(2, camera.normal);
+  gather_.setArg(3, grids_);
+  gather_.setArg(4, static_cast<cl_uint>(grids.size()));
+  gather_.setArg(5, packed_);
+  gather_.setArg(6, irradiance);
+  session_.launch(gather_, cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocalX, kLocalY));
+}
+
+}  // namespace clpv

@@ -1,0 +1,63 @@
+// Stage `gather`: volumes and the camera's G-buffer in, irradiance of every pixel out (kernels/gather.cl).
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "device/session.hpp"
+#include "kernels/shared/grid.h"
+#include "pipeline/surface.hpp"
+#include "pipeline/volume.hpp"
+
+namespace clpv {
+
+struct GatherOptions {
+  int grid = 32;               ///< cells along each axis of every cascade
+  double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
+  double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
+  bool late_light = false;     ///< add the late light of coarser cascades
+  double floor = 0;            ///< E is at least so much of its value were the light isotropic, in [0, 1]
+};
+
+/// Isotropic light of energy Int I dw puts isotropic_share(...) Int I dw / s^2 on a surface, averaged over
+/// the surface's normal: 1/pi by the face transports' convention, kappa/4 for an operator that moves light by
+/// kappa cells.
+double isotropic_share(const Basis& basis, const Transport& transport);
+
+/// The gathering of one basis and transport. E(n) = g(n) . c / s^2 with g of Transport::gather, c the volume
+/// sampled trilinearly `gather_offset` cells off the surface, negative E clamped at 0.
+///
+/// Which cascade lights a surface depends on the surface point alone: cascade i has the share
+/// m_i = min(1, cells to its boundary / blend_cells) of what finer ones left. So light is continuous across
+/// cascades, fades out towards the coarsest one's boundary, and is 0 outside. With late light, cascade i adds
+/// its late sum to all that finer ones lit: m_i (1 - left_i).
+class Gatherer {
+ public:
+  /// Throws Error(usage) for options out of range.
+  Gatherer(Session& session, const Basis& basis, const Transport& transport, const GatherOptions& options);
+
+  /// Finest cascade first; `accumulated` a volume a grid, `late` too where options.late_light, else empty.
+  /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
+  /// there is no surface. Throws Error(run_time) where counts or shapes do not fit, or the device's memory
+  /// does not suffice.
+  void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
+              const std::vector<const Volume*>& accumulated, const std::vector<const Volume*>& late,
+              cl::Buffer& irradiance);
+
+ private:
+  void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
+                   const std::vector<const Volume*>& volumes, std::size_t expected) const;
+  void reserve(std::size_t volumes, std::size_t cascades);
+  void pack(const Volume& volume, std::size_t slot);
+
+  Session& session_;
+  GatherOptions options_;
+  int coefficients_;
+  cl::Kernel pack_, gather_;
+  cl::Buffer packed_, grids_;
+  std::size_t reserved_volumes_ = 0, reserved_grids_ = 0;
+};
+
+}  // namespace clpv

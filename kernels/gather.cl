@@ -1,0 +1,128 @@
+// Gather: the irradiance [W/m^2] that the volumes put on every surface the camera sees.
+//
+//   E(n) = g(n) . c / s^2,   c the coefficients sampled trilinearly at p + offset s n,
+//   g(n) = 4 b(-n) or alpha(-n) K by transport (host/basis/transport.hpp), E clamped at 0 after the dot product.
+// A cascade weighs min(1, distance to its boundary / CLPV_BLEND), the distance in cells at p itself; finer ones come
+// first and a coarser one gets what they left. So E is continuous everywhere, and 0 outside all cascades.
+//
+// Two kernels. `pack` brings a cascade's volume, whatever its layout, to one record a cell: CLPV_PAIRS float8, each
+// two coefficients as (r g b 0)(r g b 0). `gather` then reads the eight cells round a point as whole vectors, where
+// planes would take 24 N scalar reads.
+//
+// The host writes, beside the literals below and the basis's functions,
+//   CLPV_EACH_PAIR(DO)     DO(j, e, o) a pair j of coefficients: e, o are CLPV_EVEN/CLPV_ODD accessors' arguments
+//   clpv_gather_weights(n), clpv_floor_weights()
+#include "volume/light.h"
+#include "shared/grid.h"
+#include "surface.h"
+
+#ifndef CLPV_LATE
+#define CLPV_LATE 0  // 1: coarser cascades add their late light; the packed volumes are then full, late, full, ...
+#endif
+#ifndef CLPV_FLOORED
+#define CLPV_FLOORED 0  // 1: E is at least clpv_floor_weights() . c / s^2
+#endif
+
+#define CLPV_CELLS (CLPV_GRID * CLPV_GRID * CLPV_GRID)
+
+// `first`: index of the volume's first cell among the packed ones.
+__kernel void pack(CLPV_VOLUME_IN volume, __global float8* packed, const uint first) {
+  const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
+  if (x >= CLPV_GRID) return;
+  const Coefficients r = light_load(volume, 0, x, y, z);
+  const Coefficients g = light_load(volume, 1, x, y, z);
+  const Coefficients b = light_load(volume, 2, x, y, z);
+  __global float8* cell = packed + (size_t)(first + (z * CLPV_GRID + y) * CLPV_GRID + x) * CLPV_PAIRS;
+#define CLPV_DO(j, even, odd) \
+  cell[j] = (float8)(even(r), even(g), even(b), 0.0f, odd(r), odd(g), odd(b), 0.0f);
+  CLPV_EACH_PAIR(CLPV_DO)
+#undef CLPV_DO
+}
+
+// One record: the coefficients of a cell, or of a point between cells.
+typedef struct {
+#define CLPV_DO(j, even, odd) float8 p##j;
+  CLPV_EACH_PAIR(CLPV_DO)
+#undef CLPV_DO
+} Packed;
+
+// Trilinear at `at`, in cells from the first cell's centre; points beyond the outermost centres take their value.
+static inline Packed clpv_sample(__global const float8* volume, const float3 at) {
+  const float3 p = clamp(at, 0.0f, (float)(CLPV_GRID - 1));
+  const float3 low = floor(p), t = p - low;
+  const int x = (int)low.x, y = (int)low.y, z = (int)low.z;
+  const int dx = x + 1 < CLPV_GRID ? CLPV_PAIRS : 0;
+  const int dy = y + 1 < CLPV_GRID ? CLPV_GRID * CLPV_PAIRS : 0;
+  const int dz = z + 1 < CLPV_GRID ? CLPV_GRID * CLPV_GRID * CLPV_PAIRS : 0;
+  __global const float8* v00 = volume + ((z * CLPV_GRID + y) * CLPV_GRID + x) * CLPV_PAIRS;
+  __global const float8* v10 = v00 + dy;
+  __global const float8* v01 = v00 + dz;
+  __global const float8* v11 = v01 + dy;
+  const float w00 = (1.0f - t.y) * (1.0f - t.z), w10 = t.y * (1.0f - t.z), w01 = (1.0f - t.y) * t.z, w11 = t.y * t.z;
+  const float8 a00 = w00 * (1.0f - t.x), a10 = w10 * (1.0f - t.x), a01 = w01 * (1.0f - t.x), a11 = w11 * (1.0f - t.x);
+  const float8 b00 = w00 * t.x, b10 = w10 * t.x, b01 = w01 * t.x, b11 = w11 * t.x;
+  Packed r;
+#define CLPV_DO(j, even, odd)                                                                 \
+  r.p##j = fma(a00, v00[j], b00 * v00[j + dx]) + fma(a10, v10[j], b10 * v10[j + dx]) +        \
+           fma(a01, v01[j], b01 * v01[j + dx]) + fma(a11, v11[j], b11 * v11[j + dx]);
+  CLPV_EACH_PAIR(CLPV_DO)
+#undef CLPV_DO
+  return r;
+}
+
+// weights . coefficients, a channel.
+static inline float3 clpv_weigh(const Coefficients weights, const Packed sampled) {
+  float8 sum = 0.0f;
+#define CLPV_DO(j, even, odd) \
+  sum = fma((float8)((float4)(even(weights)), (float4)(odd(weights))), sampled.p##j, sum);
+  CLPV_EACH_PAIR(CLPV_DO)
+#undef CLPV_DO
+  return sum.lo.xyz + sum.hi.xyz;
+}
+
+// E s^2 of one volume.
+static inline float3 clpv_irradiance(__global const float8* volume, const float3 at, const Coefficients weights) {
+  const Packed sampled = clpv_sample(volume, at);
+  float3 least = 0.0f;
+#if CLPV_FLOORED
+  least = max(clpv_weigh(clpv_floor_weights(), sampled), 0.0f);
+#endif
+  return max(clpv_weigh(weights, sampled), least);
+}
+
+__kernel void gather(const ClpvView view, __global const float* depths, __global const SurfaceTexel* normals,
+                     __global const ClpvGrid* grids, const uint cascades, __global const float8* packed,
+                     __global float4* irradiance) {
+  const uint px = get_global_id(0), py = get_global_id(1);
+  if (px >= view.width || py >= view.height) return;
+  const uint pixel = py * view.width + px;
+  const float depth = depths[pixel];
+  float3 sum = 0.0f;
+  if (depth > 0.0f) {
+    const float3 position = clpv_position(view, (float)px, (float)py, depth);
+    const float3 normal = clpv_load_normal(normals, pixel);
+    const Coefficients weights = clpv_gather_weights(normal);
+    float left = 1.0f;  // what finer cascades left to this one
+    for (uint c = 0; c < cascades; ++c) {
+      const float cell = grids[c].cell;
+      const float3 at = (position - clpv_float3(grids[c].origin)) / cell;
+      const float3 inside = min(at, (float)CLPV_GRID - at);
+      const float share = clamp(fmin(fmin(inside.x, inside.y), inside.z) * CLPV_INVERSE_BLEND, 0.0f, 1.0f);
+      if (share == 0.0f) continue;
+      const float3 point = at + CLPV_GATHER_OFFSET * normal - 0.5f;
+      const float scale = share / (cell * cell);
+      __global const float8* volume = packed + (size_t)c * (1 + CLPV_LATE) * CLPV_CELLS * CLPV_PAIRS;
+      if (left > 0.0f) sum += scale * left * clpv_irradiance(volume, point, weights);
+#if CLPV_LATE
+      if (left < 1.0f) {
+        sum += scale * (1.0f - left) * clpv_irradiance(volume + CLPV_CELLS * CLPV_PAIRS, point, weights);
+      }
+#endif
+      left *= 1.0f - share;
+#if !CLPV_LATE
+      if (left == 0.0f) break;
+#endif
+    }
+  }
+  irradiance[pixel] = (float4)(sum, 0.0f);
+}
