@@ -10,8 +10,8 @@
 // planes would take 24 N scalar reads.
 //
 // The host writes, beside the literals below and the basis's functions,
-//   CLPV_EACH_PAIR(DO)     DO(j, e, o) a pair j of coefficients: e, o are CLPV_EVEN/CLPV_ODD accessors' arguments
-//   clpv_gather_weights(n), clpv_floor_weights()
+//   CLPV_EACH_PAIR(DO)    writes DO(j, even, odd) for each pair j; even(c), odd(c) are its members of Coefficients c
+//   Coefficients clpv_gather_weights(float3 n), Coefficients clpv_floor_weights(void)
 #include "volume/light.h"
 #include "shared/grid.h"
 #include "surface.h"
@@ -23,6 +23,10 @@
 #define CLPV_FLOORED 0  // 1: E is at least clpv_floor_weights() . c / s^2
 #endif
 
+// From a record to its neighbours; a grid of one cell has none.
+#define CLPV_DX (CLPV_GRID > 1 ? CLPV_PAIRS : 0)
+#define CLPV_DY (CLPV_GRID * CLPV_DX)
+#define CLPV_DZ (CLPV_GRID * CLPV_DY)
 #define CLPV_CELLS (CLPV_GRID * CLPV_GRID * CLPV_GRID)
 
 // `first`: index of the volume's first cell among the packed ones.
@@ -47,24 +51,22 @@ typedef struct {
 } Packed;
 
 // Trilinear at `at`, in cells from the first cell's centre; points beyond the outermost centres take their value.
+// At the last centre the eight cells are those before it, so that their offsets are literals.
 static inline Packed clpv_sample(__global const float8* volume, const float3 at) {
   const float3 p = clamp(at, 0.0f, (float)(CLPV_GRID - 1));
-  const float3 low = floor(p), t = p - low;
-  const int x = (int)low.x, y = (int)low.y, z = (int)low.z;
-  const int dx = x + 1 < CLPV_GRID ? CLPV_PAIRS : 0;
-  const int dy = y + 1 < CLPV_GRID ? CLPV_GRID * CLPV_PAIRS : 0;
-  const int dz = z + 1 < CLPV_GRID ? CLPV_GRID * CLPV_GRID * CLPV_PAIRS : 0;
-  __global const float8* v00 = volume + ((z * CLPV_GRID + y) * CLPV_GRID + x) * CLPV_PAIRS;
-  __global const float8* v10 = v00 + dy;
-  __global const float8* v01 = v00 + dz;
-  __global const float8* v11 = v01 + dy;
-  const float w00 = (1.0f - t.y) * (1.0f - t.z), w10 = t.y * (1.0f - t.z), w01 = (1.0f - t.y) * t.z, w11 = t.y * t.z;
-  const float8 a00 = w00 * (1.0f - t.x), a10 = w10 * (1.0f - t.x), a01 = w01 * (1.0f - t.x), a11 = w11 * (1.0f - t.x);
-  const float8 b00 = w00 * t.x, b10 = w10 * t.x, b01 = w01 * t.x, b11 = w11 * t.x;
+  const float3 low = min(floor(p), (float)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0));
+  const float3 t = p - low;
+  const int3 cell = convert_int3(low);
+  __global const float8* v = volume + ((cell.z * CLPV_GRID + cell.y) * CLPV_GRID + cell.x) * CLPV_PAIRS;
+  const float8 tx = t.x, ty = t.y, tz = t.z;
+  const float8 w11 = ty * tz, w10 = ty - w11, w01 = tz - w11, w00 = 1.0f - ty - w01;
+  const float8 b00 = w00 * tx, b10 = w10 * tx, b01 = w01 * tx, b11 = w11 * tx;
+  const float8 a00 = w00 - b00, a10 = w10 - b10, a01 = w01 - b01, a11 = w11 - b11;
   Packed r;
-#define CLPV_DO(j, even, odd)                                                                 \
-  r.p##j = fma(a00, v00[j], b00 * v00[j + dx]) + fma(a10, v10[j], b10 * v10[j + dx]) +        \
-           fma(a01, v01[j], b01 * v01[j + dx]) + fma(a11, v11[j], b11 * v11[j + dx]);
+#define CLPV_DO(j, even, odd)                                                                      \
+  r.p##j = a00 * v[j] + b00 * v[j + CLPV_DX] + a10 * v[j + CLPV_DY] + b10 * v[j + CLPV_DX + CLPV_DY] + \
+           a01 * v[j + CLPV_DZ] + b01 * v[j + CLPV_DX + CLPV_DZ] + a11 * v[j + CLPV_DY + CLPV_DZ] +    \
+           b11 * v[j + CLPV_DX + CLPV_DY + CLPV_DZ];
   CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
   return r;
@@ -104,13 +106,14 @@ __kernel void gather(const ClpvView view, __global const float* depths, __global
     const Coefficients weights = clpv_gather_weights(normal);
     float left = 1.0f;  // what finer cascades left to this one
     for (uint c = 0; c < cascades; ++c) {
-      const float cell = grids[c].cell;
-      const float3 at = (position - clpv_float3(grids[c].origin)) / cell;
+      const ClpvGrid grid = grids[c];
+      const float per_cell = 1.0f / grid.cell;
+      const float3 at = (position - clpv_float3(grid.origin)) * per_cell;
       const float3 inside = min(at, (float)CLPV_GRID - at);
       const float share = clamp(fmin(fmin(inside.x, inside.y), inside.z) * CLPV_INVERSE_BLEND, 0.0f, 1.0f);
       if (share == 0.0f) continue;
       const float3 point = at + CLPV_GATHER_OFFSET * normal - 0.5f;
-      const float scale = share / (cell * cell);
+      const float scale = share * per_cell * per_cell;
       __global const float8* volume = packed + (size_t)c * (1 + CLPV_LATE) * CLPV_CELLS * CLPV_PAIRS;
       if (left > 0.0f) sum += scale * left * clpv_irradiance(volume, point, weights);
 #if CLPV_LATE
