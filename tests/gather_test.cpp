@@ -1,0 +1,402 @@
+// Gathering against closed forms: uniform and linear fields, seams between cascades, clamp, floor, late
+// light. Every field is gathered by the kernels and by the twin, and both are held against mathematics.
+#include "pipeline/gather.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "reference/check.hpp"
+#include "reference/gather.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int kGrid = 12;
+constexpr float kCell = 0.5f;         // of the finest cascade [m]
+constexpr double kFloat = 2e-6;       // relative: a dozen roundings of float32
+constexpr double kKappa = 0.6742128;  // mean of 1 / |w|_1: sh2's K under upwind transport
+constexpr unsigned kPixels = 241;
+
+Session& session() {
+  static Session one(choose_device(""));
+  return one;
+}
+
+/// What E = 4 I(-n) / s^2 needs to know of a transport.
+Transport intensity_transport() {
+  Transport transport;
+  transport.name = "intensity";
+  return transport;
+}
+
+Transport cosine_transport(const Matrix& k) {
+  Transport transport;
+  transport.name = "cosine";
+  transport.gathers_cosine = true;
+  transport.gather = k;
+  return transport;
+}
+
+Matrix scaled_identity(int n, double scale) {
+  Matrix m(n, n);
+  for (int i = 0; i < n; ++i) m(i, i) = scale;
+  return m;
+}
+
+/// Grid `c`, its middle at the origin; each next cascade has cells twice as large.
+ClpvGrid grid_of(int c) {
+  ClpvGrid grid{};
+  grid.cell = kCell * static_cast<float>(1 << c);
+  grid.n = kGrid;
+  for (float& o : grid.origin) o = -grid.cell * (kGrid / 2);
+  return grid;
+}
+
+/// Coefficients of a channel in a cell whose centre is at that point, in cells from the grid's origin.
+using Fill = std::function<std::vector<double>(int channel, const glm::dvec3& centre)>;
+
+reference::Volume volume_of(int coefficients, const Fill& fill) {
+  reference::Volume volume(kGrid, coefficients);
+  for (int channel = 0; channel < 3; ++channel) {
+    for (int z = 0; z < kGrid; ++z) {
+      for (int y = 0; y < kGrid; ++y) {
+        for (int x = 0; x < kGrid; ++x) {
+          const std::vector<double> c = fill(channel, glm::dvec3(x, y, z) + 0.5);
+          for (int i = 0; i < coefficients; ++i) {
+            volume.at(channel, i, x, y, z) = c[static_cast<std::size_t>(i)];
+          }
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+reference::Volume uniform(const std::vector<double>& c) {
+  return volume_of(static_cast<int>(c.size()), [&](int channel, const glm::dvec3&) {
+    std::vector<double> scaled = c;
+    for (double& value : scaled) value *= channel + 1;  // channels must not be mixed up
+    return scaled;
+  });
+}
+
+std::vector<double> times(double s, std::vector<double> c) {
+  for (double& value : c) value *= s;
+  return c;
+}
+
+/// Surfaces of one normal, pixel i of kPixels at from + (i + 1/2) / kPixels (to - from) [m].
+SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& normal) {
+  const glm::dvec3 right = glm::normalize(to - from),
+                   other = std::abs(right.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 up = glm::normalize(glm::cross(right, other)), forward = -glm::cross(right, up);
+  const glm::dvec3 eye = (from + to) / 2.0 - forward;
+  SurfaceImage image;
+  ClpvView& view = image.view;
+  view.orthographic = 1;
+  for (int i = 0; i < 3; ++i) {
+    view.eye[i] = static_cast<float>(eye[i]), view.right[i] = static_cast<float>(right[i]);
+    view.up[i] = static_cast<float>(up[i]), view.forward[i] = static_cast<float>(forward[i]);
+  }
+  view.half_width = static_cast<float>(glm::length(to - from) / 2), view.half_height = 1;
+  view.width = kPixels, view.height = 1, view.far_depth = 10;
+  image.depth.assign(kPixels, 1.0f);
+  image.normal.assign(kPixels, glm::vec4(glm::vec3(normal), 0));
+  return image;
+}
+
+struct Both {
+  std::vector<glm::dvec3> device, twin;
+  std::vector<cl_float4> raw;
+};
+
+/// Gathers `image` from volumes of grid_of(0), grid_of(1), ...
+Both gather(const Basis& basis, const Transport& transport, GatherOptions options,
+            const std::vector<reference::Volume>& full, const SurfaceImage& image,
+            const std::vector<reference::Volume>& late = {}) {
+  options.grid = kGrid;
+  options.late_light = !late.empty();
+  std::vector<Volume> device;
+  device.reserve(full.size() + late.size());
+  const auto upload = [&](const std::vector<reference::Volume>& volumes) {
+    std::vector<const Volume*> uploaded;
+    for (const reference::Volume& v : volumes) {
+      device.emplace_back(session(), VolumeShape{kGrid, basis.size(), 3}, "test: light");
+      device.back().write(session(), {v.values.begin(), v.values.end()});
+      uploaded.push_back(&device.back());
+    }
+    return uploaded;
+  };
+  std::vector<ClpvGrid> grids;
+  std::vector<reference::Cascade> cascades;
+  for (std::size_t c = 0; c < full.size(); ++c) {
+    grids.push_back(grid_of(static_cast<int>(c)));
+    cascades.push_back({grids[c], &full[c], late.empty() ? nullptr : &late[c]});
+  }
+  Surface camera;
+  camera.view = image.view;
+  camera.depth = session().upload(image.depth, "test: depth");
+  camera.normal = session().upload(image.normal, "test: normal");
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  cl::Buffer e =
+      session().upload(std::vector<cl_float4>(image.depth.size(), {{nan, nan, nan, nan}}), "test: E");
+  Gatherer(session(), basis, transport, options).gather(camera, grids, upload(full), upload(late), e);
+  Both both{{},
+            reference::gather(basis, transport, options, cascades, image),
+            session().read<cl_float4>(e, image.depth.size())};
+  for (const cl_float4& v : both.raw) both.device.emplace_back(v.s[0], v.s[1], v.s[2]);
+  return both;
+}
+
+/// Expects E of every pixel to be `expected(pixel)` times 1, 2, 3 in the three channels.
+void expect_all(const Both& both, const std::function<double(std::size_t)>& expected, double scale,
+                double allowed) {
+  for (std::size_t pixel = 0; pixel < both.device.size(); ++pixel) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const double e = expected(pixel) * (channel + 1);
+      ASSERT_NEAR(both.twin[pixel][channel], e, 1e-6 * scale)
+          << "twin, pixel " << pixel << " channel " << channel;
+      ASSERT_NEAR(both.device[pixel][channel], e, allowed * scale)
+          << "pixel " << pixel << " channel " << channel;
+    }
+  }
+}
+
+void expect_all(const Both& both, double expected) {
+  expect_all(
+      both, [&](std::size_t) { return expected; }, 3 * std::abs(expected), kFloat);
+}
+
+double along(double from, double to, std::size_t pixel) {
+  return from + (to - from) * (static_cast<double>(pixel) + 0.5) / kPixels;
+}
+
+const glm::dvec3 kTilted = glm::normalize(glm::dvec3(1, -2, 0.5));
+
+TEST(Gather, UniformLightIsTheSameEverywhereInside) {
+  for (const char* name : {"sh2", "sh3", "srbf4", "srbf8v2"}) {
+    SCOPED_TRACE(name);
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    const std::vector<double> c = times(1.75, basis->constant());
+    const SurfaceImage image = walk({-1.4, 1.1, -1.2}, {1.3, -1.4, 1.2}, kTilted);
+    const Both both = gather(*basis, intensity_transport(), {}, {uniform(c)}, image);
+    expect_all(both, 4 * basis->value(c, -kTilted) / (kCell * kCell));  // spherical harmonics: 4 . 1.75 / s^2
+  }
+}
+
+TEST(Gather, IsotropicIntensityGivesFourIOverSSquared) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, kTilted);
+  const Both both =
+      gather(*basis, intensity_transport(), {}, {uniform(times(1.75, basis->constant()))}, image);
+  expect_all(both, 4 * 1.75 / (kCell * kCell));
+}
+
+TEST(Gather, OperatorsTurnUniformRadianceIntoPiL) {
+  // Radiance L everywhere: c(w) / |w|_1 averages L s^2; for sh2 K c = kappa c = L s^2 times the constant 1.
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const double radiance = 2.5;
+  const std::vector<double> c = times(radiance * kCell * kCell / kKappa, basis->constant());
+  for (const glm::dvec3& n : {kTilted, glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0)}) {
+    const Both both = gather(*basis, cosine_transport(scaled_identity(4, kKappa)), {}, {uniform(c)},
+                             walk({-1, 0, 0}, {1, 0, 0}, n));
+    expect_all(both, pi * radiance);
+  }
+}
+
+TEST(Gather, OperatorsGatherThroughTheirMatrix) {
+  const std::unique_ptr<Basis> basis = make_basis("srbf8v2");
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> positive(0.1, 1);
+  Matrix k(8, 8);  // not symmetric: a transposed K must show
+  std::vector<double> c(8), alpha(8);
+  for (int i = 0; i < 8; ++i) {
+    c[static_cast<std::size_t>(i)] = positive(random);
+    for (int j = 0; j < 8; ++j) k(i, j) = positive(random);
+  }
+  basis->cosine_integrals(-kTilted, alpha);
+  const std::vector<double> kc = k * c;
+  double expected = 0;
+  for (std::size_t i = 0; i < 8; ++i) expected += alpha[i] * kc[i];
+  const Both both =
+      gather(*basis, cosine_transport(k), {}, {uniform(c)}, walk({-1, 0, 0}, {1, 0, 0}, kTilted));
+  expect_all(both, expected / (kCell * kCell));
+}
+
+TEST(Gather, LinearLightIsReproducedWithTheOffset) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const glm::dvec3 slope(0.3, -0.2, 0.5);  // per cell
+  const auto intensity = [&](const glm::dvec3& cells) { return 6 + glm::dot(slope, cells); };
+  const reference::Volume light = volume_of(4, [&](int channel, const glm::dvec3& centre) {
+    return times((channel + 1) * intensity(centre), basis->constant());
+  });
+  const glm::dvec3 from(-1.45, 1.0, -1.2), to(1.4, -1.3, 1.3);
+  for (const double offset : {0.5, 0.75, 0.0}) {
+    const Both both =
+        gather(*basis, intensity_transport(), {.gather_offset = offset}, {light}, walk(from, to, kTilted));
+    const auto expected = [&](std::size_t pixel) {
+      const glm::dvec3 p(along(from.x, to.x, pixel), along(from.y, to.y, pixel), along(from.z, to.z, pixel));
+      return 4 * intensity(p / double{kCell} + kGrid / 2.0 + offset * kTilted) / (kCell * kCell);
+    };
+    expect_all(both, expected, 3 * 4 * 10 / (kCell * kCell), 2 * kFloat);
+  }
+}
+
+TEST(Gather, CascadesHandOverWithoutASeam) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const double fine = 5, coarse = 2;  // E of the two
+  const std::vector<reference::Volume> light = {
+      uniform(times(fine / 4 * kCell * kCell, basis->constant())),
+      uniform(times(coarse / 4 * 4 * kCell * kCell, basis->constant()))};
+  // From inside the finer cascade (boundary at 3 m) through the coarser (6 m) and out.
+  const double from = 1, to = 7;
+  const SurfaceImage image = walk({from, 0.1, 0.2}, {to, 0.1, 0.2}, {0, 1, 0});
+  const Both both = gather(*basis, intensity_transport(), {.blend_cells = 3}, light, image);
+  const auto expected = [&](std::size_t pixel) {
+    const double x = along(from, to, pixel);
+    const double in_fine = std::clamp((3 - x) / (3 * kCell), 0.0, 1.0);
+    const double in_coarse = std::clamp((6 - x) / (3 * 2 * kCell), 0.0, 1.0);
+    return in_fine * fine + (1 - in_fine) * in_coarse * coarse;
+  };
+  expect_all(both, expected, 3 * fine, 2 * kFloat);
+  for (std::size_t pixel = 1; pixel < kPixels; ++pixel) {
+    const double step = std::abs(both.device[pixel].x - both.device[pixel - 1].x);
+    ASSERT_LE(step, 1.01 * fine / (3 * kCell) * (to - from) / kPixels) << "a jump at pixel " << pixel;
+  }
+  EXPECT_EQ(both.device.back(), glm::dvec3(0)) << "outside all cascades";
+}
+
+TEST(Gather, OutsideAllCascadesIsExactlyDark) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const std::vector<reference::Volume> light = {uniform(basis->constant()), uniform(basis->constant())};
+  for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1)}) {
+    const Both both =
+        gather(*basis, intensity_transport(), {}, light, walk(6.001 * axis, 900.0 * axis, -axis));
+    for (const glm::dvec3& e : both.device) ASSERT_EQ(e, glm::dvec3(0));
+  }
+}
+
+TEST(Gather, EmptyVolumesAreExactlyDark) {
+  const std::unique_ptr<Basis> basis = make_basis("srbf8v2");
+  const Both both = gather(*basis, intensity_transport(), {.floor = 0.15},
+                           {uniform(std::vector<double>(8, 0.0))}, walk({-4, 0, 0}, {4, 0, 0}, kTilted));
+  for (const cl_float4& e : both.raw) {
+    for (const float value : e.s) ASSERT_EQ(value, 0.0f);
+  }
+}
+
+TEST(Gather, BackgroundIsExactlyDark) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, kTilted);
+  for (unsigned pixel = 0; pixel < kPixels; pixel += 2) {
+    image.depth[pixel] = 0;
+    image.normal[pixel] = glm::vec4(0);
+  }
+  const Both both = gather(*basis, intensity_transport(), {}, {uniform(basis->constant())}, image);
+  for (unsigned pixel = 0; pixel < kPixels; ++pixel) {
+    if (pixel % 2 == 0) ASSERT_EQ(both.device[pixel], glm::dvec3(0));
+    if (pixel % 2 == 1) ASSERT_GT(both.device[pixel].x, 0);
+    ASSERT_EQ(both.raw[pixel].s[3], 0.0f);
+  }
+}
+
+TEST(Gather, NegativeLightIsClampedAndFloored) {
+  // All light travels towards +z; sh2's lobe is negative backwards, at a surface that faces +z.
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const std::vector<double> c = basis->clamped_cosine({0, 0, 1});
+  ASSERT_LT(basis->value(c, {0, 0, -1}), 0);
+  const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  expect_all(gather(*basis, intensity_transport(), {}, {uniform(c)}, image), 0);
+  const double floor = 0.15, energy = pi;  // of a clamped cosine
+  const double isotropic = 4 * energy / (4 * pi) / (kCell * kCell);
+  expect_all(gather(*basis, intensity_transport(), {.floor = floor}, {uniform(c)}, image), floor * isotropic);
+  const Transport upwind = cosine_transport(scaled_identity(4, kKappa));
+  // Int (1/4 + cos/2) max(0, -cos) dw = pi/4 - pi/3 is negative too.
+  expect_all(gather(*basis, upwind, {.floor = floor}, {uniform(c)}, image),
+             floor * kKappa * energy / 4 / (kCell * kCell));
+}
+
+TEST(Gather, IsotropicLightStandsOnItsOwnFloor) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const Transport upwind = cosine_transport(scaled_identity(4, kKappa));
+  EXPECT_NEAR(isotropic_share(*basis, intensity_transport()), 1 / pi, 1e-15);
+  EXPECT_NEAR(isotropic_share(*basis, upwind), kKappa / 4, 1e-12);
+  const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, kTilted);
+  expect_all(gather(*basis, upwind, {.floor = 1}, {uniform(basis->constant())}, image),
+             kKappa * pi / (kCell * kCell));
+}
+
+TEST(Gather, LateLightOfCoarserCascadesAdds) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const auto lit = [&](double e, int cascade) {
+    const double s = kCell * (1 << cascade);
+    return uniform(times(e / 4 * s * s, basis->constant()));
+  };
+  const std::vector<reference::Volume> full = {lit(5, 0), lit(3, 1), lit(2, 2)};
+  const std::vector<reference::Volume> late = {lit(100, 0), lit(0.5, 1), lit(0.25, 2)};
+  const auto at = [&](double x) {
+    return gather(*basis, intensity_transport(), {}, full, walk({x, -0.1, 0}, {x, 0.1, 0}, {0, 1, 0}), late);
+  };
+  expect_all(at(0), 5 + 0.5 + 0.25);
+  expect_all(at(3.0), 3 + 0.25);                                               // just outside the first
+  expect_all(at(6.0), 2);                                                      // outside the second
+  expect_all(at(3 - 1.5 * kCell), 0.5 * (5 + 0.5 + 0.25) + 0.5 * (3 + 0.25));  // amid the blend
+}
+
+TEST(Gather, NegativeLateLightTakesNothingAway) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const std::vector<double> away = times(10, basis->clamped_cosine({0, 0, 1}));
+  const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  const std::vector<reference::Volume> full = {uniform(basis->constant()), uniform(basis->constant())};
+  expect_all(gather(*basis, intensity_transport(), {}, full, image, {uniform(away), uniform(away)}),
+             4 / (kCell * kCell));
+}
+
+TEST(Gather, TwoRunsAreIdentical) {
+  const std::unique_ptr<Basis> basis = make_basis("srbf8v2");
+  const reference::Volume light = volume_of(8, [&](int channel, const glm::dvec3& centre) {
+    return times(1 + channel + 0.1 * std::sin(centre.x * centre.y), basis->clamped_cosine(kTilted));
+  });
+  const SurfaceImage image = walk({-2.9, -2, 1}, {2.9, 2, -1}, -kTilted);
+  const Both first = gather(*basis, intensity_transport(), {}, {light}, image);
+  const Both second = gather(*basis, intensity_transport(), {}, {light}, image);
+  EXPECT_EQ(first.device, second.device);
+}
+
+TEST(Gather, RefusesWhatDoesNotFit) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const auto make = [&](GatherOptions options) {
+    Gatherer(session(), *basis, intensity_transport(), options);
+  };
+  EXPECT_THROW(make({.grid = 0}), Error);
+  EXPECT_THROW(make({.blend_cells = 0}), Error);
+  EXPECT_THROW(make({.floor = -0.1}), Error);
+  EXPECT_THROW(make({.gather_offset = std::numeric_limits<double>::infinity()}), Error);
+  Gatherer gatherer(session(), *basis, intensity_transport(), {.grid = kGrid});
+  const Volume small(session(), {kGrid - 1, 4, 3}, "test: light");
+  cl::Buffer e = session().buffer(kPixels * sizeof(cl_float4), "test: E");
+  Surface camera;
+  EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {&small}, {}, e), Error);
+  EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {}, {}, e), Error);
+}
+
+TEST(Gather, KernelsAgreeWithTheirTwin) {
+  const reference::CheckResults results = reference::check_gather(session());
+  ASSERT_FALSE(results.empty());
+  for (const reference::CheckResult& result : results) {
+    EXPECT_TRUE(result.passed()) << result.variant << ": " << result.worst << " > " << result.allowed << ", "
+                                 << result.place;
+  }
+}
+
+}  // namespace
+}  // namespace clpv
