@@ -58,7 +58,8 @@ std::string floor_weights(const Basis& basis, const Transport& transport, double
 }
 
 ProgramSource source_of(const Basis& basis, const Transport& transport, const GatherOptions& options) {
-  ProgramSource source{.file = "gather.cl"};
+  ProgramSource source;
+  source.file = "gather.cl";
   source.literals = {{"CLPV_GRID", std::to_string(options.grid)},
                      {"CLPV_PAIRS", std::to_string(pairs(basis.size()))},
                      {"CLPV_GATHER_OFFSET", float_literal(options.gather_offset)},

@@ -33,16 +33,11 @@ SurfaceImage random_surfaces(std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0, 1);
   SurfaceImage image;
   ClpvView& view = image.view;
-  view = {.eye = {0.3f, -0.2f, 0.6f},
-          .right = {0, 0, 1},
-          .half_width = 1.2f,
-          .up = {0, 1, 0},
-          .half_height = 0.8f,
-          .forward = {1, 0, 0},
-          .near_depth = 0.01f,
-          .width = kWidth,
-          .height = kHeight,
-          .far_depth = 100};
+  view.eye[0] = 0.3f, view.eye[1] = -0.2f, view.eye[2] = 0.6f;
+  view.right[2] = view.up[1] = view.forward[0] = 1;
+  view.half_width = 1.2f, view.half_height = 0.8f;
+  view.near_depth = 0.01f, view.far_depth = 100;
+  view.width = kWidth, view.height = kHeight;
   for (int pixel = 0; pixel < kWidth * kHeight; ++pixel) {
     const float depth = 1.1f * uniform(random) - 0.1f;
     const glm::vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.4995f);
@@ -125,7 +120,8 @@ CheckResults check_gather(Session& session) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     // One transport that gathers radiant intensity, one that gathers through its own matrix.
     results.push_back(check_one(session, *basis, make_transport("sampled", *basis), {"plain"}));
-    results.push_back(check_one(session, *basis, make_transport("upwind", *basis), {"late, floor", true, 0.15}));
+    results.push_back(
+        check_one(session, *basis, make_transport("upwind", *basis), {"late, floor", true, 0.15}));
   }
   return results;
 }
