@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "commands/commands.hpp"
+#include "device/cl_error.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
@@ -11,7 +12,8 @@ int main(int argc, char** argv) {
   CLI::App app{"clpv: cascaded light propagation volumes in OpenCL"};
   Shared shared;
   app.set_version_flag("--version", std::string("clpv ") + CLPV_VERSION);
-  app.add_option("--device", shared.device, "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)")
+  app.add_option("--device", shared.device,
+                 "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)")
       ->type_name("DEVICE");
   app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
   app.add_flag("-v,--verbose", shared.verbosity, "tell more; twice: still more");
@@ -21,7 +23,8 @@ int main(int argc, char** argv) {
   add_devices(app, shared);
   add_compare(app, shared);
   app.footer(
-      "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or image file;\n"
+      "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
+      "image file;\n"
       "4 no device, or one that lacks what was asked; 5 validation failed. stdout is data, stderr is talk.");
   try {
     app.parse(argc, argv);
@@ -31,8 +34,9 @@ int main(int argc, char** argv) {
     std::cerr << "clpv: " << error.what() << '\n';
     return static_cast<int>(error.code());
   } catch (const cl::Error& error) {
-    std::cerr << "clpv: OpenCL: " << error.what() << " failed with code " << error.err() << '\n';
-    return static_cast<int>(ExitCode::run_time);
+    const Error named = cl_error(error);
+    std::cerr << "clpv: " << named.what() << '\n';
+    return static_cast<int>(named.code());
   } catch (const std::bad_alloc&) {
     std::cerr << "clpv: out of memory\n";
     return static_cast<int>(ExitCode::run_time);

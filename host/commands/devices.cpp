@@ -5,6 +5,7 @@
 
 #include "commands/commands.hpp"
 #include "device/device.hpp"
+#include "support/log.hpp"
 
 namespace clpv {
 namespace {
@@ -33,13 +34,17 @@ nlohmann::json to_json(const DeviceList& list) {
   return {{"schema", 1}, {"devices", devices}, {"platforms_without_devices", list.platforms_without_devices}};
 }
 
+const char* yes_no(bool value) {
+  return value ? "yes" : "no";
+}
+
 void print(const DeviceList& list) {
   for (const Device& d : list.devices) {
     fmt::print("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
-    fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}, events {}\n",
-               d.type, d.compute_units, d.max_alloc_bytes >> 20, d.images ? "yes" : "no",
-               d.image3d_writes ? "yes" : "no",
-               d.profiling_valid ? "valid" : "implausible (wall time instead)");
+    fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}\n", d.type,
+               d.compute_units, d.max_alloc_bytes >> 20, yes_no(d.images), yes_no(d.image3d_writes));
+    fmt::print("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics), yes_no(d.fp64),
+               d.profiling_valid ? "valid" : "implausible: wall time instead");
     if (!d.supported()) fmt::print("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));
   }
   for (const std::string& name : list.platforms_without_devices) fmt::print("-  {}: no device\n", name);
@@ -47,14 +52,20 @@ void print(const DeviceList& list) {
 
 }  // namespace
 
-void add_devices(CLI::App& app, Shared&) {
-  CLI::App* command = app.add_subcommand("devices", "List every OpenCL device and what it can do");
+void add_devices(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "devices", "List every OpenCL device and what it can do; with --device, the one it chooses");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "JSON on stdout");
-  command->callback([json] {
-    const DeviceList list = list_devices();
+  command->callback([json, &shared] {
+    DeviceList list = list_devices();
+    if (!shared.device.empty()) {
+      list = {{choose_device(list.devices, shared.device)}, {}};
+    } else if (list.devices.empty()) {
+      spdlog::warn("no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+    }
     if (*json) {
-      fmt::print("{}\n", to_json(list).dump(2));
+      fmt::print("{}\n", to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
       print(list);
     }

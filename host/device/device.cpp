@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cstdlib>
 
-#include "support/error.hpp"
+#include "device/cl_error.hpp"
 
 namespace clpv {
 namespace {
@@ -47,9 +47,9 @@ bool profiling_is_plausible(const cl::Device& handle) {
   }
 }
 
-Device describe(const cl::Device& handle) {
-  Device device;
-  device.handle = handle;
+/// Asks a device everything; a driver's failure to answer is thrown as cl::Error.
+void describe(Device& device) {
+  const cl::Device& handle = device.handle;
   device.name = trimmed(handle.getInfo<CL_DEVICE_NAME>());
   device.driver = trimmed(handle.getInfo<CL_DRIVER_VERSION>());
   device.version = trimmed(handle.getInfo<CL_DEVICE_VERSION>());
@@ -71,14 +71,15 @@ Device describe(const cl::Device& handle) {
   }
   if (handle.getInfo<CL_DEVICE_ENDIAN_LITTLE>() != CL_TRUE) device.missing.push_back("little endian");
   device.profiling_valid = device.supported() && profiling_is_plausible(handle);
-  return device;
 }
 
 std::string summary(const std::vector<Device>& devices) {
   std::string text;
-  for (const Device& device : devices)
+  for (const Device& device : devices) {
     text += fmt::format("\n  {}: {} ({})", device.index, device.name, device.platform);
-  return devices.empty() ? "\n  (none)" : text;
+    if (!device.supported()) text += fmt::format(", lacks: {}", fmt::join(device.missing, ", "));
+  }
+  return text;
 }
 
 bool parse_int(std::string_view text, int& value) {
@@ -119,11 +120,19 @@ DeviceList list_devices() {
     const std::string platform = trimmed(platforms[p].getInfo<CL_PLATFORM_NAME>());
     if (handles.empty()) list.platforms_without_devices.push_back(platform);
     for (std::size_t d = 0; d < handles.size(); ++d) {
-      Device device = describe(handles[d]);
+      Device device;
+      device.handle = handles[d];
       device.platform = platform;
+      device.platform_version = trimmed(platforms[p].getInfo<CL_PLATFORM_VERSION>());
       device.index = static_cast<int>(list.devices.size());
       device.platform_index = static_cast<int>(p);
       device.device_index = static_cast<int>(d);
+      try {
+        describe(device);
+      } catch (const cl::Error& error) {  // a broken driver must not hide the others' devices
+        device.missing.push_back(
+            fmt::format("an answer to {} ({})", error.what(), cl_error_name(error.err())));
+      }
       list.devices.push_back(std::move(device));
     }
   }
@@ -131,25 +140,31 @@ DeviceList list_devices() {
 }
 
 Device choose_device(std::string_view choice) {
-  const std::vector<Device> devices = list_devices().devices;
-  if (devices.empty())
-    throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
   const char* environment = std::getenv("CLPV_DEVICE");
   if (choice.empty() && environment != nullptr) choice = environment;
+  return choose_device(list_devices().devices, choice);
+}
+
+Device choose_device(const std::vector<Device>& devices, std::string_view choice) {
+  if (devices.empty()) {
+    throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+  }
   if (choice.empty()) {
-    for (const Device& device : devices) {
-      if (device.supported()) return device;
-    }
+    const auto found =
+        std::find_if(devices.begin(), devices.end(), [](const Device& d) { return d.supported(); });
+    if (found != devices.end()) return *found;
     throw Error(ExitCode::device, "no supported OpenCL device among:{}", summary(devices));
   }
   std::vector<Device> fitting;
   for (const Device& device : devices) {
     if (matches(device, choice)) fitting.push_back(device);
   }
-  if (fitting.empty())
+  if (fitting.empty()) {
     throw Error(ExitCode::device, "no OpenCL device fits '{}'; there are:{}", choice, summary(devices));
-  if (fitting.size() > 1)
+  }
+  if (fitting.size() > 1) {
     throw Error(ExitCode::device, "several OpenCL devices fit '{}':{}", choice, summary(fitting));
+  }
   if (!fitting[0].supported()) {
     throw Error(ExitCode::device, "device {} ({}) lacks: {}", fitting[0].index, fitting[0].name,
                 fmt::join(fitting[0].missing, ", "));

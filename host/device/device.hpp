@@ -15,7 +15,7 @@ struct Device {
   int index = 0;           ///< over all platforms
   int platform_index = 0;  ///< among all platforms, those without a device counted too
   int device_index = 0;    ///< within its platform
-  std::string platform, name, driver, version, type;
+  std::string platform, platform_version, name, driver, version, type;
   unsigned compute_units = 0;
   std::uint64_t max_alloc_bytes = 0;
   std::uint64_t memory_bytes = 0;
@@ -41,5 +41,8 @@ DeviceList list_devices();
 /// case aside); empty: CLPV_DEVICE, else the first supported one. Throws Error(device) where none fits,
 /// several fit, or the one that fits lacks something (named).
 Device choose_device(std::string_view choice = {});
+
+/// The same among given devices; CLPV_DEVICE is not asked.
+Device choose_device(const std::vector<Device>& devices, std::string_view choice);
 
 }  // namespace clpv

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
-#include "device/kernel_files.hpp"
-#include "support/error.hpp"
+#include "device/cl_error.hpp"
+#include "support/log.hpp"
 
 namespace clpv {
 namespace {
@@ -14,57 +13,100 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return step == 0 ? value : (value + step - 1) / step * step;
 }
 
-std::string full_text(const ProgramSource& source) {
-  std::string text;
-  for (const auto& [name, value] : source.literals) text += fmt::format("#define {} {}\n", name, value);
-  if (!source.generated.empty()) text += "#line 1 \"generated\"\n" + source.generated + "\n";
-  return text + assemble_kernel_source(source.file);
+double mib(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
 }
 
-cl::Program build(cl::Context& context, const Device& device, const ProgramSource& source,
-                  const std::string& text) {
-  cl::Program program(context, text);
+/// A program from a binary made earlier; nothing where the driver will not have it.
+std::optional<cl::Program> load_program(const cl::Context& context, const Device& device,
+                                        const std::string& options, const ProgramCache::Binary& binary) {
   try {
-    program.build(device.handle, source.options.c_str());
-  } catch (const cl::Error&) {
-    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle);
-    throw Error(ExitCode::run_time, "kernels/{} does not build on {} ({}) with '{}':\n{}", source.file,
-                device.name, device.driver, source.options, log);
+    cl::Program program(context, {device.handle}, {binary});
+    program.build(device.handle, options.c_str());
+    return program;
+  } catch (const cl::Error& error) {
+    spdlog::debug("{} refuses a compiled program: {}; building anew", device.name,
+                  cl_error_name(error.err()));
+    return std::nullopt;
   }
-  return program;
 }
 
 }  // namespace
 
-Session::Session(Device device)
+Session::Session(Device device, std::optional<ProgramCache> cache)
     : device_(std::move(device)),
       context_(device_.handle),
       queue_(context_, device_.handle, device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
-      timeline_(device_.profiling_valid) {}
+      timeline_(device_.profiling_valid),
+      cache_(std::move(cache)) {}
+
+cl::Program Session::build(const ProgramSource& source, const std::string& text, const std::string& key,
+                           bool& stored) {
+  stored = false;
+  if (cache_) {
+    if (const auto binary = cache_->load(key)) {
+      if (const auto program = load_program(context_, device_, source.options, *binary)) {
+        stored = true;
+        return *program;
+      }
+      cache_->remove(key);
+    }
+  }
+  return build_program(context_, device_, source, text);
+}
 
 cl::Kernel Session::kernel(const ProgramSource& source, const std::string& name) {
-  const std::string text = full_text(source);
-  const std::string key = source.options + "\n" + text;
+  const std::string text = program_text(source);
+  const std::string key = ProgramCache::key(device_, source.options, text);
   auto found = programs_.find(key);
   if (found == programs_.end()) {
     const auto start = std::chrono::steady_clock::now();
-    found = programs_.emplace(key, build(context_, device_, source, text)).first;
-    build_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    Built built;
+    built.program = build(source, text, key, built.stored);
+    found = programs_.emplace(key, std::move(built)).first;
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    build_ms_ += elapsed.count();
+    spdlog::debug("kernels/{}: {} in {:.1f} ms", source.file,
+                  found->second.stored ? "from the cache" : "compiled", elapsed.count());
   }
-  return cl::Kernel(found->second, name.c_str());
+  return cl::Kernel(found->second.program, name.c_str());
+}
+
+void Session::store_programs() {
+  if (!cache_) return;
+  for (auto& [key, built] : programs_) {
+    if (built.stored) continue;
+    const auto binaries = built.program.getInfo<CL_PROGRAM_BINARIES>();
+    if (binaries.size() != 1 || binaries[0].empty()) {
+      spdlog::debug("{} gives no compiled programs to keep", device_.name);
+      return;
+    }
+    if (!cache_->store(key, binaries[0])) return;  // said why; the next would fail alike
+    built.stored = true;
+  }
+}
+
+std::size_t Session::largest_buffer() const {
+  const std::uint64_t left = device_.memory_bytes > bytes_ ? device_.memory_bytes - bytes_ : 0;
+  return static_cast<std::size_t>(std::min<std::uint64_t>(device_.max_alloc_bytes, left));
 }
 
 cl::Buffer Session::buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags) {
   bytes = std::max<std::size_t>(bytes, 4);
-  if (bytes > device_.max_alloc_bytes || bytes_ + bytes > device_.memory_bytes) {
+  if (bytes > largest_buffer()) {
     throw Error(ExitCode::run_time,
-                "{} needs {} MiB; {} allows {} MiB a buffer and {} MiB in all, {} MiB of them in use", what,
-                bytes >> 20, device_.name, device_.max_alloc_bytes >> 20, device_.memory_bytes >> 20,
-                bytes_ >> 20);
+                "{} needs {:.1f} MiB, but {} has room for a buffer of at most {:.1f} MiB "
+                "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use)",
+                what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
+                mib(device_.memory_bytes), mib(bytes_));
   }
-  cl::Buffer made(context_, flags, bytes);
-  bytes_ += bytes;
-  return made;
+  try {
+    cl::Buffer made(context_, flags, bytes);
+    bytes_ += bytes;
+    return made;
+  } catch (const cl::Error& error) {
+    throw cl_error(error, fmt::format("{} ({:.1f} MiB) on {}", what, mib(bytes), device_.name));
+  }
 }
 
 void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) {
@@ -77,7 +119,12 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
     rounded = cl::NDRange(round_up(g[0], l[0]), round_up(g[1], l[1]), round_up(g[2], l[2]));
   }
   cl::Event event;
-  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, rounded, local, nullptr, &event);
+  try {
+    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, rounded, local, nullptr, &event);
+  } catch (const cl::Error& error) {
+    throw cl_error(error,
+                   fmt::format("kernel '{}' on {}", kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name));
+  }
   timeline_.add(event);
 }
 

@@ -3,32 +3,23 @@
 
 #include <CL/opencl.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/program.hpp"
+#include "device/program_cache.hpp"
 #include "device/timeline.hpp"
-#include "support/literal.hpp"  // float_literal, for Literals
 
 namespace clpv {
-
-/// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with
-/// CLPV_.
-using Literals = std::map<std::string, std::string>;
-
-/// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis
-/// functions, transport) that `#include "generated.h"`-style files refer to.
-struct ProgramSource {
-  std::string file;       ///< "propagate.cl"
-  Literals literals;      ///< before everything else
-  std::string generated;  ///< text placed after the literals and before the file
-  std::string options = "-cl-std=CL1.2";
-};
 
 /// One device opened for work. Everything is enqueued on one in-order queue. Not thread safe; one a thread.
 class Session {
  public:
-  explicit Session(Device device);
+  /// `cache`: where compiled programs are looked for, and where store_programs() keeps them; none: always
+  /// compiled.
+  explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt);
 
   const Device& device() const { return device_; }
   cl::Context& context() { return context_; }
@@ -39,8 +30,13 @@ class Session {
   /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault.
   cl::Kernel kernel(const ProgramSource& source, const std::string& name);
 
+  /// Keeps the programs compiled so far in the cache. To be called last, when results are out: PoCL's
+  /// binaries hold the code for the work-group sizes launched until then, and making one costs about as long
+  /// as the first launches.
+  void store_programs();
+
   /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill(). `what` names it in errors.
-  /// Throws Error(run_time) before allocating where the device cannot hold it.
+  /// Throws Error(run_time) before allocating where the device cannot hold it, and says what it could.
   cl::Buffer buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags = CL_MEM_READ_WRITE);
   void account(std::size_t bytes) { bytes_ += bytes; }  ///< for memory taken outside buffer()
 
@@ -69,15 +65,26 @@ class Session {
     return values;
   }
 
+  /// Largest buffer that still fits [bytes]: the device's limit for one, and what is left of its memory.
+  std::size_t largest_buffer() const;
+
   std::size_t device_bytes() const { return bytes_; }  ///< allocated so far
-  double build_ms() const { return build_ms_; }        ///< spent compiling so far
+  double build_ms() const { return build_ms_; }        ///< spent compiling, or loading from the cache, so far
 
  private:
   Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
   Timeline timeline_;
-  std::map<std::string, cl::Program> programs_;
+  struct Built {
+    cl::Program program;
+    bool stored = false;  ///< in the cache: came from there, or was put there
+  };
+  cl::Program build(const ProgramSource& source, const std::string& text, const std::string& key,
+                    bool& stored);
+
+  std::optional<ProgramCache> cache_;
+  std::map<std::string, Built> programs_;  ///< by ProgramCache::key
   std::size_t bytes_ = 0;
   double build_ms_ = 0;
 };

@@ -22,6 +22,7 @@ struct CheckResult {
 using CheckResults = std::vector<CheckResult>;
 
 // One a stage, in reference/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device.
+CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
 CheckResults check_inject(Session& session);
 CheckResults check_propagate(Session& session);

@@ -1,0 +1,40 @@
+// OpenCL programs: what one is built from, its text, and building it.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <map>
+#include <string>
+
+#include "device/device.hpp"
+#include "support/literal.hpp"  // float_literal, for Literals
+
+namespace clpv {
+
+/// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with
+/// CLPV_.
+using Literals = std::map<std::string, std::string>;
+
+/// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis
+/// functions, transport) that `#include "generated.h"`-style files refer to.
+struct ProgramSource {
+  std::string file;       ///< "propagate.cl"
+  Literals literals;      ///< before everything else
+  std::string generated;  ///< text placed after the literals and before the file
+  std::string options = "-cl-std=CL1.2";
+};
+
+/// The whole text a driver compiles: literals, generated text, file with its includes, each after a #line
+/// mark
+/// ("literals", "generated", the file's name under kernels/). Throws Error(run_time) for an unknown file.
+std::string program_text(const ProgramSource& source);
+
+/// Compiles `text`, which is program_text(source), for the device.
+/// Throws Error(run_time) with options, the compiler's log and the numbered lines round each fault it names.
+cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
+                          const std::string& text);
+
+/// The lines of `text` round each place "FILE:LINE:" at which `log` tells of an error, numbered as #line
+/// marks say, the faulty one marked; empty where the log names none.
+std::string lines_round_errors(const std::string& text, const std::string& log);
+
+}  // namespace clpv

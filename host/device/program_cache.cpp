@@ -1,0 +1,175 @@
+#include "device/program_cache.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "support/error.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "clpv", then the version of the layout below: anything else in a file makes it worthless.
+constexpr std::string_view kMagic = "clpv program 1\n";
+constexpr std::string_view kSuffix = ".program";
+
+/// FNV-1a. Names files and finds damage; telling keys apart is left to comparing them.
+std::uint64_t fnv1a(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+  return hash;
+}
+
+/// A file's contents: magic, key, binary, each with its length, then the hash of all before it.
+std::string pack(const std::string& key, const ProgramCache::Binary& binary) {
+  std::string bytes(kMagic);
+  const auto append = [&bytes](const void* data, std::uint64_t size) {
+    bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  append(key.data(), key.size());
+  append(binary.data(), binary.size());
+  const std::uint64_t hash = fnv1a(bytes);
+  return bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+}
+
+/// Takes `size` bytes off the front of `rest`; false where it is shorter.
+bool take(std::string_view& rest, std::uint64_t size, std::string_view& taken) {
+  if (size > rest.size()) return false;
+  taken = rest.substr(0, size);
+  rest.remove_prefix(size);
+  return true;
+}
+
+bool take_sized(std::string_view& rest, std::string_view& taken) {
+  std::string_view bytes;
+  std::uint64_t size = 0;
+  if (!take(rest, sizeof size, bytes)) return false;
+  std::memcpy(&size, bytes.data(), sizeof size);
+  return take(rest, size, taken);
+}
+
+/// The binary in a file's contents, if they are whole and of this key.
+std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::string& key) {
+  std::uint64_t hash = 0;
+  if (bytes.size() < kMagic.size() + sizeof hash || !bytes.starts_with(kMagic)) return std::nullopt;
+  std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
+  bytes.remove_suffix(sizeof hash);
+  if (fnv1a(bytes) != hash) return std::nullopt;
+  bytes.remove_prefix(kMagic.size());
+  std::string_view stored_key, binary;
+  if (!take_sized(bytes, stored_key) || !take_sized(bytes, binary) || stored_key != key) return std::nullopt;
+  return ProgramCache::Binary(binary.begin(), binary.end());
+}
+
+/// A name beside `file` that no other process or thread writes to.
+fs::path name_beside(const fs::path& file) {
+  static std::atomic<unsigned> count{0};
+  return fs::path(file) += fmt::format(".{}.{}.new", ::getpid(), count++);
+}
+
+}  // namespace
+
+ProgramCache::ProgramCache(fs::path folder, std::uint64_t max_bytes)
+    : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+
+std::optional<ProgramCache> ProgramCache::of_user() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value == nullptr ? "" : value);
+  };
+  if (variable("CLPV_PROGRAM_CACHE") == "off") return std::nullopt;
+  if (const std::string home = variable("XDG_CACHE_HOME"); !home.empty())
+    return ProgramCache(fs::path(home) / "clpv");
+  if (const std::string home = variable("HOME"); !home.empty())
+    return ProgramCache(fs::path(home) / ".cache/clpv");
+  spdlog::debug("neither XDG_CACHE_HOME nor HOME is set: compiled programs are not kept");
+  return std::nullopt;
+}
+
+std::string ProgramCache::key(const Device& device, const std::string& options, const std::string& text) {
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", device.platform, device.platform_version, device.name,
+                     device.version, device.driver, options, text);
+}
+
+fs::path ProgramCache::file_of(const std::string& key) const {
+  return folder_ / fmt::format("{:016x}{}", fnv1a(key), kSuffix);
+}
+
+std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) const {
+  const fs::path file = file_of(key);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::optional<Binary> binary = unpack(bytes, key);
+  if (!binary) {
+    spdlog::debug("{}: damaged, or of another program; building anew", file.string());
+    return std::nullopt;
+  }
+  std::error_code ignored;  // the time of last use only orders what is dropped first
+  fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+  return binary;
+}
+
+bool ProgramCache::store(const std::string& key, const Binary& binary) const {
+  const fs::path file = file_of(key);
+  const fs::path beside = name_beside(file);
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (!error) {
+    const std::string bytes = pack(key, binary);
+    std::ofstream out(beside, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out) error = std::make_error_code(std::errc::io_error);
+  }
+  if (!error) fs::rename(beside, file, error);
+  if (error) {
+    spdlog::debug("{}: cannot keep a compiled program: {}", file.string(), error.message());
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    return false;
+  }
+  drop_oldest();
+  return true;
+}
+
+void ProgramCache::remove(const std::string& key) const {
+  std::error_code
+      ignored;  // gone already, or not ours to remove: the next store() replaces it or says why not
+  fs::remove(file_of(key), ignored);
+}
+
+void ProgramCache::drop_oldest() const {
+  struct File {
+    fs::file_time_type used;
+    std::uint64_t bytes;
+    fs::path path;
+  };
+  std::vector<File> files;
+  std::uint64_t total = 0;
+  std::error_code error;  // other processes drop files meanwhile: what is gone is simply not counted
+  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
+    std::error_code gone;
+    File file{it->last_write_time(gone), 0, it->path()};
+    if (!gone) file.bytes = it->file_size(gone);
+    if (gone || file.path.filename().string().find(kSuffix) == std::string::npos) continue;
+    total += file.bytes;
+    files.push_back(std::move(file));
+  }
+  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used < b.used; });
+  for (auto file = files.begin(); file != files.end() && total > max_bytes_; ++file) {
+    if (fs::remove(file->path, error)) total -= file->bytes;
+  }
+}
+
+}  // namespace clpv

@@ -1,0 +1,27 @@
+// Every struct that host and kernels share, with the fields whose places both sides must agree on.
+// CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order.
+// Include the structs' own headers beside it: host and kernels name them by different paths.
+#ifndef CLPV_SHARED_FIELDS_H
+#define CLPV_SHARED_FIELDS_H
+
+// clang-format off
+#define CLPV_EACH_SHARED(SIZE, OFFSET)                                                             \
+  SIZE(ClpvGrid) OFFSET(ClpvGrid, origin) OFFSET(ClpvGrid, cell) OFFSET(ClpvGrid, n)               \
+  SIZE(ClpvLight) OFFSET(ClpvLight, position) OFFSET(ClpvLight, kind) OFFSET(ClpvLight, direction) \
+    OFFSET(ClpvLight, range) OFFSET(ClpvLight, intensity) OFFSET(ClpvLight, cone_scale)            \
+    OFFSET(ClpvLight, cone_offset)                                                                 \
+  SIZE(ClpvVertex) OFFSET(ClpvVertex, position) OFFSET(ClpvVertex, normal) OFFSET(ClpvVertex, uv)  \
+    OFFSET(ClpvVertex, colour)                                                                     \
+  SIZE(ClpvTriangle) OFFSET(ClpvTriangle, vertex) OFFSET(ClpvTriangle, material)                   \
+  SIZE(ClpvMaterial) OFFSET(ClpvMaterial, base_colour) OFFSET(ClpvMaterial, emissive)              \
+    OFFSET(ClpvMaterial, alpha_cutoff) OFFSET(ClpvMaterial, texture)                               \
+    OFFSET(ClpvMaterial, emissive_texture) OFFSET(ClpvMaterial, flags)                             \
+  SIZE(ClpvTexture) OFFSET(ClpvTexture, offset) OFFSET(ClpvTexture, width)                         \
+    OFFSET(ClpvTexture, height) OFFSET(ClpvTexture, wrap)                                          \
+  SIZE(ClpvView) OFFSET(ClpvView, eye) OFFSET(ClpvView, orthographic) OFFSET(ClpvView, right)      \
+    OFFSET(ClpvView, half_width) OFFSET(ClpvView, up) OFFSET(ClpvView, half_height)                \
+    OFFSET(ClpvView, forward) OFFSET(ClpvView, near_depth) OFFSET(ClpvView, width)                 \
+    OFFSET(ClpvView, height) OFFSET(ClpvView, far_depth)
+// clang-format on
+
+#endif

@@ -1,0 +1,29 @@
+// Tells how the device lays out the structs that it shares with the host: sizes and places, in bytes.
+#include "shared/fields.h"
+#include "shared/grid.h"
+#include "shared/light.h"
+#include "shared/mesh.h"
+#include "shared/view.h"
+
+// The constants the host asserts its own sizes with; a size that differs does not compile.
+#define CLPV_ASSERT_SIZE(type, bytes) typedef char assert_##type[sizeof(type) == bytes ? 1 : -1];
+CLPV_ASSERT_SIZE(ClpvGrid, CLPV_SIZEOF_GRID)
+CLPV_ASSERT_SIZE(ClpvLight, CLPV_SIZEOF_LIGHT)
+CLPV_ASSERT_SIZE(ClpvVertex, CLPV_SIZEOF_VERTEX)
+CLPV_ASSERT_SIZE(ClpvTriangle, CLPV_SIZEOF_TRIANGLE)
+CLPV_ASSERT_SIZE(ClpvMaterial, CLPV_SIZEOF_MATERIAL)
+CLPV_ASSERT_SIZE(ClpvTexture, CLPV_SIZEOF_TEXTURE)
+CLPV_ASSERT_SIZE(ClpvView, CLPV_SIZEOF_VIEW)
+
+// `bytes`: one entry a SIZE and OFFSET of CLPV_EACH_SHARED, in its order. One work-item.
+__kernel void sizes(__global uint* bytes) {
+  if (get_global_id(0) != 0) return;
+  uint i = 0;
+#define CLPV_SIZE(type) bytes[i++] = (uint)sizeof(type);
+#define CLPV_OFFSET(type, field)                                                                \
+  {                                                                                             \
+    type value;                                                                                 \
+    bytes[i++] = (uint)((__private const uchar*)&value.field - (__private const uchar*)&value); \
+  }
+  CLPV_EACH_SHARED(CLPV_SIZE, CLPV_OFFSET)
+}

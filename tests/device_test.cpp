@@ -1,0 +1,160 @@
+// Listing and choosing devices, on lists made up here and on this machine's own.
+#include "device/device.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "device/cl_error.hpp"
+#include "run_program.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::HasSubstr;
+
+Device made_up(int index, int platform, int in_platform, const std::string& name) {
+  Device device;
+  device.index = index;
+  device.platform_index = platform;
+  device.device_index = in_platform;
+  device.name = name;
+  device.platform = platform == 0 ? "First Platform" : "Third Platform";
+  return device;
+}
+
+/// Platform 1 has no device, so numbers of platforms and of devices part ways.
+std::vector<Device> three_devices() {
+  std::vector<Device> devices = {made_up(0, 0, 0, "Small CPU"), made_up(1, 2, 0, "Big GPU"),
+                                 made_up(2, 2, 1, "Old GPU")};
+  devices[2].missing = {"OpenCL 1.2", "compiler"};
+  return devices;
+}
+
+ExitCode code_of(const std::vector<Device>& devices, std::string_view choice, std::string& message) {
+  try {
+    choose_device(devices, choice);
+  } catch (const Error& error) {
+    message = error.what();
+    return error.code();
+  }
+  return ExitCode::ok;
+}
+
+TEST(ChooseDevice, ByIndexPairAndPartOfAName) {
+  const auto devices = three_devices();
+  EXPECT_EQ(choose_device(devices, "1").name, "Big GPU");
+  EXPECT_EQ(choose_device(devices, "2:0").name, "Big GPU");
+  EXPECT_EQ(choose_device(devices, "0:0").name, "Small CPU");
+  EXPECT_EQ(choose_device(devices, "big").name, "Big GPU");
+  EXPECT_EQ(choose_device(devices, "first plat").name, "Small CPU");
+}
+
+TEST(ChooseDevice, WithoutAChoiceTakesTheFirstSupportedOne) {
+  auto devices = three_devices();
+  devices[0].missing = {"available"};
+  EXPECT_EQ(choose_device(devices, "").name, "Big GPU");
+}
+
+TEST(ChooseDevice, RefusesWithTheReason) {
+  const auto devices = three_devices();
+  std::string message;
+  EXPECT_EQ(code_of(devices, "7", message), ExitCode::device);
+  EXPECT_THAT(message, HasSubstr("'7'"));
+  EXPECT_THAT(message, HasSubstr("1: Big GPU (Third Platform)"));
+  EXPECT_EQ(code_of(devices, "1:0", message), ExitCode::device) << "a platform without devices";
+  EXPECT_EQ(code_of(devices, "gpu", message), ExitCode::device);
+  EXPECT_THAT(message, HasSubstr("several"));
+  EXPECT_EQ(code_of(devices, "old", message), ExitCode::device);
+  EXPECT_THAT(message, HasSubstr("OpenCL 1.2, compiler"));
+  EXPECT_EQ(code_of({}, "", message), ExitCode::device);
+  EXPECT_THAT(message, HasSubstr("apt install"));
+  EXPECT_EQ(code_of({devices[2]}, "", message), ExitCode::device);
+  EXPECT_THAT(message, HasSubstr("no supported"));
+}
+
+TEST(ListDevices, NumbersAndEventsAreSound) {
+  const DeviceList list = list_devices();
+  ASSERT_FALSE(list.devices.empty()) << "the tests need an OpenCL device";
+  for (std::size_t i = 0; i < list.devices.size(); ++i) {
+    const Device& device = list.devices[i];
+    EXPECT_EQ(device.index, static_cast<int>(i));
+    EXPECT_FALSE(device.name.empty());
+    EXPECT_GT(device.compute_units, 0u);
+    EXPECT_GT(device.max_alloc_bytes, 0u);
+    EXPECT_LE(device.max_alloc_bytes, device.memory_bytes);
+    if (device.platform == "Portable Computing Language") {
+      EXPECT_TRUE(device.supported());
+      EXPECT_TRUE(device.profiling_valid);
+    }
+  }
+}
+
+std::string program() {
+  return CLPV_PROGRAM;
+}
+
+TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
+  const auto outcome = test::run(program() + " devices --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json.at("schema"), 1);
+  EXPECT_TRUE(json.at("platforms_without_devices").is_array());
+  ASSERT_FALSE(json.at("devices").empty());
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json["devices"][0].items()) keys.push_back(key);
+  EXPECT_THAT(keys, ::testing::UnorderedElementsAre(
+                        "index", "platform_index", "device_index", "platform", "name", "driver", "version",
+                        "type", "compute_units", "max_alloc_bytes", "images", "image3d_writes",
+                        "int64_atomics", "fp64", "profiling_valid", "supported", "missing"));
+}
+
+TEST(DevicesCommand, WithoutAnyDriverIsAnEmptyListAndAWord) {
+  const test::TemporaryFolder empty;
+  const std::string none = "OCL_ICD_VENDORS=" + empty.path().string() + " ";
+  const auto listed = test::run(none + program() + " devices --json");
+  EXPECT_EQ(listed.exit_code, 0);
+  EXPECT_TRUE(nlohmann::json::parse(listed.out).at("devices").empty());
+  EXPECT_THAT(listed.err, HasSubstr("no OpenCL device"));
+  const auto asked = test::run(none + program() + " devices --device 0");
+  EXPECT_EQ(asked.exit_code, static_cast<int>(ExitCode::device));
+  EXPECT_EQ(asked.out, "");
+}
+
+TEST(DevicesCommand, DeviceOptionListsThatOne) {
+  const auto outcome = test::run(program() + " devices --json --device 0");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out).at("devices").size(), 1u);
+  EXPECT_EQ(test::run(program() + " devices --device 'no such name'").exit_code, 4);
+}
+
+TEST(DevicesCommand, RusticlsEventsAreNotBelieved) {
+  const auto outcome = test::run("RUSTICL_ENABLE=llvmpipe " + program() + " devices --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  for (const auto& device : json.at("devices")) {
+    if (device.at("platform") != "rusticl") continue;
+    if (device.at("driver") != "22.3.6") GTEST_SKIP() << "known of driver 22.3.6 only";
+    EXPECT_FALSE(device.at("profiling_valid").get<bool>());
+    return;
+  }
+  GTEST_SKIP() << "rusticl (mesa-opencl-icd) is not installed";
+}
+
+TEST(ClError, NamesCodeCallAndAdvice) {
+  EXPECT_EQ(cl_error_name(CL_OUT_OF_RESOURCES), "CL_OUT_OF_RESOURCES (-5)");
+  EXPECT_EQ(cl_error_name(-12345), "code -12345");
+  const Error memory =
+      cl_error(cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "clEnqueueNDRangeKernel"), "kernel 'x'");
+  EXPECT_EQ(memory.code(), ExitCode::run_time);
+  EXPECT_THAT(memory.what(), HasSubstr("kernel 'x': clEnqueueNDRangeKernel failed with "
+                                       "CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"));
+  EXPECT_THAT(memory.what(), HasSubstr("--grid"));
+  EXPECT_EQ(cl_error(cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs")).code(), ExitCode::device);
+}
+
+}  // namespace
+}  // namespace clpv

@@ -1,0 +1,115 @@
+// Kernel text: embedded files, includes, the folder that overrides them, and what is said when one does not
+// build.
+#include "device/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "device/kernel_files.hpp"
+#include "device/session.hpp"
+#include "run_program.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A folder of kernel files that CLPV_KERNEL_DIR names while this lives.
+class KernelFolder {
+ public:
+  KernelFolder() { setenv("CLPV_KERNEL_DIR", folder_.path().c_str(), 1); }
+  ~KernelFolder() { unsetenv("CLPV_KERNEL_DIR"); }
+  void write(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder_.path() / name).parent_path());
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST(KernelFiles, EveryFileIsEmbeddedByteForByte) {
+  const std::filesystem::path root = std::filesystem::path(CLPV_SOURCE_DIR) / "kernels";
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+    if (entry.path().extension() != ".cl" && entry.path().extension() != ".h") continue;
+    const std::string name = std::filesystem::relative(entry.path(), root).generic_string();
+    EXPECT_EQ(kernel_file(name), test::read_file(entry.path())) << name;
+    ++count;
+  }
+  EXPECT_EQ(detail::embedded_kernel_files().size(), count);
+}
+
+TEST(KernelFiles, IncludesAreReplacedAndMarked) {
+  KernelFolder folder;
+  folder.write("a.cl", "a1\n#include \"b.h\"\n  #include \"shared/b.h\"\na4\n");
+  folder.write("b.h", "b1\n");
+  folder.write("shared/b.h", "#include \"b.h\"\ns2");
+  EXPECT_EQ(assemble_kernel_source("a.cl"),
+            "#line 1 \"a.cl\"\na1\n"
+            "#line 1 \"b.h\"\nb1\n#line 3 \"a.cl\"\n"
+            "#line 1 \"shared/b.h\"\n#line 1 \"b.h\"\nb1\n#line 2 \"shared/b.h\"\ns2\n#line 4 \"a.cl\"\n"
+            "a4\n");
+}
+
+TEST(KernelFiles, FolderOverridesFileByFile) {
+  KernelFolder folder;
+  folder.write("sizes.cl", "// mine\n#include \"shared/grid.h\"\n");
+  EXPECT_EQ(kernel_file("sizes.cl"), "// mine\n#include \"shared/grid.h\"\n");
+  EXPECT_THAT(assemble_kernel_source("sizes.cl"), HasSubstr("} ClpvGrid;")) << "the rest stays embedded";
+}
+
+TEST(KernelFiles, UnknownAndEndlessOnesAreRefused) {
+  EXPECT_THROW(kernel_file("no_such.cl"), Error);
+  KernelFolder folder;
+  folder.write("loop.cl", "#include \"loop.cl\"\n");
+  EXPECT_THROW(assemble_kernel_source("loop.cl"), Error);
+}
+
+TEST(ProgramText, LiteralsThenGeneratedThenFile) {
+  KernelFolder folder;
+  folder.write("a.cl", "int a;\n");
+  const std::string text =
+      program_text({.file = "a.cl", .literals = {{"CLPV_B", "2"}, {"CLPV_A", "1"}}, .generated = "int g;"});
+  EXPECT_EQ(text,
+            "#line 1 \"literals\"\n#define CLPV_A 1\n#define CLPV_B 2\n"
+            "#line 1 \"generated\"\nint g;\n#line 1 \"a.cl\"\nint a;\n");
+}
+
+TEST(ProgramErrors, LinesRoundAnErrorAreNumberedAsTheFileIs) {
+  const std::string text = "#line 1 \"a.h\"\nh1\nh2\nh3\n#line 7 \"b.cl\"\nb7\nb8\nb9\nb10\nb11\n";
+  const std::string log =
+      "/tmp/x/b.cl:9:5: error: no such name\nb.cl:9:8: error: again\na.h:2:1: warning: unused\n";
+  EXPECT_EQ(lines_round_errors(text, log),
+            "b.cl:\n     7 | b7\n     8 | b8\n>    9 | b9\n    10 | b10\n    11 | b11\n")
+      << "once, though named twice; and no warnings";
+  EXPECT_EQ(lines_round_errors(text, "error: a.h:1:1: as PoCL says it"),
+            "a.h:\n>    1 | h1\n     2 | h2\n     3 | h3\n");
+  EXPECT_EQ(lines_round_errors(text, "internal compiler error"), "");
+}
+
+TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
+  KernelFolder folder;
+  folder.write("broken.h", "// one\nint half_done(int a) {\n  return a + no_such_name;\n}\n");
+  folder.write("broken.cl",
+               "#include \"broken.h\"\n__kernel void k(__global int* a) { a[0] = half_done(CLPV_X); }\n");
+  Session session(choose_device());
+  try {
+    session.kernel({.file = "broken.cl", .literals = {{"CLPV_X", "1"}}, .generated = {}}, "k");
+    FAIL() << "a broken kernel was built";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::run_time);
+    EXPECT_THAT(error.what(), HasSubstr("kernels/broken.cl"));
+    EXPECT_THAT(error.what(), HasSubstr("-cl-std=CL1.2"));
+    EXPECT_THAT(error.what(), HasSubstr(session.device().name));
+    EXPECT_THAT(error.what(), HasSubstr("no_such_name"));
+    EXPECT_THAT(error.what(), HasSubstr(">    3 |   return a + no_such_name;"));
+  }
+}
+
+}  // namespace
+}  // namespace clpv
