@@ -1,0 +1,67 @@
+// Stage `shade`: light straight from the lights, shadowed, and the images a frame can show
+// (kernels/shade.cl).
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "device/session.hpp"
+#include "kernels/shared/light.h"
+#include "kernels/shared/shade.h"
+#include "pipeline/surface.hpp"
+
+namespace clpv {
+
+/// What an image shows; units and meaning in kernels/shared/shade.h. full = direct + indirect.
+enum class Show : unsigned {
+  full = CLPV_SHOW_FULL,
+  direct = CLPV_SHOW_DIRECT,
+  indirect = CLPV_SHOW_INDIRECT,
+  irradiance = CLPV_SHOW_IRRADIANCE,
+  albedo = CLPV_SHOW_ALBEDO,
+  normal = CLPV_SHOW_NORMAL,
+  depth = CLPV_SHOW_DEPTH,
+};
+
+/// "full", "direct", ...: in the order of Show.
+const std::vector<std::string>& show_names();
+const std::string& name_of(Show show);
+/// Throws Error(usage) for another name, listing those there are.
+Show show_named(std::string_view name);
+
+/// A light and the maps its shadows come from: a depth buffer a view (float a texel, row 0 first, [m] along
+/// the view's forward axis, 0: nothing there). Several views share their eye and together see all that is
+/// lit; a surface takes the one that looks most along it. No view: the light casts no shadow. A surface
+/// outside the map is lit.
+struct ShadowedLight {
+  ClpvLight light{};
+  std::vector<ClpvView> views;
+  std::vector<cl::Buffer> depths;
+};
+
+class Shader {
+ public:
+  explicit Shader(Session& session);
+
+  /// E of all lights on every surface the camera sees; what show() then shows as direct light.
+  /// Throws Error(run_time) for a camera's view in format paper, maps that are not one a view, or smaller
+  /// than the filter's 4 x 4 texels.
+  void light(const Surface& camera, const std::vector<ShadowedLight>& lights);
+
+  /// `camera` as given to light() last. `irradiance`: of the volumes (Gatherer). `image`: float4 a pixel,
+  /// RGBA, linear, finite; alpha 1 where there is a surface, else all 0.
+  void show(Show what, const Surface& camera, const cl::Buffer& irradiance, cl::Buffer& image);
+
+ private:
+  void add(const Surface& camera, const ShadowedLight& shadowed);
+
+  Session& session_;
+  cl::Kernel light_, shade_;
+  cl::Buffer direct_;  // float4 a pixel, E of all lights
+  cl::Buffer views_;   // of the light at hand
+  std::size_t pixels_ = 0, reserved_views_ = 0;
+};
+
+}  // namespace clpv

@@ -1,0 +1,25 @@
+// What the checks of the camera's stages share: surfaces to look at, and images held against the twin's.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <glm/glm.hpp>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/surface.hpp"
+#include "reference/check.hpp"
+
+namespace clpv::reference {
+
+/// A camera near the origin that sees surfaces at random depths up to 12 m, turned, coloured and glowing at random; a
+/// tenth of the pixels see none.
+SurfaceImage random_surfaces(std::mt19937& random);
+
+/// Red, green and blue of every pixel (and alpha, where the twin has it) against the twin's; errors relative to the
+/// twin's largest value, held against the stage's tolerance. `width` of the image, to name the place.
+CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& twin,
+                           unsigned width, std::string_view stage, const std::string& variant);
+
+}  // namespace clpv::reference

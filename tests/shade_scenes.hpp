@@ -1,0 +1,191 @@
+// Scenes of known light for the tests of shading: a floor, suns, bulbs, and shadow maps that are ray-cast, texel centre
+// by texel centre.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "pipeline/shade.hpp"
+#include "reference/shade.hpp"
+#include "reference/view.hpp"
+
+namespace clpv {
+namespace shade_scenes {
+
+using reference::MappedLight;
+using reference::ShadowMap;
+using std::numbers::pi;
+
+inline constexpr unsigned kSide = 96;    // pixels of the camera's image
+inline constexpr double kHalf = 6;       // the camera sees the floor from -kHalf to kHalf [m]
+inline constexpr unsigned kTexels = 64;  // of a shadow map's side
+inline constexpr double kMapHalf = 10;   // [m]
+inline constexpr double kTexel = 2 * kMapHalf / kTexels;
+inline constexpr double kFloat = 1e-5;
+
+inline Session& session() {
+  static Session one(choose_device(""));
+  return one;
+}
+
+inline void set(float v[3], const glm::dvec3& value) {
+  for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(value[i]);
+}
+
+inline ClpvView view_of(const glm::dvec3& eye, const glm::dvec3& forward, bool orthographic, double half,
+                        unsigned side) {
+  const glm::dvec3 f = glm::normalize(forward);
+  const glm::dvec3 r =
+      glm::normalize(glm::cross(f, std::abs(f.z) < 0.9 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0)));
+  ClpvView view{};
+  set(view.eye, eye), set(view.forward, f), set(view.right, r), set(view.up, glm::cross(r, f));
+  view.orthographic = orthographic ? 1.0f : 0.0f;
+  view.half_width = view.half_height = static_cast<float>(half);
+  view.near_depth = 0.01f, view.far_depth = 1000;
+  view.width = view.height = side;
+  return view;
+}
+
+/// Where a ray `origin` + t `direction` first meets something: t, or 0 where it meets nothing at t > 0.
+using Geometry = std::function<double(const glm::dvec3& origin, const glm::dvec3& direction)>;
+
+inline double plane_at(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& normal,
+                       double height) {
+  const double t = (height - glm::dot(normal, origin)) / glm::dot(normal, direction);
+  return std::isfinite(t) && t > 0 ? t : 0;
+}
+
+inline double nearer(double a, double b) {
+  return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b);
+}
+
+inline ShadowMap cast(const ClpvView& view, const Geometry& geometry) {
+  ShadowMap map{view, {}};
+  for (unsigned y = 0; y < view.height; ++y) {
+    for (unsigned x = 0; x < view.width; ++x) {
+      const glm::dvec3 at0 = reference::surface_position(view, x, y, 0);
+      const glm::dvec3 ray = reference::surface_position(view, x, y, 1) - at0;  // advances depth by 1
+      map.depth.push_back(static_cast<float>(geometry(at0, ray)));
+    }
+  }
+  return map;
+}
+
+/// What an orthographic camera along `forward` sees of a geometry whose normal is known; albedo pi, so that the
+/// radiance it shows is E.
+inline SurfaceImage look(const glm::dvec3& forward, const Geometry& geometry,
+                         const std::function<glm::dvec3(const glm::dvec3&)>& normal) {
+  SurfaceImage image;
+  image.view = view_of(-20.0 * glm::normalize(forward), forward, true, kHalf, kSide);
+  const ShadowMap seen = cast(image.view, geometry);
+  image.depth = seen.depth;
+  for (unsigned pixel = 0; pixel < kSide * kSide; ++pixel) {
+    const glm::dvec3 p =
+        reference::surface_position(image.view, pixel % kSide, pixel / kSide, image.depth[pixel]);
+    image.normal.emplace_back(image.depth[pixel] > 0 ? glm::vec3(normal(p)) : glm::vec3(0), 0.0f);
+    image.colour.emplace_back(glm::vec3(static_cast<float>(pi)), 1.0f);
+  }
+  return image;
+}
+
+inline glm::dvec3 point_of(const SurfaceImage& image, std::size_t pixel) {
+  return reference::surface_position(image.view, static_cast<double>(pixel % kSide),
+                                     static_cast<double>(pixel / kSide), image.depth[pixel]);
+}
+
+inline const glm::dvec3 kUp(0, 1, 0);
+
+inline Geometry floor_at(double height) {
+  return [=](const glm::dvec3& o, const glm::dvec3& d) { return plane_at(o, d, kUp, height); };
+}
+
+/// The floor y = 0 from above.
+inline SurfaceImage floor_image() {
+  return look(-kUp, floor_at(0), [](const glm::dvec3&) { return kUp; });
+}
+
+inline MappedLight sun(const glm::dvec3& direction, double irradiance) {
+  MappedLight light;
+  light.light.kind = CLPV_LIGHT_DIRECTIONAL;
+  set(light.light.direction, glm::normalize(direction));
+  set(light.light.intensity, glm::dvec3(irradiance, 2 * irradiance, 3 * irradiance));
+  return light;
+}
+
+inline MappedLight sun(const glm::dvec3& direction, double irradiance, const Geometry& casting) {
+  MappedLight light = sun(direction, irradiance);
+  const ClpvView view = view_of(-30.0 * glm::normalize(direction), direction, true, kMapHalf, kTexels);
+  light.maps = {cast(view, casting)};
+  return light;
+}
+
+inline MappedLight bulb(const glm::dvec3& position, double intensity) {
+  MappedLight light;
+  light.light.kind = CLPV_LIGHT_POINT;
+  set(light.light.position, position);
+  set(light.light.intensity, glm::dvec3(intensity, 2 * intensity, 3 * intensity));
+  return light;
+}
+
+inline const std::array<glm::dvec3, 6> kDirections = {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0),
+                                                      glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0),
+                                                      glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)};
+
+inline ShadowedLight upload(const MappedLight& light) {
+  ShadowedLight shadowed{light.light, {}, {}};
+  for (const ShadowMap& map : light.maps) {
+    shadowed.views.push_back(map.view);
+    shadowed.depths.push_back(session().upload(map.depth, "test: shadow map"));
+  }
+  return shadowed;
+}
+
+inline std::vector<glm::vec4> show(Show what, const SurfaceImage& image,
+                                   const std::vector<MappedLight>& lights,
+                                   const std::vector<cl_float4>& indirect = {}) {
+  std::vector<ShadowedLight> shadowed;
+  for (const MappedLight& light : lights) shadowed.push_back(upload(light));
+  const std::size_t pixels = image.depth.size();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const cl::Buffer irradiance =
+      session().upload(indirect.empty() ? std::vector<cl_float4>(pixels) : indirect, "test: irradiance");
+  cl::Buffer shown = session().upload(std::vector<glm::vec4>(pixels, glm::vec4(nan)), "test: image");
+  const Surface camera = upload_surface(session(), image);
+  Shader shader(session());
+  shader.light(camera, shadowed);
+  shader.show(what, camera, irradiance, shown);
+  return session().read<glm::vec4>(shown, pixels);
+}
+
+/// E of the first channel, pixel by pixel; the kernels' and the twin's agree.
+inline std::vector<double> lit(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
+  const std::vector<glm::vec4> device = show(Show::direct, image, lights);
+  const std::vector<glm::dvec3> twin = reference::direct_irradiance(lights, image);
+  double largest = 0;
+  for (const glm::dvec3& e : twin) largest = std::max(largest, e.x);
+  std::vector<double> e;
+  for (std::size_t pixel = 0; pixel < twin.size(); ++pixel) {
+    e.push_back(device[pixel].x);
+    EXPECT_NEAR(device[pixel].x, twin[pixel].x, 1e-4 * largest) << "twin, pixel " << pixel;
+    EXPECT_NEAR(device[pixel].z, 3 * twin[pixel].x, 3e-4 * largest) << "blue, pixel " << pixel;
+  }
+  return e;
+}
+
+inline void expect_lit(const SurfaceImage& image, const MappedLight& light,
+                       const std::function<double(const glm::dvec3&)>& expected, double scale) {
+  const std::vector<double> e = lit(image, {light});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    ASSERT_NEAR(e[pixel], expected(point_of(image, pixel)), kFloat * scale) << "pixel " << pixel;
+  }
+}
+
+}  // namespace shade_scenes
+}  // namespace clpv

@@ -1,0 +1,179 @@
+// Shadows of known outline, and surfaces that must not shadow themselves (kernels/shade.cl).
+#include "shade_scenes.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace shade_scenes;
+
+/// A roof 2 m above the floor, over all x < 0.
+double roof(const glm::dvec3& o, const glm::dvec3& d) {
+  const double t = plane_at(o, d, kUp, 2);
+  return t > 0 && (o + t * d).x < 0 ? t : 0;
+}
+
+TEST(Shadow, ShadowFallsWhereTheRoofStands) {
+  for (const double slant : {0.0, 0.6, -1.1}) {
+    const SurfaceImage image = floor_image();
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(slant, -1, 0.1));
+    const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
+      return nearer(plane_at(o, d, kUp, 0), roof(o, d));
+    };
+    const std::vector<double> e = lit(image, {sun(direction, 7, casting)});
+    const double full = -7 * direction.y,
+                 edge = 2 * slant;  // light travels 2 m down on its way past the edge
+    // Two texels of filter on either side, as the floor is cut by the map's slanted texels.
+    const double penumbra = 2 * kTexel / -direction.y;
+    double narrowest = 1e9, widest = -1e9;
+    for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+      const double x = point_of(image, pixel).x;
+      if (x < edge - penumbra) {
+        ASSERT_EQ(e[pixel], 0.0) << "x " << x << " slant " << slant;
+      }
+      if (x > edge + penumbra) {
+        ASSERT_NEAR(e[pixel], full, 7 * kFloat) << "x " << x << " slant " << slant;
+      }
+      if (e[pixel] > 0.45 * full && e[pixel] < 0.55 * full) {
+        narrowest = std::min(narrowest, x), widest = std::max(widest, x);
+      }
+    }
+    EXPECT_GT(narrowest, edge - kTexel / -direction.y) << "half the light arrives at the edge";
+    EXPECT_LT(widest, edge + kTexel / -direction.y);
+  }
+}
+
+TEST(Shadow, PenumbraIsMonotone) {
+  const SurfaceImage image = floor_image();
+  const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
+    return nearer(plane_at(o, d, kUp, 0), roof(o, d));
+  };
+  const std::vector<double> e = lit(image, {sun({0.4, -1, 0}, 7, casting)});
+  int levels = 0;
+  for (std::size_t pixel = 1; pixel < e.size(); ++pixel) {
+    if (pixel % kSide == 0) continue;
+    ASSERT_GE(e[pixel], e[pixel - 1] - 7e-6) << "pixel " << pixel;
+    levels += pixel / kSide == 40 && e[pixel] > e[pixel - 1] + 1e-3 ? 1 : 0;
+  }
+  EXPECT_GE(levels, 4) << "a filtered edge is no step";
+}
+
+TEST(Shadow, TiltedPlanesDoNotShadowThemselves) {
+  // A plane that the light grazes at up to 89 degrees, seen face on, the light's texels turned against the camera's.
+  for (const double degrees : {0.0, 20.0, 45.0, 70.0, 85.0, 89.0}) {
+    for (const double azimuth : {0.0, 0.4, 2.0}) {
+      const double angle = degrees / 180 * pi;
+      const glm::dvec3 direction(std::sin(angle) * std::cos(azimuth), -std::cos(angle),
+                                 std::sin(angle) * std::sin(azimuth));
+      expect_lit(
+          floor_image(), sun(direction, 7, floor_at(0)),
+          [&](const glm::dvec3&) { return 7 * std::cos(angle); }, 7);
+    }
+  }
+}
+
+TEST(Shadow, PerspectiveMapsDoNotShadowTheirReceiver) {
+  MappedLight light = bulb({-4, 0.6, 1}, 40);  // grazes the floor's far side at 87 degrees
+  const MappedLight free = light;
+  for (const glm::dvec3& direction : kDirections) {
+    light.maps.push_back(cast(view_of({-4, 0.6, 1}, direction, false, 1, kTexels), floor_at(0)));
+  }
+  const SurfaceImage image = floor_image();
+  const std::vector<double> e = lit(image, {light}), unshadowed = lit(image, {free});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    ASSERT_NEAR(e[pixel], unshadowed[pixel], 1e-6 * unshadowed[pixel]) << "pixel " << pixel;
+  }
+}
+
+TEST(Shadow, RoundSurfacesDoNotShadowThemselves) {
+  const glm::dvec3 forward = glm::normalize(glm::dvec3(0.3, -1, 0.5)),
+                   direction = glm::normalize(glm::dvec3(0.9, -1, 0));
+  const double radius = 4;
+  const Geometry sphere = [&](const glm::dvec3& o, const glm::dvec3& d) {
+    const double b = glm::dot(o, d) / glm::dot(d, d), c = (glm::dot(o, o) - radius * radius) / glm::dot(d, d);
+    return b * b > c ? std::max(0.0, -b - std::sqrt(b * b - c)) : 0.0;
+  };
+  const SurfaceImage image = look(forward, sphere, [](const glm::dvec3& p) { return glm::normalize(p); });
+  const std::vector<double> e = lit(image, {sun(direction, 7, sphere)});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    if (image.depth[pixel] <= 0) continue;
+    const double cosine = -glm::dot(direction, glm::dvec3(image.normal[pixel]));
+    if (cosine > 0.2) {
+      ASSERT_NEAR(e[pixel], 7 * cosine, 7e-4) << "pixel " << pixel << " cosine " << cosine;
+    }
+    if (cosine <= 0) {
+      ASSERT_EQ(e[pixel], 0.0);
+    }
+  }
+}
+
+TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
+  // A wall x = 0 of 3 m on the floor; light comes down over it at 45 degrees. What may leak at its foot: half the
+  // filter, and what the lift hides of the wall.
+  const double foot =
+      (2 * std::sqrt(2.0) + CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * std::sqrt(0.5)) * kTexel;
+  const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
+    const double t = plane_at(o, d, {1, 0, 0}, 0);
+    const double y = (o + t * d).y;
+    return nearer(plane_at(o, d, kUp, 0), t > 0 && y > 0 && y < 3 ? t : 0);
+  };
+  const SurfaceImage image = floor_image();
+  const std::vector<double> e = lit(image, {sun({1, -1, 0}, 7, casting)});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    const double x = point_of(image, pixel).x;
+    if (x > foot && x < 3 - 3 * kTexel) {
+      ASSERT_EQ(e[pixel], 0.0) << "light under the wall at x " << x;
+    }
+    if (x < -3 * kTexel || x > 3 + 3 * kTexel) {
+      ASSERT_NEAR(e[pixel], 7 * std::sqrt(0.5), 7 * kFloat) << "x " << x;
+    }
+  }
+}
+
+TEST(Shadow, SixViewsOfAPointLightShowNoSeams) {
+  // Inside a room whose walls the light's views cross slantwise; nothing stands in it.
+  const auto room = [](const glm::dvec3& o, const glm::dvec3& d) {
+    double t = 0;
+    for (const glm::dvec3& n : kDirections) {
+      if (glm::dot(n, d) > 0) t = nearer(t, plane_at(o, d, n, n.y < 0 ? 0 : 7));
+    }
+    return t;
+  };
+  const glm::dvec3 at(0.7, 2.5, -1.1);
+  MappedLight light = bulb(at, 40);
+  for (const glm::dvec3& direction : kDirections)
+    light.maps.push_back(cast(view_of(at, direction, false, 1, kTexels), room));
+  const SurfaceImage image = floor_image();
+  const std::vector<double> e = lit(image, {light}), unshadowed = lit(image, {bulb(at, 40)});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    ASSERT_NEAR(e[pixel], unshadowed[pixel], 1e-6 * unshadowed[pixel]) << "pixel " << pixel;
+  }
+}
+
+TEST(Shadow, OutsideItsMapASurfaceIsLit) {
+  MappedLight light =
+      sun({0, -1, 0}, 7, [](const glm::dvec3&, const glm::dvec3&) { return 1.0; });  // all blocked
+  light.maps[0].view.half_width = light.maps[0].view.half_height = 2;
+  const SurfaceImage image = floor_image();
+  const std::vector<double> e = lit(image, {light});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    const glm::dvec3 p = point_of(image, pixel);
+    const double out = std::max(std::abs(p.x), std::abs(p.z));
+    if (out < 2) {
+      ASSERT_EQ(e[pixel], 0.0);
+    }
+    if (out > 2.2) {
+      ASSERT_NEAR(e[pixel], 7, 7 * kFloat);
+    }
+  }
+}
+
+TEST(Shadow, TwoRunsAreIdentical) {
+  const SurfaceImage image = floor_image();
+  const MappedLight light = sun({0.4, -1, 0.2}, 7, [](const glm::dvec3& o, const glm::dvec3& d) {
+    return nearer(plane_at(o, d, kUp, 0), roof(o, d));
+  });
+  EXPECT_EQ(show(Show::full, image, {light}), show(Show::full, image, {light}));
+}
+
+}  // namespace
+}  // namespace clpv
