@@ -13,7 +13,6 @@ namespace clpv {
 namespace {
 
 using reference::PathTracerOptions;
-using reference::trace_paths;
 using reference::TracedImage;
 using std::numbers::pi;
 
@@ -31,6 +30,10 @@ ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float half, uns
   view.near_depth = 0.001f, view.far_depth = kOpen;
   view.width = width, view.height = height;
   return view;
+}
+
+TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options) {
+  return reference::trace_paths(scene, scene.lights, view, options);
 }
 
 Material grey(float albedo) {

@@ -34,7 +34,8 @@ struct Pixel {
 /// Traces one pixel's rays. Cheap to make: one a thread, so that rays can be counted without sharing.
 class Tracer {
  public:
-  Tracer(const RayScene& rays, const PathTracerOptions& options) : rays_(rays), options_(options) {}
+  Tracer(const RayScene& rays, const std::vector<Light>& lights, const PathTracerOptions& options)
+      : rays_(rays), lights_(lights), options_(options) {}
 
   std::uint64_t shot() const { return shot_; }
 
@@ -50,7 +51,7 @@ class Tracer {
   glm::dvec3 direct(const Hit& hit) {
     const glm::vec3 origin = rays_.leave(hit);
     glm::dvec3 sum(0);
-    for (const Light& light : rays_.scene().lights) {
+    for (const Light& light : lights_) {
       const Incident in = light_at(light.data, glm::dvec3(hit.position));
       const double cosine = glm::dot(glm::dvec3(hit.normal), in.towards);
       if (cosine <= 0 || glm::dot(glm::dvec3(hit.geometric), in.towards) <= 0) continue;
@@ -74,10 +75,13 @@ class Tracer {
       ++shot_;
       const std::optional<Hit> next = rays_.intersect(rays_.leave(at), direction, 0, kInfinity, Faces::both);
       if (!next) break;
-      if (options_.emissive_lights) sum += throughput * glm::dvec3(next->emissive) * std::numbers::pi;
-      throughput *= glm::dvec3(next->albedo);
-      sum += throughput * direct(*next);
-      if (!survive(throughput, bounce, mix(mix(dimensions), index))) break;
+      if (options_.emissive_lights) sum += throughput * glm::dvec3(rays_.emissive(*next)) * std::numbers::pi;
+      const glm::dvec3 lit = direct(*next);
+      const bool last = bounce == options_.bounces;
+      if (last && lit == glm::dvec3(0)) break;  // most last bounces: spares them the look at textures
+      throughput *= glm::dvec3(rays_.albedo(*next));
+      sum += throughput * lit;
+      if (last || !survive(throughput, bounce, mix(mix(dimensions), index))) break;
       at = *next;
     }
     return sum;
@@ -100,6 +104,7 @@ class Tracer {
   }
 
   const RayScene& rays_;
+  const std::vector<Light>& lights_;
   const PathTracerOptions& options_;
   std::uint64_t shot_ = 0;
 };
@@ -107,9 +112,14 @@ class Tracer {
 /// The image while it is traced, tile by tile.
 class Work {
  public:
-  Work(const Scene& scene, const ClpvView& view, const PathTracerOptions& options,
-       const TraceProgress& progress)
-      : rays_(scene), options_(options), progress_(progress), pixels_(std::size_t{view.width} * view.height) {
+  Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+       const PathTracerOptions& options, const TraceProgress& progress)
+
+      : rays_(scene),
+        lights_(lights),
+        options_(options),
+        progress_(progress),
+        pixels_(std::size_t{view.width} * view.height) {
     image_.view = view;
     threads_ = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   }
@@ -128,8 +138,8 @@ class Work {
       const Hit& hit = *pixels_[i].hit;
       image_.depth[i] = hit.distance;
       image_.normal[i] = hit.normal;
-      image_.albedo[i] = hit.albedo;
-      image_.emissive[i] = hit.emissive;
+      image_.albedo[i] = rays_.albedo(hit);
+      image_.emissive[i] = rays_.emissive(hit);
       image_.direct[i] = glm::vec3(tracer.direct(hit));
     });
   }
@@ -174,7 +184,7 @@ class Work {
     std::uint32_t done = 0;
     std::mutex mutex;
     const auto run = [&] {
-      Tracer tracer(rays_, options_);
+      Tracer tracer(rays_, lights_, options_);
       for (std::uint32_t tile; (tile = next.fetch_add(1)) < tiles;) {
         const std::uint32_t left = tile % columns * kTile, top = tile / columns * kTile;
         for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
@@ -209,6 +219,7 @@ class Work {
   }
 
   RayScene rays_;
+  const std::vector<Light>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
   std::vector<Pixel> pixels_;
@@ -217,17 +228,17 @@ class Work {
   double before_ = 0, after_ = 0;
 };
 
-void check(const Scene& scene, const PathTracerOptions& options) {
+void check(const Scene& scene, const std::vector<Light>& lights, const PathTracerOptions& options) {
   if (options.bounces < 0) throw Error(ExitCode::usage, "bounces {}: 1 or more, or all", options.bounces);
   if (options.samples > kMostSamples) {
     throw Error(ExitCode::usage, "{} samples a pixel: at most {}", options.samples, kMostSamples);
   }
   if (options.samples == 0 && !(options.noise > 0))
     throw Error(ExitCode::usage, "noise {}: above 0", options.noise);
-  if (scene.lights.empty() && !options.emissive_lights) {
+  if (lights.empty() && !options.emissive_lights) {
     throw Error(ExitCode::bad_input, "{}: no light: the whole image would be black", scene.path);
   }
-  for (const Light& light : scene.lights) {
+  for (const Light& light : lights) {
     const ClpvLight& d = light.data;
     const auto finite = [](const float(&v)[3]) { return std::isfinite(v[0] + v[1] + v[2]); };
     if (d.kind > CLPV_LIGHT_POINT || !finite(d.position) || !finite(d.direction) || !finite(d.intensity) ||
@@ -253,10 +264,10 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 
 }  // namespace
 
-TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options,
-                        const TraceProgress& progress) {
-  check(scene, options);
-  Work work(scene, view, options, progress);
+TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+                        const PathTracerOptions& options, const TraceProgress& progress) {
+  check(scene, lights, options);
+  Work work(scene, lights, view, options, progress);
   work.look();
   if (options.samples > 0) {
     work.expect(0, 1);

@@ -49,10 +49,11 @@ struct TracedImage {
 /// Called now and then, by one thread at a time, with the estimated share done in [0, 1].
 using TraceProgress = std::function<void(double)>;
 
-/// The same bytes for the same scene, view, options and seed, whatever the number of threads.
+/// `lights` shine, whatever Scene::lights holds (Scene::lights_for).
+/// The same bytes for the same scene, lights, view, options and seed, whatever the number of threads.
 /// Throws Error(bad_input) for a scene without surface, without light, or with a value that is not finite;
 /// Error(usage) for options out of range.
-TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options,
-                        const TraceProgress& progress = {});
+TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+                        const PathTracerOptions& options, const TraceProgress& progress = {});
 
 }  // namespace clpv::reference

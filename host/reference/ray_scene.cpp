@@ -246,9 +246,11 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Scene& scene = *impl_->scene;
-  const Triangle& triangle = impl_->triangle(query.hit.geomID, query.hit.primID);
   const float u = query.hit.u, v = query.hit.v;
   Hit hit;
+  hit.triangle = impl_->triangles[query.hit.geomID][query.hit.primID];
+  hit.weights = {u, v};
+  const Triangle& triangle = scene.triangles[hit.triangle];
   hit.distance = query.ray.tfar;
   hit.position = interpolate(scene, triangle, u, v, position);
   hit.geometric = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
@@ -257,9 +259,17 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   const float length = glm::length(hit.normal);
   hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // vertices that disagree may cancel out
   if (glm::dot(hit.normal, hit.geometric) < 0) hit.normal = -hit.normal;
-  hit.albedo = glm::vec3(base_colour(scene, triangle, u, v));
-  hit.emissive = emitted(scene, triangle, u, v);
   return hit;
+}
+
+glm::vec3 RayScene::albedo(const Hit& hit) const {
+  const Scene& scene = *impl_->scene;
+  return glm::vec3(base_colour(scene, scene.triangles[hit.triangle], hit.weights.x, hit.weights.y));
+}
+
+glm::vec3 RayScene::emissive(const Hit& hit) const {
+  const Scene& scene = *impl_->scene;
+  return emitted(scene, scene.triangles[hit.triangle], hit.weights.x, hit.weights.y);
 }
 
 bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const {

@@ -16,10 +16,10 @@ struct Hit {
   float distance = 0;  ///< in lengths of the ray's direction
   glm::vec3 position{
       0};  ///< [m], from the triangle's vertices (closer to the surface than origin + distance)
-  glm::vec3 geometric{0};  ///< unit normal of the triangle, towards where the ray came from
-  glm::vec3 normal{0};     ///< unit, interpolated between the vertices, on the side of `geometric`
-  glm::vec3 albedo{0};     ///< diffuse: base colour x texture x vertex colour, linear
-  glm::vec3 emissive{0};   ///< radiance [W/m^2/sr]
+  glm::vec3 geometric{0};      ///< unit normal of the triangle, towards where the ray came from
+  glm::vec3 normal{0};         ///< unit, interpolated between the vertices, on the side of `geometric`
+  std::uint32_t triangle = 0;  ///< index in Scene::triangles
+  glm::vec2 weights{0};        ///< of its second and third vertex
 };
 
 /// Which surfaces a ray can hit.
@@ -47,6 +47,11 @@ class RayScene {
 
   /// Whether anything stands on origin + t direction, t in (0, furthest), from either side.
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const;
+
+  /// Diffuse albedo: base colour x texture x vertex colour, linear.
+  glm::vec3 albedo(const Hit& hit) const;
+  /// Emitted radiance [W/m^2/sr].
+  glm::vec3 emissive(const Hit& hit) const;
 
   /// A start for rays that leave the hit's surface on the side of `geometric`: far enough off not to meet it
   /// again.
