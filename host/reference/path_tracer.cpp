@@ -75,11 +75,12 @@ class Tracer {
       ++shot_;
       const std::optional<Hit> next = rays_.intersect(rays_.leave(at), direction, 0, kInfinity, Faces::both);
       if (!next) break;
-      if (options_.emissive_lights) sum += throughput * glm::dvec3(rays_.emissive(*next)) * std::numbers::pi;
+      if (options_.emissive_lights)
+        sum += throughput * glm::dvec3(rays_.materials().emissive(next->point)) * std::numbers::pi;
       const glm::dvec3 lit = direct(*next);
       const bool last = bounce == options_.bounces;
       if (last && lit == glm::dvec3(0)) break;  // most last bounces: spares them the look at textures
-      throughput *= glm::dvec3(rays_.albedo(*next));
+      throughput *= glm::dvec3(rays_.materials().albedo(next->point));
       sum += throughput * lit;
       if (last || !survive(throughput, bounce, mix(mix(dimensions), index))) break;
       at = *next;
@@ -138,8 +139,9 @@ class Work {
       const Hit& hit = *pixels_[i].hit;
       image_.depth[i] = hit.distance;
       image_.normal[i] = hit.normal;
-      image_.albedo[i] = rays_.albedo(hit);
-      image_.emissive[i] = rays_.emissive(hit);
+      const Footprint around = footprint(image_.view, x, y, hit);
+      image_.albedo[i] = rays_.materials().albedo(hit.point, around);
+      image_.emissive[i] = rays_.materials().emissive(hit.point, around);
       image_.direct[i] = glm::vec3(tracer.direct(hit));
     });
   }

@@ -19,14 +19,13 @@ namespace clpv::reference {
 struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
 
-  int bounces =
-      1;  ///< surfaces between a light and the surface seen: 1 is what a volume estimates; or kAllBounces
+  int bounces = 1;            ///< surfaces between a light and the surface seen, or kAllBounces
   std::uint32_t samples = 0;  ///< paths a pixel; 0: as many as `noise` needs
   double noise = 0.02;        ///< where samples is 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: one a processor
-  bool emissive_lights =
-      false;  ///< emissive surfaces light what they face (render's do not: for tests against closed forms)
+  /// Emissive surfaces light what they face. Not in what render is held against: theirs only show.
+  bool emissive_lights = false;
 };
 
 /// One value a pixel, row 0 first; 0 where there is no surface.

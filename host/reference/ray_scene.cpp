@@ -10,14 +10,15 @@
 #include <limits>
 #include <vector>
 
-#include "reference/texture_lookup.hpp"
+#include "reference/triangle.hpp"
+#include "reference/view.hpp"
 #include "support/error.hpp"
 
 namespace clpv::reference {
 namespace {
 
-constexpr unsigned kOpaque = 0,
-                   kMasked = 1;  // Embree's geometries: masked triangles alone pay for the filter
+// Embree's geometries: masked triangles alone pay for the filter.
+constexpr unsigned kOpaque = 0, kMasked = 1;
 
 template <std::size_t size>
 bool finite(const float (&values)[size]) {
@@ -45,69 +46,6 @@ void check_triangles(const Scene& scene) {
   }
 }
 
-void check_materials(const Scene& scene) {
-  const auto known = [&](std::uint32_t t) { return t == CLPV_NO_TEXTURE || t < scene.textures.size(); };
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    if (!finite(m.base_colour) || !finite(m.emissive) || !std::isfinite(m.alpha_cutoff)) {
-      throw Error(ExitCode::bad_input, "{}: material {}: a colour or alpha cutoff that is not finite",
-                  scene.path, i);
-    }
-    if (!known(m.texture) || !known(m.emissive_texture)) {
-      throw Error(ExitCode::bad_input, "{}: material {}: texture {} and {} of {}", scene.path, i, m.texture,
-                  m.emissive_texture, scene.textures.size());
-    }
-  }
-  for (const Texture& t : scene.textures) {
-    if (t.width == 0 || t.height == 0 || t.rgba.size() != 4 * static_cast<std::size_t>(t.width) * t.height) {
-      throw Error(ExitCode::bad_input, "{}: texture {}: {} bytes for {}x{} texels of 4", scene.path, t.name,
-                  t.rgba.size(), t.width, t.height);
-    }
-  }
-}
-
-/// A value of the three vertices at Embree's barycentric (u, v).
-template <typename Get>
-auto interpolate(const Scene& scene, const Triangle& triangle, float u, float v, Get get) {
-  return (1 - u - v) * get(scene.vertices[triangle.vertex[0]]) + u * get(scene.vertices[triangle.vertex[1]]) +
-         v * get(scene.vertices[triangle.vertex[2]]);
-}
-
-glm::vec3 to_vec3(const float (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
-glm::vec3 position(const Vertex& v) {
-  return to_vec3(v.position);
-}
-glm::vec3 normal(const Vertex& v) {
-  return to_vec3(v.normal);
-}
-glm::vec2 coordinates(const Vertex& v) {
-  return {v.uv[0], v.uv[1]};
-}
-glm::vec4 colour(const Vertex& v) {
-  return {v.colour[0], v.colour[1], v.colour[2], v.colour[3]};
-}
-
-/// Base colour and alpha of a triangle at (u, v).
-glm::vec4 base_colour(const Scene& scene, const Triangle& triangle, float u, float v) {
-  const Material& material = scene.materials[triangle.material];
-  const auto& factor = material.base_colour;
-  const glm::vec4 untextured =
-      glm::vec4(factor[0], factor[1], factor[2], factor[3]) * interpolate(scene, triangle, u, v, colour);
-  if (material.texture == CLPV_NO_TEXTURE) return untextured;
-  return untextured *
-         look_up(scene.textures[material.texture], interpolate(scene, triangle, u, v, coordinates));
-}
-
-glm::vec3 emitted(const Scene& scene, const Triangle& triangle, float u, float v) {
-  const Material& material = scene.materials[triangle.material];
-  const glm::vec3 radiance = to_vec3(material.emissive);
-  if (material.emissive_texture == CLPV_NO_TEXTURE || radiance == glm::vec3(0)) return radiance;
-  const glm::vec2 uv = interpolate(scene, triangle, u, v, coordinates);
-  return radiance * glm::vec3(look_up(scene.textures[material.emissive_texture], uv));
-}
-
 struct RtcRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -125,15 +63,13 @@ void check(RTCDevice device) {
 
 struct RayScene::Impl {
   const Scene* scene = nullptr;
-  std::array<std::vector<std::uint32_t>, 2>
-      triangles;     // Embree's (geometry, primitive) -> index in scene->triangles
-  float extent = 0;  // largest coordinate [m]
+  std::optional<Materials> materials;
+  std::array<std::vector<std::uint32_t>, 2> triangles;  // of each geometry: indices in scene->triangles
+  float extent = 0;                                     // largest coordinate [m]
   RtcDevice device;
   RtcScene rtc;
 
-  const Triangle& triangle(unsigned geometry, unsigned primitive) const {
-    return scene->triangles[triangles[geometry][primitive]];
-  }
+  std::uint32_t triangle(const RTCHit& hit) const { return triangles[hit.geomID][hit.primID]; }
   void attach(unsigned id);
 };
 
@@ -149,9 +85,7 @@ struct Context {
 void filter_mask(const RTCFilterFunctionNArguments* args) {
   const auto& impl = *static_cast<const RayScene::Impl*>(args->geometryUserPtr);
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
-  const Triangle& triangle = impl.triangle(hit->geomID, hit->primID);
-  const float alpha = base_colour(*impl.scene, triangle, hit->u, hit->v).a;
-  if (alpha < impl.scene->materials[triangle.material].alpha_cutoff) args->valid[0] = 0;
+  if (impl.materials->hole({impl.triangle(*hit), {hit->u, hit->v}})) args->valid[0] = 0;
 }
 
 /// Lets rays pass through single-sided triangles from behind. Embree's normal is cross(v1 - v0, v2 - v0): it
@@ -160,7 +94,7 @@ void filter_back_faces(const RTCFilterFunctionNArguments* args) {
   const auto& impl = *reinterpret_cast<const Context*>(args->context)->impl;
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
-  const Triangle& triangle = impl.triangle(hit->geomID, hit->primID);
+  const Triangle& triangle = impl.scene->triangles[impl.triangle(*hit)];
   if (impl.scene->materials[triangle.material].flags & CLPV_MATERIAL_DOUBLE_SIDED) return;
   if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z >= 0) args->valid[0] = 0;
 }
@@ -197,14 +131,24 @@ void RayScene::Impl::attach(unsigned id) {
   check(device.get());
 }
 
+Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit) {
+  const glm::dvec3 normal(hit.geometric), here = surface_position(view, px, py, hit.distance);
+  const glm::dvec3 ray = surface_position(view, px, py, 1) - surface_position(view, px, py, 0);
+  const auto step = [&](double x, double y) {
+    const glm::dvec3 across = surface_position(view, x, y, hit.distance) - here;  // at the same depth
+    return across - ray * glm::dot(normal, across) / glm::dot(normal, ray);
+  };
+  return {step(px + 1.0, py), step(px, py + 1.0)};
+}
+
 RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   if (scene.triangles.empty()) {
     throw Error(ExitCode::bad_input, "{}: no surface: there is nothing that light could reach", scene.path);
   }
   check_vertices(scene);
   check_triangles(scene);
-  check_materials(scene);
   impl_->scene = &scene;
+  impl_->materials.emplace(scene);
   for (const Vertex& v : scene.vertices) {
     impl_->extent =
         std::max({impl_->extent, std::abs(v.position[0]), std::abs(v.position[1]), std::abs(v.position[2])});
@@ -230,8 +174,8 @@ RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-const Scene& RayScene::scene() const {
-  return *impl_->scene;
+const Materials& RayScene::materials() const {
+  return *impl_->materials;
 }
 
 std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
@@ -246,30 +190,18 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Scene& scene = *impl_->scene;
-  const float u = query.hit.u, v = query.hit.v;
   Hit hit;
-  hit.triangle = impl_->triangles[query.hit.geomID][query.hit.primID];
-  hit.weights = {u, v};
-  const Triangle& triangle = scene.triangles[hit.triangle];
+  hit.point = {impl_->triangle(query.hit), {query.hit.u, query.hit.v}};
+  const Triangle& triangle = scene.triangles[hit.point.triangle];
   hit.distance = query.ray.tfar;
-  hit.position = interpolate(scene, triangle, u, v, position);
+  hit.position = interpolate(scene, triangle, hit.point.weights, position);
   hit.geometric = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
   if (glm::dot(hit.geometric, direction) > 0) hit.geometric = -hit.geometric;
-  hit.normal = interpolate(scene, triangle, u, v, normal);
+  hit.normal = interpolate(scene, triangle, hit.point.weights, normal);
   const float length = glm::length(hit.normal);
   hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // vertices that disagree may cancel out
   if (glm::dot(hit.normal, hit.geometric) < 0) hit.normal = -hit.normal;
   return hit;
-}
-
-glm::vec3 RayScene::albedo(const Hit& hit) const {
-  const Scene& scene = *impl_->scene;
-  return glm::vec3(base_colour(scene, scene.triangles[hit.triangle], hit.weights.x, hit.weights.y));
-}
-
-glm::vec3 RayScene::emissive(const Hit& hit) const {
-  const Scene& scene = *impl_->scene;
-  return emitted(scene, scene.triangles[hit.triangle], hit.weights.x, hit.weights.y);
 }
 
 bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const {

@@ -2,25 +2,27 @@
 // is hit.
 #pragma once
 
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 
+#include "kernels/shared/view.h"
+#include "reference/materials.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {
 
 /// Where a ray met a surface.
 struct Hit {
-  float distance = 0;  ///< in lengths of the ray's direction
-  glm::vec3 position{
-      0};  ///< [m], from the triangle's vertices (closer to the surface than origin + distance)
-  glm::vec3 geometric{0};      ///< unit normal of the triangle, towards where the ray came from
-  glm::vec3 normal{0};         ///< unit, interpolated between the vertices, on the side of `geometric`
-  std::uint32_t triangle = 0;  ///< index in Scene::triangles
-  glm::vec2 weights{0};        ///< of its second and third vertex
+  float distance = 0;      ///< in lengths of the ray's direction
+  glm::vec3 position{0};   ///< [m], from the vertices: closer to the surface than origin + distance
+  glm::vec3 geometric{0};  ///< unit normal of the triangle, towards where the ray came from
+  glm::vec3 normal{0};     ///< unit, interpolated between the vertices, on the side of `geometric`
+  SurfacePoint point;      ///< the same position on its triangle
 };
+
+/// The footprint of the pixel (px, py) that sees `hit`, its `distance` the depth.
+Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit);
 
 /// Which surfaces a ray can hit.
 enum class Faces {
@@ -38,7 +40,7 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  const Scene& scene() const;
+  const Materials& materials() const;
 
   /// The nearest surface at origin + t direction, t in (nearest, furthest). Holes of masked materials let it
   /// pass.
@@ -47,11 +49,6 @@ class RayScene {
 
   /// Whether anything stands on origin + t direction, t in (0, furthest), from either side.
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const;
-
-  /// Diffuse albedo: base colour x texture x vertex colour, linear.
-  glm::vec3 albedo(const Hit& hit) const;
-  /// Emitted radiance [W/m^2/sr].
-  glm::vec3 emissive(const Hit& hit) const;
 
   /// A start for rays that leave the hit's surface on the side of `geometric`: far enough off not to meet it
   /// again.

@@ -5,17 +5,15 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/mip_chain.hpp"
+
 namespace clpv::reference {
 namespace {
 
-/// sRGB's decoding of every 8-bit value (IEC 61966-2-1).
+/// The linear values of every 8-bit one.
 std::array<float, 256> decode_table() {
   std::array<float, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const double encoded = static_cast<double>(i) / 255.0;
-    table[i] =
-        static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
-  }
+  for (unsigned i = 0; i < table.size(); ++i) table[i] = static_cast<float>(linear_from_srgb(i));
   return table;
 }
 
@@ -51,6 +49,18 @@ glm::vec4 look_up(const Texture& texture, const glm::vec2& uv) {
                       y1 = wrap(y + 1, texture.height, texture.wrap_v);
   return glm::mix(glm::mix(texel(texture, x0, y0), texel(texture, x1, y0), weight.x),
                   glm::mix(texel(texture, x0, y1), texel(texture, x1, y1), weight.x), weight.y);
+}
+
+glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const glm::dvec2& step_x,
+                  const glm::dvec2& step_y) {
+  const glm::dvec2 size(levels[0].width, levels[0].height);
+  const double step = std::max(glm::length(step_x * size), glm::length(step_y * size));  // [texels]
+  const double coarsest = static_cast<double>(levels.size() - 1);
+  const double level = std::isnan(step) ? coarsest : std::clamp(std::log2(step), 0.0, coarsest);
+  const auto fine = static_cast<std::size_t>(level);
+  const auto weight = static_cast<float>(level - static_cast<double>(fine));
+  const glm::vec4 colour = look_up(levels[fine], uv);
+  return weight == 0 ? colour : glm::mix(colour, look_up(levels[fine + 1], uv), weight);
 }
 
 }  // namespace clpv::reference

@@ -1,0 +1,46 @@
+// The colours of a scene's surfaces on the host: factors, vertex colours and textures, filtered as the
+// rasteriser does.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace clpv::reference {
+
+/// A point on a triangle.
+struct SurfacePoint {
+  std::uint32_t triangle = 0;  ///< index in Scene::triangles
+  glm::vec2 weights{0};        ///< of its second and third vertex
+};
+
+/// How far a surface point moves on its triangle's plane [m] from a pixel to the next one right, and the next
+/// below. Zero: a look at a single point, which textures answer from their finest level.
+struct Footprint {
+  glm::dvec3 right{0}, below{0};
+};
+
+/// Borrows the scene: it must outlive this.
+class Materials {
+ public:
+  /// Throws Error(bad_input) that names a material or texture out of range or not finite.
+  explicit Materials(const Scene& scene);
+
+  /// Diffuse albedo: base colour x texture x vertex colour, linear.
+  glm::vec3 albedo(const SurfacePoint& point, const Footprint& footprint = {}) const;
+  /// Emitted radiance [W/m^2/sr].
+  glm::vec3 emissive(const SurfacePoint& point, const Footprint& footprint = {}) const;
+  /// Whether a masked material has a hole here.
+  bool hole(const SurfacePoint& point) const;
+
+ private:
+  glm::vec3 textured(std::uint32_t texture, const SurfacePoint& point, const Footprint& footprint) const;
+  glm::dvec2 texture_step(const Triangle& triangle, const glm::dvec3& step) const;
+
+  const Scene* scene_;
+  std::vector<std::vector<Texture>> textures_;  // mip levels of each
+};
+
+}  // namespace clpv::reference
