@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   app.parse_complete_callback([&] { set_log_level(shared.quiet, shared.verbosity); });
   add_devices(app, shared);
   add_compare(app, shared);
+  add_reference(app, shared);
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"

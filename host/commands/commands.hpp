@@ -16,5 +16,6 @@ struct Shared {
 // Each in commands/NAME.cpp. The callbacks throw clpv::Error; main turns it into an exit code.
 void add_devices(CLI::App& app, Shared& shared);
 void add_compare(CLI::App& app, Shared& shared);
+void add_reference(CLI::App& app, Shared& shared);
 
 }  // namespace clpv

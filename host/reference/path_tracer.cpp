@@ -21,7 +21,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kTile = 16;          // pixels along each side of what a thread takes at a time
 constexpr std::uint32_t kFirstSamples = 64;  // paths a pixel before the noise is judged at all
-constexpr std::uint32_t kMostSamples = 1u << 24;
+constexpr std::uint32_t kMostSamples = PathTracerOptions::kMostSamples;
 constexpr int kCertainBounces = 3;      // further ones are played Russian roulette for
 constexpr double kMostSurvival = 0.95;  // of roulette: paths end even between white walls
 

@@ -18,6 +18,7 @@ namespace clpv::reference {
 
 struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
+  static constexpr std::uint32_t kMostSamples = 1u << 24;
 
   int bounces = 1;            ///< surfaces between a light and the surface seen, or kAllBounces
   std::uint32_t samples = 0;  ///< paths a pixel; 0: as many as `noise` needs

@@ -1,0 +1,183 @@
+// clpv reference: the path-traced truth that `render`'s images are held against.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "image/image_io.hpp"
+#include "pipeline/view.hpp"
+#include "reference/path_tracer.hpp"
+#include "reference/traced_view.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace {
+
+struct Options {
+  std::string scene, model, camera, output, stats;
+  std::vector<std::string> views = {"full"};
+  std::string bounces = "1";
+  int width = 960, height = 540;
+  reference::PathTracerOptions tracing;
+};
+
+int parse_bounces(const std::string& text) {
+  if (text == "all") return reference::PathTracerOptions::kAllBounces;
+  int bounces = 0;
+  if (!CLI::detail::lexical_cast(text, bounces) || bounces < 1) {
+    throw Error(ExitCode::usage, "--bounces {}: a number from 1, or all", text);
+  }
+  return bounces;
+}
+
+/// Everything that is wrong with the outputs, before any time is spent on them.
+void check_outputs(const Options& options) {
+  if (std::filesystem::path(options.output).extension() != ".exr") {
+    throw Error(ExitCode::usage, "--output {}: a reference is linear and goes into a .exr", options.output);
+  }
+  check_writable(options.output);
+  if (!options.stats.empty()) check_writable(options.stats);
+}
+
+/// A bar fed with shares of the whole.
+class Bar {
+ public:
+  Bar() : progress_("path tracing", kSteps) {}
+  void show(double share) {
+    const auto step = static_cast<std::uint64_t>(share * kSteps);
+    if (step > shown_) progress_.advance(step - shown_);
+    shown_ = std::max(shown_, step);  // an estimate may turn out too hopeful; the bar then waits
+  }
+
+ private:
+  static constexpr std::uint64_t kSteps = 10000;
+  Progress progress_;
+  std::uint64_t shown_ = 0;
+};
+
+nlohmann::json resolved(const Options& options, const Camera& camera) {
+  nlohmann::json json = {{"scene", options.scene},     {"camera", camera.name},
+                         {"width", options.width},     {"height", options.height},
+                         {"bounces", options.bounces}, {"seed", options.tracing.seed}};
+  if (!options.model.empty()) json["model"] = options.model;
+  if (options.tracing.samples > 0) {
+    json["spp"] = options.tracing.samples;
+  } else {
+    json["noise"] = options.tracing.noise;
+  }
+  return json;
+}
+
+Image compose(const reference::TracedImage& traced, const std::vector<std::string>& views) {
+  if (views.size() == 1) return traced_view(traced, show_named(views[0]));
+  Image image;
+  for (const std::string& view : views) append_layer(image, traced_view(traced, show_named(view)), view);
+  return image;
+}
+
+void write_outputs(const Options& options, const Camera& camera, const reference::TracedImage& traced,
+                   double seconds) {
+  const nlohmann::json asked = resolved(options, camera);
+  const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
+  Image image = compose(traced, options.views);
+  for (const auto& [name, value] : asked.items()) {
+    image.metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  image.metadata["command"] = "reference";
+  image.metadata["version"] = CLPV_VERSION;
+  image.metadata["view"] = fmt::format("{}", fmt::join(options.views, ","));
+  image.metadata["spp_traced"] = std::to_string(traced.samples);
+  image.metadata["noise_reached"] = noise.dump();
+  write_exr(options.output, image);
+  if (options.stats.empty()) return;
+  const nlohmann::json stats = {{"schema", 1},    {"options", asked},    {"spp", traced.samples},
+                                {"noise", noise}, {"rays", traced.rays}, {"seconds", seconds}};
+  write_file(options.stats, stats.dump(2) + "\n");
+}
+
+void run(Options options) {
+  options.tracing.bounces = parse_bounces(options.bounces);
+  for (const std::string& view : options.views) show_named(view);
+  check_outputs(options);
+  const Scene scene = load_scene(options.scene, {options.model});
+  for (const std::string& note : scene.notes) spdlog::info("{}", note);
+  const Camera& camera = scene.camera(options.camera);
+  const auto started = std::chrono::steady_clock::now();
+  Bar bar;
+  const reference::TracedImage traced = reference::trace_paths(
+      scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), options.tracing,
+      [&](double share) { bar.show(share); });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  if (options.tracing.samples == 0 && traced.noise > options.tracing.noise) {
+    spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
+                 traced.samples, options.tracing.noise);
+  }
+  write_outputs(options, camera, traced, seconds);
+  spdlog::info("{} paths a pixel, noise {:.4f}, {:.1f} s", traced.samples, traced.noise, seconds);
+}
+
+void add_options(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scene, "scene file (.json), or a bare .gltf or .glb")->required();
+  command.add_option("-o,--output", options.output, "linear EXR; several views become its layers")
+      ->type_name("FILE.exr")
+      ->required();
+  command.add_option("--model", options.model, "replaces the scene file's model")->type_name("PATH");
+  command.add_option("--camera", options.camera, "by name (default: the scene's first)")->type_name("NAME");
+  command.add_option("--view", options.views, fmt::format("{}", fmt::join(show_names(), "|")))
+      ->delimiter(',')
+      ->type_name("VIEW")
+      ->capture_default_str();
+  command.add_option("--width", options.width, "[pixels]")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  command.add_option("--height", options.height, "[pixels]")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  command
+      .add_option("--bounces", options.bounces,
+                  "surfaces between a light and the surface seen; 1: what a volume estimates; or all")
+      ->type_name("N|all")
+      ->capture_default_str();
+  auto* samples = command.add_option("--spp", options.tracing.samples, "paths a pixel")
+                      ->type_name("N")
+                      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples));
+  command
+      .add_option(
+          "--noise", options.tracing.noise,
+          "stops once the standard error of the indirect light is this share of it (root mean square)")
+      ->check(CLI::PositiveNumber)
+      ->excludes(samples)
+      ->capture_default_str();
+  command.add_option("--seed", options.tracing.seed, "the same seed gives the same bytes")
+      ->capture_default_str();
+  command.add_option("--threads", options.tracing.threads, "default: one a processor")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--stats", options.stats, "paths, noise, rays and seconds as JSON")
+      ->type_name("FILE.json");
+}
+
+}  // namespace
+
+void add_reference(CLI::App& app, Shared&) {
+  CLI::App* command = app.add_subcommand("reference", "Path-traced truth of a scene, on the CPU");
+  auto options = std::make_shared<Options>();
+  add_options(*command, *options);
+  command->footer(
+      "Diffuse surfaces, hard shadows, one ray a pixel through its centre: `clpv compare` holds a rendered "
+      "image\n"
+      "against it pixel by pixel. Emissive surfaces show but do not light. A background pixel is 0 with "
+      "alpha 0.\n"
+      "Time grows with the number of pixels: references of 240 x 135 serve to measure, larger ones to look "
+      "at.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace clpv
