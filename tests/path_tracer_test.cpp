@@ -6,7 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
+#include "pipeline/rasterize.hpp"
+#include "pipeline/view.hpp"
+#include "scene_builder.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -15,6 +19,9 @@ namespace {
 using reference::PathTracerOptions;
 using reference::TracedImage;
 using std::numbers::pi;
+using testing::add_material;
+using testing::add_quad;
+using testing::directional_light;
 
 constexpr float kOpen = std::numeric_limits<float>::infinity();
 
@@ -36,48 +43,25 @@ TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTrac
   return reference::trace_paths(scene, scene.lights, view, options);
 }
 
-Material grey(float albedo) {
-  Material material{};
-  material.base_colour[0] = material.base_colour[1] = material.base_colour[2] = albedo;
-  material.base_colour[3] = 1;
-  material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
-  return material;
+unsigned add_grey(Scene& scene, float albedo) {
+  return add_material(scene, glm::vec3(albedo));
 }
 
-/// Adds the parallelogram corner, corner + a, corner + a + b, corner + b; its front faces along cross(a, b).
-void add_quad(Scene& scene, glm::vec3 corner, glm::vec3 a, glm::vec3 b, std::uint32_t material) {
-  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-  const glm::vec3 normal = glm::normalize(glm::cross(a, b));
-  for (const glm::vec2 uv : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)}) {
-    const glm::vec3 p = corner + uv.x * a + uv.y * b;
-    scene.vertices.push_back({{p.x, p.y, p.z}, {normal.x, normal.y, normal.z}, {uv.x, uv.y}, {1, 1, 1, 1}});
-  }
-  scene.triangles.push_back({{first, first + 1, first + 2}, material});
-  scene.triangles.push_back({{first, first + 2, first + 3}, material});
+Light named(const char* name, const ClpvLight& data) {
+  return {name, data};
 }
-
-Light sun(glm::vec3 direction, float irradiance) {
-  const glm::vec3 d = glm::normalize(direction);
-  Light light;
-  light.name = "sun";
-  light.data.kind = CLPV_LIGHT_DIRECTIONAL;
-  for (int i = 0; i < 3; ++i) light.data.direction[i] = d[i], light.data.intensity[i] = irradiance;
-  return light;
+Light sun(const glm::vec3& direction, float irradiance) {
+  return named("sun", directional_light(direction, glm::vec3(irradiance)));
 }
-
-Light lamp(glm::vec3 position, float intensity) {
-  Light light;
-  light.name = "lamp";
-  light.data.kind = CLPV_LIGHT_POINT;
-  for (int i = 0; i < 3; ++i) light.data.position[i] = position[i], light.data.intensity[i] = intensity;
-  return light;
+Light lamp(const glm::vec3& position, float intensity) {
+  return named("lamp", testing::point_light(position, glm::vec3(intensity)));
 }
 
 /// A unit cube seen from inside, faces inwards.
 Scene box(float albedo, float emitted) {
   Scene scene;
   scene.path = "box";
-  scene.materials = {grey(albedo)};
+  add_grey(scene, albedo);
   for (float& e : scene.materials[0].emissive) e = emitted;
   const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   add_quad(scene, {0, 0, 0}, z, x, 0), add_quad(scene, {0, 1, 0}, x, z, 0);
@@ -94,7 +78,7 @@ void add_floor(Scene& scene, float half, float height, std::uint32_t material) {
 Scene floor_scene(float albedo) {
   Scene scene;
   scene.path = "floor";
-  scene.materials = {grey(albedo)};
+  add_grey(scene, albedo);
   add_floor(scene, 10, 0, 0);
   return scene;
 }
@@ -164,12 +148,9 @@ TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
 
 TEST(PathTracer, RangeAndConeOfASpotBoundItsLight) {
   Scene scene = floor_scene(0.5);
-  Light spot = lamp({0, 1, 0}, 3);
-  spot.data.kind = CLPV_LIGHT_SPOT;
-  spot.data.direction[1] = -1;
   const double inner = std::cos(0.2), outer = std::cos(0.5);
-  spot.data.cone_scale = static_cast<float>(1 / (inner - outer));
-  spot.data.cone_offset = static_cast<float>(-outer / (inner - outer));
+  Light spot = named("spot", testing::spot_light({0, 1, 0}, {0, -1, 0}, 0.2f, 0.5f));
+  for (float& i : spot.data.intensity) i = 3;
   spot.data.range = 1.1f;
   scene.lights = {spot};
   PathTracerOptions options;
@@ -203,7 +184,8 @@ double corner_factor(double a, double b) {
 Scene plates() {
   Scene scene;
   scene.path = "plates";
-  scene.materials = {grey(0.6f), grey(0.3f)};
+  add_grey(scene, 0.6f);
+  add_grey(scene, 0.3f);
   add_quad(scene, {-1, 0, -0.5f}, {0, 0, 2}, {3, 0, 0}, 0);
   add_quad(scene, {-0.001f, 1, -0.001f}, {0.002f, 0, 0}, {0, 0, 0.002f}, 1);
   scene.lights = {sun({1, -0.3f, 0}, 5)};
@@ -291,11 +273,10 @@ Texture checker() {
 TEST(PathTracer, MaskedHolesLetLightAndSightThrough) {
   Scene scene = floor_scene(0.5);
   scene.textures = {checker()};
-  Material masked = grey(1);
+  Material& masked =
+      scene.materials[add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED)];
   masked.texture = 0;
-  masked.flags = CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED;
   masked.alpha_cutoff = 0.5f;
-  scene.materials.push_back(masked);
   add_quad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, 1);  // u along x, v along z, facing down
   scene.lights = {sun({0, -1, 0}, 1)};
   PathTracerOptions options;
@@ -344,7 +325,7 @@ TEST(PathTracer, TexturesAreFilteredAndWrapped) {
 TEST(PathTracer, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
   Scene scene = floor_scene(0.5);
   scene.lights = {sun({0, -1, 0}, 1)};
-  scene.materials.push_back(grey(1));
+  add_grey(scene, 1);
   add_quad(scene, {-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1);  // faces down: unseen from above
   PathTracerOptions options;
   options.samples = 1;
@@ -367,6 +348,69 @@ TEST(PathTracer, BackgroundIsZero) {
     EXPECT_EQ(image.direct[i], glm::vec3(0));
     EXPECT_EQ(image.irradiance[i], glm::vec3(0));
   }
+}
+
+/// Random triangles with bent normals and random textures: plain, with holes, seen from both sides or one.
+Scene clutter() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> any(-1, 1);
+  Scene scene;
+  scene.path = "clutter";
+  Texture texture;
+  texture.width = 64, texture.height = 32;
+  texture.wrap_v = CLPV_WRAP_MIRROR;
+  for (unsigned i = 0; i < 4 * 64 * 32; ++i) texture.rgba.push_back(static_cast<std::uint8_t>(random()));
+  scene.textures = {texture};
+  for (const unsigned flags :
+       {0u, CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED, CLPV_MATERIAL_DOUBLE_SIDED}) {
+    Material& material = scene.materials[add_material(scene, {0.9f, 0.8f, 0.7f}, flags)];
+    material.texture = 0;
+    material.alpha_cutoff = 0.5f;
+  }
+  for (unsigned t = 0; t < 90; ++t) {
+    const glm::vec3 centre(6 * any(random), 4 * any(random), -8 + 5 * any(random));
+    testing::add_triangle(scene, centre + glm::vec3(any(random), 2, any(random)),
+                          centre + glm::vec3(-2, any(random), any(random)),
+                          centre + glm::vec3(2, any(random), any(random)), t % 3);
+    for (unsigned i = 0; i < 3; ++i) {
+      Vertex& v = scene.vertices[3 * t + i];
+      const glm::vec3 bent =
+          glm::normalize(glm::vec3(v.normal[0], v.normal[1], v.normal[2]) + 0.3f * any(random));
+      for (int c = 0; c < 3; ++c) v.normal[c] = bent[c];
+      v.uv[0] = 3 * any(random), v.uv[1] = 2 * any(random);
+    }
+  }
+  scene.lights = {sun({0, -1, -1}, 1)};
+  return scene;
+}
+
+// Pixel by pixel, or else every comparison would measure two different pictures.
+TEST(PathTracer, SeesWhatTheRasteriserSees) {
+  const Scene scene = clutter();
+  const ClpvView view = camera_view(Camera{}, 160, 90);
+  PathTracerOptions options;
+  options.samples = 1;
+  const TracedImage traced = trace_paths(scene, view, options);
+  Session& session = testing::test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, true);
+  rasterizer.rasterize_camera(surface);
+  const SurfaceImage drawn = read_surface(session, surface);
+  std::size_t seen = 0, elsewhere = 0, differ = 0;
+  for (std::size_t i = 0; i < traced.depth.size(); ++i) {
+    if (traced.depth[i] == 0 && drawn.depth[i] == 0) continue;
+    ++seen;
+    if (std::abs(traced.depth[i] - drawn.depth[i]) > 1e-4f * drawn.depth[i]) {
+      ++elsewhere;  // an edge or a hole's rim, which runs within a hair of the pixel's centre
+      continue;
+    }
+    const float normal = glm::length(traced.normal[i] - glm::vec3(drawn.normal[i]));
+    const float albedo = glm::length(traced.albedo[i] - glm::vec3(drawn.colour[i]));
+    if (normal > 1e-3f || albedo > 1e-3f) ++differ;
+  }
+  EXPECT_GT(seen, 8000u);
+  EXPECT_LT(elsewhere, seen / 200);
+  EXPECT_LT(differ, seen / 200);
 }
 
 ExitCode refusal(const Scene& scene, const PathTracerOptions& options = {}) {
