@@ -10,6 +10,7 @@ namespace clpv::bounds {
 // Text. Real glTF nests some ten levels deep; extras a few more. Parsers downstream may recurse.
 inline constexpr int kJsonNesting = 64;
 inline constexpr std::uint64_t kJsonBytes = 256ull << 20;  // base64 buffers included
+inline constexpr std::uint64_t kJsonValues = 8ull << 20;   // parsed, a value takes 16 to 100 bytes
 
 // Bytes. All buffers of a model together, and one image file; a .glb holds both kinds and the JSON.
 inline constexpr std::uint64_t kBufferBytes = 2ull << 30;
@@ -20,14 +21,17 @@ inline constexpr std::uint64_t kGlbBytes = kBufferBytes + kJsonBytes;
 // 2048.
 inline constexpr std::uint32_t kImageSide = 16384;
 inline constexpr std::uint64_t kTexelBytes = 1ull << 30;
+inline constexpr std::size_t kTextures = 4096;
 
 // Entries of any one array of the JSON (nodes, meshes, accessors, ...), and depth of the node tree.
 inline constexpr std::size_t kListEntries = 1u << 20;
 inline constexpr int kNodeDepth = 1024;
 
-// Geometry after instancing: 32 Mi vertices of 48 bytes are 1.5 GiB, 32 Mi triangles of 16 bytes are 0.5 GiB.
-inline constexpr std::uint64_t kVertices = 32ull << 20;
-inline constexpr std::uint64_t kTriangles = 32ull << 20;
+// Geometry after instancing: 16 Mi vertices of 48 bytes are 768 MiB, 16 Mi triangles of 16 bytes are 256 MiB.
+// And all replaced elements of sparse accessors, several of which may share one view.
+inline constexpr std::uint64_t kVertices = 16ull << 20;
+inline constexpr std::uint64_t kTriangles = 16ull << 20;
+inline constexpr std::uint64_t kSparseElements = 64ull << 20;
 
 // Each light costs its own RSMs and shadow map.
 inline constexpr std::size_t kLights = 64;

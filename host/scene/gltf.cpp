@@ -6,6 +6,7 @@
 #include <future>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/gltf_accessor.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
@@ -18,6 +19,7 @@ namespace clpv {
 
 Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Notes& notes) {
   const GltfDocument document = read_gltf_document(path);
+  check_sparse(document);
   Scene scene;
   if (!document.ignored_extensions.empty()) {
     notes.add(fmt::format("extensions used but not read: {}", fmt::join(document.ignored_extensions, ", ")));

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "scene/bounds.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -69,20 +70,12 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index)
   }
   if (!accessor_->sparse.isSparse) return;
   const auto& sparse = accessor_->sparse;
-  const auto indices = document.view(static_cast<std::size_t>(sparse.indices.bufferView))
-                           .subspan(static_cast<std::size_t>(sparse.indices.byteOffset));
-  const auto bytes = static_cast<std::size_t>(
-      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(sparse.indices.componentType)));
-  for (std::size_t i = 0; i < static_cast<std::size_t>(sparse.count); ++i) {
-    const std::uint32_t element = load_unsigned(&indices[i * bytes], sparse.indices.componentType);
-    if (element >= accessor_->count || (i > 0 && element <= sparse_.back())) {
-      refuse(document.file, place() + "/sparse/indices", fmt::format("index {} at {}", element, i),
-             fmt::format("ascending indices below {}", accessor_->count));
-    }
-    sparse_.push_back(element);
-  }
-  sparse_values_ = document.view(static_cast<std::size_t>(sparse.values.bufferView))
-                       .subspan(static_cast<std::size_t>(sparse.values.byteOffset));
+  sparse_count_ = static_cast<std::size_t>(sparse.count);
+  const auto view = [&](int index, int offset) {
+    return document.view(static_cast<std::size_t>(index)).subspan(static_cast<std::size_t>(offset));
+  };
+  sparse_indices_ = view(sparse.indices.bufferView, sparse.indices.byteOffset);
+  sparse_values_ = view(sparse.values.bufferView, sparse.values.byteOffset);
 }
 
 std::string GltfAccessor::place() const {
@@ -91,13 +84,26 @@ std::string GltfAccessor::place() const {
 
 const std::uint8_t* GltfAccessor::address(std::size_t element, int component) const {
   const std::size_t within = component_bytes_ * static_cast<std::size_t>(component);
-  if (!sparse_.empty()) {
-    const auto found = std::lower_bound(sparse_.begin(), sparse_.end(), element);
-    if (found != sparse_.end() && *found == element) {
-      return &sparse_values_[static_cast<std::size_t>(found - sparse_.begin()) * element_bytes_ + within];
+  std::size_t first = 0, end = sparse_count_;
+  while (first < end) {  // the first replaced element not before this one
+    const std::size_t middle = first + (end - first) / 2;
+    if (sparse_index(middle) < element) {
+      first = middle + 1;
+    } else {
+      end = middle;
     }
   }
+  if (first < sparse_count_ && sparse_index(first) == element) {
+    return &sparse_values_[first * element_bytes_ + within];
+  }
   return values_.empty() ? nullptr : &values_[element * stride_ + within];
+}
+
+std::uint32_t GltfAccessor::sparse_index(std::size_t i) const {
+  const int type = accessor_->sparse.indices.componentType;
+  const auto bytes =
+      static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
+  return load_unsigned(&sparse_indices_[i * bytes], type);
 }
 
 double GltfAccessor::number(std::size_t element, int component) const {
@@ -108,6 +114,26 @@ double GltfAccessor::number(std::size_t element, int component) const {
 std::uint32_t GltfAccessor::index(std::size_t element) const {
   const std::uint8_t* from = address(element, 0);
   return from == nullptr ? 0 : load_unsigned(from, accessor_->componentType);
+}
+
+void check_sparse(const GltfDocument& document) {
+  std::uint64_t total = 0;
+  for (std::size_t a = 0; a < document.model.accessors.size(); ++a) {
+    const GltfAccessor accessor(document, static_cast<int>(a));
+    const std::string place = accessor.place() + "/sparse/indices";
+    total += accessor.sparse_count_;
+    if (total > bounds::kSparseElements) {
+      refuse(document.file, place, fmt::format("{} sparse elements so far", total),
+             fmt::format("at most {} in all", bounds::kSparseElements));
+    }
+    for (std::size_t i = 0; i < accessor.sparse_count_; ++i) {
+      const std::uint32_t element = accessor.sparse_index(i);
+      if (element >= accessor.count() || (i > 0 && element <= accessor.sparse_index(i - 1))) {
+        refuse(document.file, place, fmt::format("index {} at {}", element, i),
+               fmt::format("ascending indices below {}", accessor.count()));
+      }
+    }
+  }
 }
 
 }  // namespace clpv

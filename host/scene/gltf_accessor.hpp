@@ -1,4 +1,5 @@
-// Random access to a glTF accessor: strided, normalised, sparse or all zeros. Nothing is copied.
+// Random access to a glTF accessor: strided, normalised, sparse or all zeros. Nothing is copied, so that
+// making one costs the same whatever its size.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace clpv {
 
 class GltfAccessor {
  public:
-  /// The document must outlive it. Throws Error(bad_input) for bad sparse indices.
+  /// The document must outlive it.
   GltfAccessor(const GltfDocument& document, int index);
 
   std::size_t count() const { return accessor_->count; }
@@ -28,14 +29,20 @@ class GltfAccessor {
 
  private:
   const std::uint8_t* address(std::size_t element, int component) const;
+  std::uint32_t sparse_index(std::size_t i) const;
+  friend void check_sparse(const GltfDocument& document);
 
   const tinygltf::Accessor* accessor_;
   int index_;
   int components_ = 0;
   std::size_t component_bytes_ = 0, element_bytes_ = 0, stride_ = 0;
-  std::span<const std::uint8_t> values_;         ///< empty: zeros
-  std::vector<std::uint32_t> sparse_;            ///< elements replaced, ascending
-  std::span<const std::uint8_t> sparse_values_;  ///< densely packed
+  std::span<const std::uint8_t> values_;  ///< empty: zeros
+  std::size_t sparse_count_ = 0;
+  std::span<const std::uint8_t> sparse_indices_;  ///< the elements replaced, ascending
+  std::span<const std::uint8_t> sparse_values_;   ///< densely packed
 };
+
+/// Throws Error(bad_input) where the sparse indices of an accessor do not ascend or leave it.
+void check_sparse(const GltfDocument& document);
 
 }  // namespace clpv

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scene/bounds.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -58,7 +59,12 @@ std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& se
   }
   const auto found = std::find(set.textures.begin(), set.textures.end(), wanted);
   const auto index = static_cast<std::uint32_t>(found - set.textures.begin());
-  if (found == set.textures.end()) set.textures.push_back(wanted);
+  if (found != set.textures.end()) return index;
+  if (index == bounds::kTextures) {
+    refuse(document.file, fmt::format("/textures/{}", texture), "one more texture in use",
+           fmt::format("at most {}", bounds::kTextures));
+  }
+  set.textures.push_back(wanted);
   return index;
 }
 

@@ -88,9 +88,8 @@ void append_meshes(const GltfDocument& document, const std::vector<GltfNode>& no
   for (const auto& [mesh, placed] : instances) {
     const auto index = static_cast<std::size_t>(mesh);
     for (std::size_t i = 0; i < document.model.meshes[index].primitives.size(); ++i) {
-      const LocalPrimitive primitive =
-          read_primitive(document, index, i, materials, bounds::kVertices - scene.vertices.size(),
-                         bounds::kTriangles - scene.triangles.size(), map, notes);
+      const Room room{bounds::kVertices - scene.vertices.size(), bounds::kTriangles - scene.triangles.size()};
+      const LocalPrimitive primitive = read_primitive(document, index, i, materials, room, map, notes);
       if (primitive.triangles.empty()) continue;
       for (const GltfNode* node : placed) appender.append(primitive, *node);
     }

@@ -16,29 +16,36 @@ constexpr double kShortest = 1e-6;  // a shorter stored normal is none
 /// A primitive's attributes, checked against each other.
 struct Attributes {
   GltfAccessor position;
-  std::optional<GltfAccessor> normal, uv, colour;
+  std::optional<GltfAccessor> normal, uv, colour, indices;
+  std::uint64_t corners() const { return indices ? indices->count() : position.count(); }
 };
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source, std::string place)
-      : document_(document), source_(source), place_(std::move(place)) {}
+  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source, std::string place,
+                  const UvMapping& mapping)
+      : document_(document), source_(source), place_(std::move(place)), mapping_(mapping) {}
 
-  Attributes attributes(const UvMapping& mapping, bool textured, Notes& notes) const;
-  std::optional<GltfAccessor> indices() const;
-  LocalVertex vertex(const Attributes& from, std::uint32_t index, const UvMapping& mapping) const;
-  [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
-    refuse(document_.file, place_, found, allowed);
-  }
+  Attributes attributes(bool textured, Notes& notes) const;
+  /// Of a mode that has triangles. Refuses what the mode or the room left does not allow.
+  std::uint64_t triangle_count(const Attributes& from, int mode, const Room& room) const;
+  void read_triangles(const Attributes& from, int mode, std::uint64_t count, VertexMap& map,
+                      LocalPrimitive& to) const;
 
  private:
   std::optional<GltfAccessor> attribute(const std::string& name, int least_components, int most_components,
                                         std::size_t count) const;
+  std::optional<GltfAccessor> indices() const;
   double component(const GltfAccessor& from, const char* name, std::uint32_t index, int i) const;
+  LocalVertex vertex(const Attributes& from, std::uint32_t index) const;
+  [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
+    refuse(document_.file, place_, found, allowed);
+  }
 
   const GltfDocument& document_;
   const tinygltf::Primitive& source_;
   std::string place_;
+  const UvMapping& mapping_;
 };
 
 std::optional<GltfAccessor> PrimitiveReader::attribute(const std::string& name, int least_components,
@@ -60,12 +67,12 @@ std::optional<GltfAccessor> PrimitiveReader::attribute(const std::string& name, 
   return accessor;
 }
 
-Attributes PrimitiveReader::attributes(const UvMapping& mapping, bool textured, Notes& notes) const {
+Attributes PrimitiveReader::attributes(bool textured, Notes& notes) const {
   const auto position = attribute("POSITION", 3, 3, 0);
   if (!position) refuse_here("no attribute POSITION", "POSITION, a VEC3");
-  const std::string set = fmt::format("TEXCOORD_{}", mapping.set);
+  const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
   Attributes made{*position, attribute("NORMAL", 3, 3, position->count()), std::nullopt,
-                  attribute("COLOR_0", 3, 4, position->count())};
+                  attribute("COLOR_0", 3, 4, position->count()), indices()};
   if (textured) {
     made.uv = attribute(set, 2, 2, position->count());
     if (!made.uv)
@@ -97,15 +104,14 @@ double PrimitiveReader::component(const GltfAccessor& from, const char* name, st
   return value;
 }
 
-LocalVertex PrimitiveReader::vertex(const Attributes& from, std::uint32_t index,
-                                    const UvMapping& mapping) const {
+LocalVertex PrimitiveReader::vertex(const Attributes& from, std::uint32_t index) const {
   LocalVertex made{{}, {}, {}, glm::vec4(1), index};
   for (int i = 0; i < 3; ++i) made.position[i] = component(from.position, "POSITION", index, i);
   for (int i = 0; i < 3 && from.normal; ++i) made.normal[i] = component(*from.normal, "NORMAL", index, i);
   if (from.uv) {
     const glm::dvec3 uv(component(*from.uv, "TEXCOORD", index, 0), component(*from.uv, "TEXCOORD", index, 1),
                         1);
-    made.uv = glm::vec2(mapping.transform * uv);
+    made.uv = glm::vec2(mapping_.transform * uv);
     if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
       refuse_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
                   "finite numbers");
@@ -115,12 +121,6 @@ LocalVertex PrimitiveReader::vertex(const Attributes& from, std::uint32_t index,
     made.colour[i] = static_cast<float>(std::clamp(component(*from.colour, "COLOR_0", index, i), 0.0, 1.0));
   }
   return made;
-}
-
-/// How many triangles `corners` corners make; nothing where the mode does not allow that many.
-std::optional<std::uint64_t> triangle_count(int mode, std::uint64_t corners) {
-  if (corners < 3 || (mode == TINYGLTF_MODE_TRIANGLES && corners % 3 != 0)) return std::nullopt;
-  return mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners - 2;
 }
 
 /// The corners of triangle `i`, in the order that makes its front counter-clockwise (glTF 2.0,
@@ -133,6 +133,47 @@ glm::uvec3 corners_of(int mode, std::uint32_t i) {
       return {i + 1, i + 2, 0};
     default:
       return {3 * i, 3 * i + 1, 3 * i + 2};
+  }
+}
+
+std::uint64_t PrimitiveReader::triangle_count(const Attributes& from, int mode, const Room& room) const {
+  const std::uint64_t corners = from.corners();
+  const bool list = mode == TINYGLTF_MODE_TRIANGLES;
+  if (corners < 3 || (list && corners % 3 != 0)) {
+    refuse_here(fmt::format("{} corners", corners), list ? "a multiple of 3, at least 3" : "at least 3");
+  }
+  const std::uint64_t triangles = list ? corners / 3 : corners - 2;
+  if (triangles > room.triangles) {
+    refuse_here(fmt::format("{} more triangles", triangles),
+                fmt::format("{} left of {} in all", room.triangles, bounds::kTriangles));
+  }
+  const std::uint64_t stored = from.position.count(), split = from.normal ? 0 : 3 * triangles;
+  if (stored > bounds::kVertices || split > room.vertices) {
+    refuse_here(fmt::format("{} vertices", std::max(stored, split)),
+                fmt::format("{} left of {} in all", room.vertices, bounds::kVertices));
+  }
+  return triangles;
+}
+
+void PrimitiveReader::read_triangles(const Attributes& from, int mode, std::uint64_t count, VertexMap& map,
+                                     LocalPrimitive& to) const {
+  const std::size_t stored = from.position.count();
+  map.restart(stored);
+  to.vertices.reserve(std::min<std::uint64_t>(stored, 3 * count));
+  to.triangles.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const glm::uvec3 corner = corners_of(mode, i);
+    glm::uvec3 triangle;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t source = from.indices ? from.indices->index(corner[k]) : corner[k];
+      if (source >= stored) {
+        refuse_here(fmt::format("index {} at {}", source, corner[k]), fmt::format("0 to {}", stored - 1));
+      }
+      auto fresh = static_cast<std::uint32_t>(to.vertices.size());
+      triangle[k] = map.slot(source, fresh);
+      if (fresh > to.vertices.size()) to.vertices.push_back(vertex(from, source));
+    }
+    to.triangles.push_back(triangle);
   }
 }
 
@@ -196,8 +237,7 @@ std::uint32_t VertexMap::slot(std::uint32_t source, std::uint32_t& fresh) {
 }
 
 LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, std::size_t index,
-                              const MaterialSet& materials, std::uint64_t left_vertices,
-                              std::uint64_t left_triangles, VertexMap& map, Notes& notes) {
+                              const MaterialSet& materials, const Room& room, VertexMap& map, Notes& notes) {
   const tinygltf::Primitive& source = document.model.meshes[mesh].primitives[index];
   LocalPrimitive made;
   made.place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
@@ -210,45 +250,11 @@ LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, st
   made.material = static_cast<std::uint32_t>(
       source.material < 0 ? static_cast<int>(materials.materials.size()) - 1 : source.material);
   const Material& material = materials.materials[made.material];
-  const UvMapping& mapping = materials.mappings[made.material];
-  const PrimitiveReader reader(document, source, made.place);
   const bool textured = material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
-  const Attributes attributes = reader.attributes(mapping, textured, notes);
-  const std::optional<GltfAccessor> indices = reader.indices();
-  const std::uint64_t corners = indices ? indices->count() : attributes.position.count();
-  const auto triangles = triangle_count(mode, corners);
-  if (!triangles) {
-    reader.refuse_here(fmt::format("{} corners", corners),
-                       mode == TINYGLTF_MODE_TRIANGLES ? "a multiple of 3, at least 3" : "at least 3");
-  }
-  if (*triangles > left_triangles) {
-    reader.refuse_here(fmt::format("{} more triangles", *triangles),
-                       fmt::format("{} left of {} in all", left_triangles, bounds::kTriangles));
-  }
-  const std::size_t count = attributes.position.count();
-  if (count > bounds::kVertices || (!attributes.normal && 3 * *triangles > left_vertices)) {
-    reader.refuse_here(
-        fmt::format("{} vertices", std::max<std::uint64_t>(count, attributes.normal ? 0 : 3 * *triangles)),
-        fmt::format("{} left of {} in all", left_vertices, bounds::kVertices));
-  }
-
-  map.restart(count);
-  made.triangles.reserve(*triangles);
-  for (std::uint32_t i = 0; i < *triangles; ++i) {
-    const glm::uvec3 corner = corners_of(mode, i);
-    glm::uvec3 triangle;
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = indices ? indices->index(corner[k]) : corner[k];
-      if (vertex >= count) {
-        reader.refuse_here(fmt::format("index {} at {}", vertex, corner[k]),
-                           fmt::format("0 to {}", count - 1));
-      }
-      auto fresh = static_cast<std::uint32_t>(made.vertices.size());
-      triangle[k] = map.slot(vertex, fresh);
-      if (fresh > made.vertices.size()) made.vertices.push_back(reader.vertex(attributes, vertex, mapping));
-    }
-    made.triangles.push_back(triangle);
-  }
+  const PrimitiveReader reader(document, source, made.place, materials.mappings[made.material]);
+  const Attributes attributes = reader.attributes(textured, notes);
+  const std::uint64_t triangles = reader.triangle_count(attributes, mode, room);
+  reader.read_triangles(attributes, mode, triangles, map, made);
   if (attributes.normal) {
     normalize_stored(made);
   } else {

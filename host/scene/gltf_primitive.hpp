@@ -43,10 +43,14 @@ class VertexMap {
   std::uint32_t stamp_ = 0;
 };
 
+/// How much more the scene may hold.
+struct Room {
+  std::uint64_t vertices, triangles;
+};
+
 /// Reads primitive `index` of mesh `mesh`. No triangles, and a note, where it is made of points or lines.
-/// `left_vertices`, `left_triangles`: how much more the scene may hold. Throws Error(bad_input).
+/// Throws Error(bad_input).
 LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, std::size_t index,
-                              const MaterialSet& materials, std::uint64_t left_vertices,
-                              std::uint64_t left_triangles, VertexMap& map, Notes& notes);
+                              const MaterialSet& materials, const Room& room, VertexMap& map, Notes& notes);
 
 }  // namespace clpv

@@ -158,6 +158,11 @@ Rules view_rules() {
           object("/cameras/*/perspective"),
           number("/cameras/*/perspective/yfov", kTiny, std::numbers::pi - kTiny).must(),
           number("/cameras/*/perspective/znear", kTiny, kAny).must(),
+          object("/cameras/*/orthographic"),
+          number("/cameras/*/orthographic/xmag", -kAny, kAny).must(),
+          number("/cameras/*/orthographic/ymag", -kAny, kAny).must(),
+          number("/cameras/*/orthographic/zfar", kTiny, kAny).must(),
+          number("/cameras/*/orthographic/znear", 0, kAny).must(),
           text(light + "/name"),
           text(light + "/type", {"directional", "point", "spot"}).must(),
           vector(light + "/color", 3, 0, kAny),
@@ -178,6 +183,19 @@ void check_asset(const json& document, const std::string& file) {
       refuse(file, fmt::format("/extensionsRequired/{}", i),
              "'" + name.substr(0, 80) + "', which is not supported",
              fmt::format("{}", fmt::join(kExtensions, ", ")));
+    }
+  }
+}
+
+/// A camera, or a spot light, has the object that its type names.
+void check_typed(const json& document, const std::string& list, const std::string& file) {
+  const json::json_pointer pointer(list);
+  if (!document.contains(pointer)) return;
+  for (std::size_t i = 0; i < document.at(pointer).size(); ++i) {
+    const json& each = document.at(pointer)[i];
+    const std::string& type = each["type"].get_ref<const std::string&>();
+    if (type != "directional" && type != "point" && !each.contains(type)) {
+      refuse(file, fmt::format("{}/{}", list, i), "no " + type, "an object of the name of its type");
     }
   }
 }
@@ -269,6 +287,8 @@ void check_gltf(const json& document, const std::string& file) {
   }();
   check_rules(document, rules, file);
   check_asset(document, file);
+  check_typed(document, "/cameras", file);
+  check_typed(document, kPunctual + "/lights", file);
   check_views(document, file);
   check_accessors(document, file);
 }

@@ -23,8 +23,6 @@ class ViewReader {
       notes_.add(fmt::format("{} ('{}') is orthographic and left out", place, given.name));
       return;
     }
-    if (given.perspective.yfov <= 0)
-      refuse(document_.file, place, "no perspective", "a perspective with yfov and znear");
     if (scene_.cameras.size() == bounds::kCameras) {
       refuse(document_.file, place_of(node), "one more camera", fmt::format("at most {}", bounds::kCameras));
     }

@@ -23,10 +23,11 @@ std::string shown(std::string_view text) {
   return text.size() > kShown ? out + "..." : out;
 }
 
-/// Depth of brackets outside strings; stops at the first depth beyond the bound. Needs no recursion, unlike
-/// parsers.
-void check_nesting(std::string_view text, const std::string& file) {
+/// Bounds the depth of brackets and the number of values, without recursion and before a parser allocates for
+/// them.
+void check_extent(std::string_view text, const std::string& file) {
   int depth = 0;
+  std::uint64_t values = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -42,6 +43,8 @@ void check_nesting(std::string_view text, const std::string& file) {
       }
     } else if (c == ']' || c == '}') {
       --depth;
+    } else if (c == ',' && ++values > bounds::kJsonValues) {
+      refuse(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues), "at most as many");
     }
   }
 }
@@ -107,7 +110,7 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
 }
 
 nlohmann::json parse_json(std::string_view text, const std::string& file) {
-  check_nesting(text, file);
+  check_extent(text, file);
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& error) {  // its text carries line and column

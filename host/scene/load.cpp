@@ -99,7 +99,8 @@ Scene load_described(const std::filesystem::path& path, const LoadOptions& optio
   SceneFile file = read_scene_file(path);
   const std::filesystem::path model = options.model.empty() ? file.model : options.model;
   if (model.empty()) refuse(path.string(), "/model", "nothing", "a path to a .gltf or .glb (or --model)");
-  if (options.model.empty() && !std::filesystem::exists(model)) {
+  std::error_code unknown;
+  if (options.model.empty() && !std::filesystem::exists(model, unknown)) {
     refuse(path.string(), "/model", "no file '" + model.string() + "'",
            "an existing file; --model says where it lies");
   }

@@ -180,7 +180,12 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
   check_no_other_keys(parsed, rules(), file);
 
   SceneFile scene;
-  if (parsed.contains("model")) scene.model = path.parent_path() / parsed["model"].get<std::string>();
+  if (parsed.contains("model")) {
+    const std::string model = parsed["model"];
+    if (model.empty() || model.find('\0') != std::string::npos)
+      refuse(file, "/model", "no path", "a path to a model");
+    scene.model = path.parent_path() / model;
+  }
   scene.metres_per_unit = parsed.value("metres_per_unit", 1.0);
   scene.exposure = parsed.value("exposure", 0.0f);
   if (parsed.contains("cascades")) {
