@@ -1,0 +1,198 @@
+// Small glTF files made in code, well-formed or not, in a folder of their own that goes away with the test.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/load.hpp"
+#include "support/error.hpp"
+
+namespace clpv::testing {
+
+using nlohmann::json;
+
+/// A fresh folder, named after the running test.
+class TempFolder {
+ public:
+  TempFolder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::path(CLPV_TEST_DIR) / (std::string("scene_") + test->test_suite_name() + "_" +
+                                                    test->name() + "_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~TempFolder() { std::filesystem::remove_all(path_); }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+  std::filesystem::path write(const std::string& name, std::string_view bytes) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string encode_base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      word = word << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      out += i + k > bytes.size() ? '=' : kDigits[word >> (18 - 6 * k) & 63];
+    }
+  }
+  return out;
+}
+
+inline std::string decode_base64(std::string_view text) {
+  std::string out;
+  std::uint32_t word = 0;
+  int bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    word = word << 6 | static_cast<std::uint32_t>(digits.find(c));
+    if ((bits += 6) >= 8) out += static_cast<char>(word >> (bits -= 8) & 255);
+  }
+  return out;
+}
+
+/// Raw bytes of values in a row.
+template <typename T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// A document and its one binary buffer. Fields of `document` may be changed at will before writing.
+struct GltfBuilder {
+  json document = {{"asset", {{"version", "2.0"}}}};
+  std::string binary;
+
+  /// The index of what is appended to an array of the document.
+  int add(const std::string& list, json value) {
+    document[list].push_back(std::move(value));
+    return static_cast<int>(document[list].size()) - 1;
+  }
+
+  int view(const std::string& bytes, int stride = 0) {
+    binary.resize((binary.size() + 3) / 4 * 4);
+    json made = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}};
+    if (stride > 0) made["byteStride"] = stride;
+    binary += bytes;
+    return add("bufferViews", made);
+  }
+
+  static int component_type(float) { return 5126; }
+  static int component_type(std::int8_t) { return 5120; }
+  static int component_type(std::uint8_t) { return 5121; }
+  static int component_type(std::int16_t) { return 5122; }
+  static int component_type(std::uint16_t) { return 5123; }
+  static int component_type(std::uint32_t) { return 5125; }
+  static int components(const std::string& type) { return type == "SCALAR" ? 1 : type.back() - '0'; }
+
+  template <typename T>
+  int accessor(const std::string& type, const std::vector<T>& values, bool normalized = false) {
+    json made = {{"bufferView", view(bytes_of(values))},
+                 {"componentType", component_type(T{})},
+                 {"count", values.size() / static_cast<std::size_t>(components(type))},
+                 {"type", type}};
+    if (normalized) made["normalized"] = true;
+    return add("accessors", made);
+  }
+
+  /// A mesh of one primitive, on a node of its own. Returns the primitive, to be changed further.
+  json& mesh(json attributes, json more = json::object()) {
+    more["attributes"] = std::move(attributes);
+    const int index = add("meshes", {{"primitives", json::array({more})}});
+    add("nodes", {{"mesh", index}});
+    return document["meshes"][static_cast<std::size_t>(index)]["primitives"][0];
+  }
+
+  /// The triangle (0,0,0), (1,0,0), (0,1,0), facing +z, without normals.
+  json& triangle(json more = json::object()) {
+    return mesh({{"POSITION", accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})}}, std::move(more));
+  }
+
+  void finish(const std::string& uri) {
+    if (binary.empty()) return;
+    document["buffers"] = {{{"byteLength", binary.size()}}};
+    if (!uri.empty()) document["buffers"][0]["uri"] = uri;
+  }
+
+  std::filesystem::path write(const TempFolder& folder, const std::string& name = "model.gltf") {
+    finish("model.bin");
+    folder.write("model.bin", binary);
+    return folder.write(name, document.dump());
+  }
+
+  std::filesystem::path write_base64(const TempFolder& folder) {
+    finish("data:application/octet-stream;base64," + encode_base64(binary));
+    return folder.write("model.gltf", document.dump());
+  }
+
+  std::string glb() {
+    finish("");
+    std::string text = document.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string data = binary;
+    data.resize((data.size() + 3) / 4 * 4);
+    const auto word = [](std::size_t value) {
+      return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
+    };
+    std::string out = "glTF" + word(2) + word(12 + 8 + text.size() + 8 + data.size());
+    return out + word(text.size()) + "JSON" + text + word(data.size()) + std::string("BIN\0", 4) + data;
+  }
+};
+
+/// Loads what must be refused, and returns the message.
+inline std::string refusal(const std::filesystem::path& path, const LoadOptions& options = {}) {
+  try {
+    load_scene(path, options);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
+    return error.what();
+  }
+  ADD_FAILURE() << path << " was accepted";
+  return {};
+}
+
+inline glm::vec3 position(const Scene& scene, std::size_t triangle, int corner) {
+  const float* p = scene.vertices[scene.triangles[triangle].vertex[corner]].position;
+  return {p[0], p[1], p[2]};
+}
+
+inline glm::vec3 normal(const Scene& scene, std::size_t triangle, int corner) {
+  const float* n = scene.vertices[scene.triangles[triangle].vertex[corner]].normal;
+  return {n[0], n[1], n[2]};
+}
+
+/// Unit, to the side from which the corners are counter-clockwise.
+inline glm::vec3 face_normal(const Scene& scene, std::size_t triangle) {
+  const glm::vec3 a = position(scene, triangle, 0);
+  return glm::normalize(glm::cross(position(scene, triangle, 1) - a, position(scene, triangle, 2) - a));
+}
+
+MATCHER_P2(IsNear, wanted, tolerance, "") {
+  return glm::length(arg - wanted) <= tolerance;
+}
+
+}  // namespace clpv::testing

@@ -1,0 +1,508 @@
+// glTF features one by one: each test writes a small model and looks at what comes out in world space.
+#include <glm/gtc/constants.hpp>
+
+#include "gltf_builder.hpp"
+#include "tiny_images.hpp"
+
+namespace clpv::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr float kClose = 1e-6f;
+
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+std::vector<glm::vec3> corners(const Scene& scene, std::size_t triangle) {
+  return {position(scene, triangle, 0), position(scene, triangle, 1), position(scene, triangle, 2)};
+}
+
+glm::vec2 uv(const Scene& scene, std::size_t vertex) {
+  return {scene.vertices[vertex].uv[0], scene.vertices[vertex].uv[1]};
+}
+
+/// A file of its own, and the scene made of it.
+struct GltfTest : ::testing::Test {
+  TempFolder folder;
+  GltfBuilder model;
+
+  Scene load() { return load_scene(model.write(folder)); }
+
+  /// A material with that texture image; returns the material.
+  json& textured(std::string_view image_base64, const std::string& name = "image.png") {
+    folder.write(name, decode_base64(image_base64));
+    const int image = model.add("images", {{"uri", name}});
+    const int texture = model.add("textures", {{"source", image}});
+    model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+    return model.document["materials"].back();
+  }
+
+  /// A textured triangle with texture coordinates (0,0), (1,0), (0,1).
+  json& textured_triangle() {
+    const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int uv = model.accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
+    return model.mesh({{"POSITION", position}, {"TEXCOORD_0", uv}}, {{"material", 0}});
+  }
+};
+
+TEST_F(GltfTest, APlainTriangleComesOutAsItIs) {
+  model.triangle();
+  const Scene scene = load();
+  ASSERT_EQ(scene.triangles.size(), 1u);
+  EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY));
+  EXPECT_THAT(normal(scene, 0, 0), IsNear(kZ, kClose));
+  EXPECT_EQ(scene.lower, glm::vec3(0));
+  EXPECT_EQ(scene.upper, glm::vec3(1, 1, 0));
+  EXPECT_EQ(scene.name, "model");
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
+  EXPECT_EQ(scene.materials[0].base_colour[3], 1);
+}
+
+TEST_F(GltfTest, TransformsMultiplyDownTheHierarchy) {
+  model.triangle();
+  // The root turns by 90 degrees about z and moves; its child scales; the mesh is the grandchild's, with a
+  // matrix.
+  model.document["nodes"] = json::parse(R"([
+    {"translation": [10, 0, 0], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "children": [1]},
+    {"scale": [2, 2, 2], "children": [2]},
+    {"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,3,1], "mesh": 0}])");
+  const Scene scene = load();
+  EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(10, 0, 6), 1e-5f));
+  EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(10, 2, 6), 1e-5f));
+  EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(8, 0, 6), 1e-5f));
+}
+
+TEST_F(GltfTest, OnlyTheDefaultSceneIsShown) {
+  model.triangle();
+  model.document["nodes"].push_back({{"mesh", 0}, {"translation", {5, 0, 0}}});
+  model.document["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
+  EXPECT_THAT(position(load(), 0, 0), IsNear(glm::vec3(0), kClose));
+  model.document["scene"] = 1;
+  const Scene second = load();
+  ASSERT_EQ(second.triangles.size(), 1u);
+  EXPECT_THAT(position(second, 0, 0), IsNear(glm::vec3(5, 0, 0), kClose));
+}
+
+TEST_F(GltfTest, AMeshStandsWhereverANodeSays) {
+  model.triangle();
+  for (int i = 1; i <= 2; ++i) model.add("nodes", {{"mesh", 0}, {"translation", {i, 0, 0}}});
+  const Scene scene = load();
+  ASSERT_EQ(scene.triangles.size(), 3u);
+  EXPECT_EQ(scene.vertices.size(), 9u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_THAT(position(scene, static_cast<std::size_t>(i), 0), IsNear(glm::vec3(i, 0, 0), kClose));
+  }
+}
+
+TEST_F(GltfTest, AMirroredMeshKeepsItsOutsideOutside) {
+  const int position = model.accessor<float>("VEC3", {0, 0, 1, 1, 0, 1, 0, 1, 1});
+  const int normals = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  model.mesh({{"POSITION", position}, {"NORMAL", normals}});
+  for (const glm::vec3 scale : {glm::vec3(-1, 1, 1), glm::vec3(1, 1, -1), glm::vec3(-2, -3, -1)}) {
+    model.document["nodes"][0]["scale"] = {scale.x, scale.y, scale.z};
+    const Scene scene = load();
+    const glm::vec3 outside = kZ * glm::sign(scale.z);  // away from the origin
+    EXPECT_THAT(face_normal(scene, 0), IsNear(outside, kClose)) << scale.x << ' ' << scale.z;
+    EXPECT_THAT(normal(scene, 0, 1), IsNear(outside, kClose)) << scale.x << ' ' << scale.z;
+  }
+}
+
+TEST_F(GltfTest, NormalsTurnByTheInverseTranspose) {
+  // A face of slope 45 degrees, y stretched by 3: its normal leans towards x.
+  const int position = model.accessor<float>("VEC3", {0, 1, 0, 0, 1, 1, 1, 0, 0});
+  const float h = std::sqrt(0.5f);
+  const int normals = model.accessor<float>("VEC3", {h, h, 0, h, h, 0, h, h, 0});
+  model.mesh({{"POSITION", position}, {"NORMAL", normals}});
+  model.document["nodes"][0]["scale"] = {1, 3, 1};
+  const Scene scene = load();
+  EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::normalize(glm::vec3(3, 1, 0)), kClose));
+  EXPECT_THAT(normal(scene, 0, 0), IsNear(face_normal(scene, 0), kClose));
+}
+
+TEST_F(GltfTest, AFlattenedNodeStillHasNormals) {
+  model.triangle();
+  model.document["nodes"][0]["scale"] = {1, 1, 0};
+  EXPECT_THAT(normal(load(), 0, 0), IsNear(kZ, kClose));
+}
+
+TEST_F(GltfTest, IndicesOfEverySize) {
+  const std::vector<float> square = {9, 9, 9, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  const auto check = [&](auto type) {
+    using T = decltype(type);
+    GltfBuilder square_model;
+    const int position = square_model.accessor<float>("VEC3", square);
+    const int indices = square_model.accessor<T>("SCALAR", {1, 2, 3, 1, 3, 4});
+    square_model.mesh({{"POSITION", position}}, {{"indices", indices}});
+    const Scene scene = load_scene(square_model.write(folder));
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    EXPECT_THAT(corners(scene, 1), ElementsAre(glm::vec3(0), glm::vec3(1, 1, 0), kY));
+    EXPECT_EQ(scene.upper, glm::vec3(1, 1, 0)) << "an unused vertex counts";
+  };
+  check(std::uint8_t{});
+  check(std::uint16_t{});
+  check(std::uint32_t{});
+}
+
+TEST_F(GltfTest, SharedVerticesStayShared) {
+  const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+  const int normals = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int indices = model.accessor<std::uint16_t>("SCALAR", {0, 1, 2, 0, 2, 3});
+  model.mesh({{"POSITION", position}, {"NORMAL", normals}}, {{"indices", indices}});
+  EXPECT_EQ(load().vertices.size(), 4u);
+}
+
+TEST_F(GltfTest, StripsAndFansFaceOneWay) {
+  // A 2 x 1 strip, and the same outline as a fan.
+  const std::vector<float> strip = {0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0};
+  const std::vector<float> fan = {0, 0, 0, 2, 0, 0, 1, 1, 0, 0, 1, 0};
+  for (const int mode : {5, 6}) {
+    GltfBuilder made;
+    made.mesh({{"POSITION", made.accessor<float>("VEC3", mode == 5 ? strip : fan)}}, {{"mode", mode}});
+    const Scene scene = load_scene(made.write(folder));
+    ASSERT_EQ(scene.triangles.size(), mode == 5 ? 3u : 2u);
+    const glm::vec3 first = face_normal(scene, 0);
+    EXPECT_THAT(first, IsNear(mode == 5 ? -kZ : kZ, kClose));
+    float area = 0;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+      EXPECT_THAT(face_normal(scene, t), IsNear(first, kClose));
+      const glm::vec3 a = position(scene, t, 0);
+      area += glm::length(glm::cross(position(scene, t, 1) - a, position(scene, t, 2) - a)) / 2;
+    }
+    EXPECT_NEAR(area, 1.5f, kClose);
+  }
+}
+
+TEST_F(GltfTest, InterleavedAttributes) {
+  std::vector<float> rows;  // position, normal, of 24 bytes
+  for (const glm::vec3 p : {glm::vec3(0), kX, kY}) rows.insert(rows.end(), {p.x, p.y, p.z, 0, 0, -1});
+  const int view = model.view(bytes_of(rows), 24);
+  const json base = {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}};
+  json normals = base;
+  normals["byteOffset"] = 12;
+  const int first = model.add("accessors", base), second = model.add("accessors", normals);
+  model.mesh({{"POSITION", first}, {"NORMAL", second}});
+  const Scene scene = load();
+  EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY));
+  EXPECT_THAT(normal(scene, 0, 2), IsNear(-kZ, kClose));
+}
+
+TEST_F(GltfTest, SparseAccessorsReplaceElements) {
+  model.triangle();
+  const int indices = model.view(bytes_of<std::uint16_t>({0, 2})),
+            values = model.view(bytes_of<float>({0, 0, 7, 0, 5, 7}));
+  model.document["accessors"][0]["sparse"] = {{"count", 2},
+                                              {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                                              {"values", {{"bufferView", values}}}};
+  EXPECT_THAT(corners(load(), 0), ElementsAre(glm::vec3(0, 0, 7), kX, glm::vec3(0, 5, 7)));
+}
+
+TEST_F(GltfTest, SparseAccessorsWithoutAViewStartFromZeros) {
+  model.triangle();
+  const int indices = model.view(bytes_of<std::uint8_t>({1, 2})),
+            values = model.view(bytes_of<float>({1, 0, 0, 0, 1, 0}));
+  json& accessor = model.document["accessors"][0];
+  accessor.erase("bufferView");
+  accessor["sparse"] = {{"count", 2},
+                        {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                        {"values", {{"bufferView", values}}}};
+  EXPECT_THAT(corners(load(), 0), ElementsAre(glm::vec3(0), kX, kY));
+}
+
+TEST_F(GltfTest, GlbAndBase64HoldTheSame) {
+  model.triangle();
+  const Scene glb = load_scene(folder.write("model.glb", GltfBuilder(model).glb()));
+  const Scene base64 = load_scene(model.write_base64(folder));
+  EXPECT_THAT(corners(glb, 0), ElementsAre(glm::vec3(0), kX, kY));
+  EXPECT_THAT(corners(base64, 0), ElementsAre(glm::vec3(0), kX, kY));
+}
+
+TEST_F(GltfTest, BufferUrisArePercentDecoded) {
+  model.triangle();
+  model.finish("sub/my%20data.bin");
+  folder.write("sub/my data.bin", model.binary);
+  EXPECT_EQ(load_scene(folder.write("model.gltf", model.document.dump())).triangles.size(), 1u);
+}
+
+TEST_F(GltfTest, MissingNormalsAreFlatAndSplitVertices) {
+  // Two faces of a roof share their ridge.
+  const int position = model.accessor<float>("VEC3", {0, 1, 0, 0, 1, 1, 1, 0, 0, -1, 0, 0});
+  const int indices = model.accessor<std::uint8_t>("SCALAR", {0, 1, 2, 1, 0, 3});
+  model.mesh({{"POSITION", position}}, {{"indices", indices}});
+  const Scene scene = load();
+  EXPECT_EQ(scene.vertices.size(), 6u);
+  for (std::size_t t = 0; t < 2; ++t) {
+    for (int k = 0; k < 3; ++k) EXPECT_THAT(normal(scene, t, k), IsNear(face_normal(scene, t), kClose));
+  }
+  EXPECT_GT(normal(scene, 0, 0).x, 0.5f);
+  EXPECT_LT(normal(scene, 1, 0).x, -0.5f);
+}
+
+TEST_F(GltfTest, ZeroNormalsTakeTheirTriangles) {
+  const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0});
+  const int normals = model.accessor<float>("VEC3", {0, 0, 5, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  model.mesh({{"POSITION", position}, {"NORMAL", normals}});
+  const Scene scene = load();
+  for (int k = 0; k < 3; ++k) EXPECT_THAT(normal(scene, 0, k), IsNear(kZ, kClose));
+  EXPECT_NEAR(glm::length(normal(scene, 1, 0)), 1, kClose) << "a degenerate triangle has a finite normal too";
+}
+
+TEST_F(GltfTest, VertexColoursOfEveryFormat) {
+  const auto colour = [&](auto values, const std::string& type, bool normalized) {
+    GltfBuilder made;
+    const int position = made.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int index = made.accessor(type, values, normalized);
+    made.mesh({{"POSITION", position}, {"COLOR_0", index}});
+    const Scene scene = load_scene(made.write(folder));
+    const float* c = scene.vertices[scene.triangles[0].vertex[1]].colour;
+    return glm::vec4(c[0], c[1], c[2], c[3]);
+  };
+  const glm::vec4 wanted(0.2f, 0.4f, 0.6f, 0.8f), opaque(0.2f, 0.4f, 0.6f, 1);
+  using Bytes = std::vector<std::uint8_t>;
+  using Words = std::vector<std::uint16_t>;
+  EXPECT_THAT(colour(std::vector<float>{0, 0, 0, 0.2f, 0.4f, 0.6f, 0, 0, 0}, "VEC3", false),
+              IsNear(opaque, kClose));
+  EXPECT_THAT(colour(std::vector<float>{0, 0, 0, 0, 0.2f, 0.4f, 0.6f, 0.8f, 0, 0, 0, 0}, "VEC4", false),
+              IsNear(wanted, kClose));
+  EXPECT_THAT(colour(Bytes{0, 0, 0, 0, 51, 102, 153, 204, 0, 0, 0, 0}, "VEC4", true), IsNear(wanted, kClose));
+  EXPECT_THAT(colour(Words{0, 0, 0, 0, 13107, 26214, 39321, 52428, 0, 0, 0, 0}, "VEC4", true),
+              IsNear(wanted, kClose));
+}
+
+TEST_F(GltfTest, QuantizedAttributes) {
+  model.document["extensionsRequired"] = {"KHR_mesh_quantization"};
+  const int view = model.view(bytes_of<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}), 8);
+  const int position = model.add(
+      "accessors",
+      {{"bufferView", view}, {"componentType", 5122}, {"count", 3}, {"type", "VEC3"}, {"normalized", true}});
+  const int normal_view = model.view(bytes_of<std::int8_t>({0, 0, -127, 0, 0, 0, -127, 0, 0, 0, -127, 0}), 4);
+  const int normals = model.add("accessors", {{"bufferView", normal_view},
+                                              {"componentType", 5120},
+                                              {"count", 3},
+                                              {"type", "VEC3"},
+                                              {"normalized", true}});
+  const int uv_index = model.accessor<std::uint16_t>("VEC2", {0, 0, 2, 0, 0, 3});
+  textured(kPngGrey);
+  model.mesh({{"POSITION", position}, {"NORMAL", normals}, {"TEXCOORD_0", uv_index}}, {{"material", 0}});
+  model.document["nodes"][0]["scale"] = {10, 10, 10};
+  const Scene scene = load();
+  EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), glm::vec3(10, 0, 0), glm::vec3(0, -10, 0)));
+  EXPECT_THAT(normal(scene, 0, 0), IsNear(-kZ, kClose));
+  EXPECT_EQ(uv(scene, 2), glm::vec2(0, 3));
+}
+
+TEST_F(GltfTest, PointsAndLinesGetANote) {
+  model.triangle();
+  model.triangle({{"mode", 0}});
+  model.triangle({{"mode", 3}});
+  const Scene scene = load();
+  EXPECT_EQ(scene.triangles.size(), 1u);
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/meshes/1/primitives/0: made of points")));
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/meshes/2/primitives/0: made of lines")));
+}
+
+TEST_F(GltfTest, NotesAreBounded) {
+  for (int i = 0; i < 100; ++i) model.triangle({{"mode", 0}});
+  const Scene scene = load();
+  EXPECT_LE(scene.notes.size(), 33u);
+  EXPECT_THAT(scene.notes.back(), HasSubstr("more notes"));
+}
+
+TEST_F(GltfTest, MaterialFactorsAndFlags) {
+  model.document["materials"] = json::parse(R"([
+    {"name": "plain", "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 1},
+     "emissiveFactor": [0.5, 0.25, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}}},
+    {"name": "mask", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true},
+    {"name": "mask by default", "alphaMode": "MASK"},
+    {"name": "glass", "alphaMode": "BLEND", "alphaCutoff": 0.9}])");
+  model.triangle({{"material", 0}});
+  const Scene scene = load();
+  ASSERT_EQ(scene.materials.size(), 4u);
+  EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f)) << "of a metal too";
+  EXPECT_THAT(scene.materials[0].emissive, ElementsAre(4, 2, 8));
+  EXPECT_EQ(scene.materials[0].flags, 0u);
+  EXPECT_EQ(scene.materials[1].flags, CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED);
+  EXPECT_EQ(scene.materials[1].alpha_cutoff, 0.25f);
+  EXPECT_EQ(scene.materials[2].alpha_cutoff, 0.5f);
+  EXPECT_EQ(scene.materials[3].flags, CLPV_MATERIAL_MASKED);
+  EXPECT_EQ(scene.materials[3].alpha_cutoff, 0.5f) << "BLEND is MASK at one half";
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/materials/3 ('glass') blends")));
+}
+
+TEST_F(GltfTest, TexturesKeepTheirBytes) {
+  textured(kPngRgba2x2);
+  textured_triangle();
+  const Scene scene = load();
+  ASSERT_EQ(scene.textures.size(), 1u);
+  const Texture& texture = scene.textures[0];
+  EXPECT_EQ(texture.width, 2u);
+  EXPECT_EQ(texture.height, 2u);
+  // Row 0 first, colours not multiplied by alpha.
+  EXPECT_THAT(texture.rgba, ElementsAre(255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 128, 128, 128, 255));
+  EXPECT_EQ(scene.materials[0].texture, 0u);
+}
+
+TEST_F(GltfTest, ImagesOfOtherKindsBecomeRgba) {
+  const auto rgba = [&](std::string_view image) {
+    GltfTest::model = GltfBuilder();
+    textured(image);
+    textured_triangle();
+    return load().textures.at(0).rgba;
+  };
+  EXPECT_THAT(rgba(kPngGrey), ElementsAre(77, 77, 77, 255));
+  EXPECT_THAT(rgba(kPngGrey16), ElementsAre(77, 77, 77, 255));
+  EXPECT_THAT(rgba(kPngPalette), ElementsAre(10, 20, 30, 255));
+  const auto red = rgba(kJpegRed8x8);  // under a name that says PNG: content decides
+  ASSERT_EQ(red.size(), 256u);
+  EXPECT_NEAR(red[0], 255, 4);
+  EXPECT_NEAR(red[1], 0, 4);
+}
+
+TEST_F(GltfTest, ImagesInBuffersAndDataUris) {
+  const std::string png = decode_base64(kPngGrey);
+  model.add("images", {{"bufferView", model.view(png)}, {"mimeType", "image/png"}});
+  model.add("images", {{"uri", "data:image/png;base64," + std::string(kPngPalette)}});
+  for (int i = 0; i < 2; ++i) {
+    model.add("textures", {{"source", i}});
+    model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+  }
+  textured_triangle();
+  const Scene scene = load_scene(folder.write("model.glb", model.glb()));
+  ASSERT_EQ(scene.textures.size(), 2u);
+  EXPECT_THAT(scene.textures[0].rgba, ElementsAre(77, 77, 77, 255));
+  EXPECT_THAT(scene.textures[1].rgba, ElementsAre(10, 20, 30, 255));
+}
+
+TEST_F(GltfTest, WrapModesComeFromTheSampler) {
+  textured(kPngGrey);
+  textured_triangle();
+  model.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}, {{"magFilter", 9728}}};
+  model.document["textures"][0]["sampler"] = 0;
+  Scene scene = load();
+  EXPECT_EQ(scene.textures[0].wrap_u, CLPV_WRAP_CLAMP);
+  EXPECT_EQ(scene.textures[0].wrap_v, CLPV_WRAP_MIRROR);
+  model.document["textures"][0]["sampler"] = 1;
+  scene = load();
+  EXPECT_EQ(scene.textures[0].wrap_u, CLPV_WRAP_REPEAT);
+  EXPECT_EQ(scene.textures[0].wrap_v, CLPV_WRAP_REPEAT);
+}
+
+TEST_F(GltfTest, OneImageServesManyMaterials) {
+  textured(kPngGrey);
+  model.document["materials"].push_back(model.document["materials"][0]);
+  textured_triangle();
+  EXPECT_EQ(load().textures.size(), 1u);
+}
+
+TEST_F(GltfTest, TextureTransformScalesTurnsAndMoves) {
+  json& material = textured(kPngGrey);
+  material["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"rotation", glm::half_pi<double>()}, {"scale", {2, 4}}};
+  model.document["extensionsRequired"] = {"KHR_texture_transform"};
+  textured_triangle();
+  const Scene scene = load();
+  EXPECT_THAT(uv(scene, 0), IsNear(glm::vec2(0.5f, 0.25f), kClose));
+  EXPECT_THAT(uv(scene, 1), IsNear(glm::vec2(0.5f, -1.75f), kClose))
+      << "u turns towards -v, upwards in the image";
+  EXPECT_THAT(uv(scene, 2), IsNear(glm::vec2(4.5f, 0.25f), kClose));
+}
+
+TEST_F(GltfTest, TextureCoordinateSets) {
+  json& texture = textured(kPngGrey)["pbrMetallicRoughness"]["baseColorTexture"];
+  const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int first = model.accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
+  const int second = model.accessor<float>("VEC2", {7, 7, 8, 8, 9, 9});
+  model.mesh({{"POSITION", position}, {"TEXCOORD_0", first}, {"TEXCOORD_3", second}}, {{"material", 0}});
+  EXPECT_EQ(uv(load(), 0), glm::vec2(0));
+  texture["texCoord"] = 3;
+  EXPECT_EQ(uv(load(), 0), glm::vec2(7));
+  texture["texCoord"] = 0;
+  texture["extensions"]["KHR_texture_transform"] = {{"texCoord", 3}};
+  EXPECT_EQ(uv(load(), 0), glm::vec2(7)) << "the extension overrides";
+  texture["extensions"]["KHR_texture_transform"] = {{"texCoord", 5}};
+  EXPECT_THAT(load().notes, ::testing::Contains(HasSubstr("TEXCOORD_5")));
+}
+
+TEST_F(GltfTest, EmissiveTextures) {
+  json& material = textured(kPngGrey);
+  material["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+  textured_triangle();
+  EXPECT_EQ(load().materials[0].emissive_texture, CLPV_NO_TEXTURE) << "the factor is 0";
+  material["emissiveFactor"] = {1, 1, 1};
+  Scene scene = load();
+  EXPECT_EQ(scene.materials[0].emissive_texture, 0u);
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/materials/0/emissiveTexture")));
+  material["emissiveTexture"].erase("texCoord");
+  EXPECT_THAT(load().notes, Not(::testing::Contains(HasSubstr("emissiveTexture"))));
+  material.erase("pbrMetallicRoughness");
+  scene = load();
+  EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
+  EXPECT_EQ(uv(scene, 1), glm::vec2(1, 0)) << "without a base-colour texture its own coordinates serve";
+}
+
+TEST_F(GltfTest, CamerasLookAlongMinusZ) {
+  model.triangle();
+  model.document["cameras"] = json::parse(R"([
+    {"name": "wide", "type": "perspective", "perspective": {"yfov": 1.5, "znear": 0.25}},
+    {"name": "flat", "type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 9, "znear": 0}}])");
+  model.add("nodes", json::parse(R"({"camera": 0, "translation": [1, 2, 3], "scale": [5, 5, 5],
+                                     "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]})"));
+  model.add("nodes", {{"camera", 0}});
+  model.add("nodes", {{"camera", 1}});
+  const Scene scene = load();
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  const Camera& camera = scene.camera("wide");
+  EXPECT_THAT(camera.eye, IsNear(glm::vec3(1, 2, 3), kClose));
+  EXPECT_THAT(camera.forward, IsNear(-kX, kClose));
+  EXPECT_THAT(camera.up, IsNear(kY, kClose));
+  EXPECT_EQ(camera.vertical_fov, 1.5f);
+  EXPECT_EQ(camera.near_depth, 0.25f);
+  EXPECT_EQ(scene.cameras[1].name, "wide 2") << "names are unique";
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/cameras/1 ('flat') is orthographic")));
+}
+
+TEST_F(GltfTest, PunctualLights) {
+  model.triangle();
+  model.document["extensions"]["KHR_lights_punctual"]["lights"] = json::parse(R"([
+    {"name": "sun", "type": "directional", "intensity": 100, "color": [1, 0.5, 0]},
+    {"name": "lamp", "type": "point", "intensity": 40, "range": 6},
+    {"name": "torch", "type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}}])");
+  model.document["extensionsRequired"] = {"KHR_lights_punctual"};
+  for (int i = 0; i < 3; ++i) {
+    model.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}},
+                        {"translation", {0, i, 0}},
+                        {"rotation", {-0.7071067811865476, 0, 0, 0.7071067811865476}}});  // -z turns to -y
+  }
+  const Scene scene = load();
+  ASSERT_EQ(scene.lights.size(), 3u);
+  const ClpvLight& sun = scene.lights[0].data;
+  EXPECT_EQ(sun.kind, static_cast<unsigned>(CLPV_LIGHT_DIRECTIONAL));
+  EXPECT_THAT(glm::vec3(sun.direction[0], sun.direction[1], sun.direction[2]), IsNear(-kY, kClose));
+  EXPECT_THAT(sun.intensity, ElementsAre(100, 50, 0));
+  const ClpvLight& lamp = scene.lights[1].data;
+  EXPECT_EQ(lamp.kind, static_cast<unsigned>(CLPV_LIGHT_POINT));
+  EXPECT_THAT(lamp.position, ElementsAre(0, 1, 0));
+  EXPECT_EQ(lamp.range, 6);
+  EXPECT_THAT(lamp.intensity, ElementsAre(40, 40, 40));
+  const ClpvLight& torch = scene.lights[2].data;
+  EXPECT_EQ(torch.kind, static_cast<unsigned>(CLPV_LIGHT_SPOT));
+  EXPECT_EQ(torch.range, 0) << "unlimited";
+  // The cone's edges, by the attenuation's own formula.
+  EXPECT_NEAR(std::cos(0.25f) * torch.cone_scale + torch.cone_offset, 1, 1e-4);
+  EXPECT_NEAR(std::cos(0.5f) * torch.cone_scale + torch.cone_offset, 0, 1e-4);
+  EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("no camera")));
+}
+
+TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
+  model.triangle();
+  model.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
+  model.document["animations"] = json::array({json::object()});
+  const Scene scene = load();
+  EXPECT_THAT(scene.notes, ::testing::Contains("extensions used but not read: KHR_materials_unlit"));
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("animations")));
+}
+
+}  // namespace
+}  // namespace clpv::testing

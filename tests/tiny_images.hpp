@@ -1,0 +1,38 @@
+// Encoded images of a few pixels, in base64, for tests of texture loading.
+#pragma once
+
+#include <string_view>
+
+namespace clpv::testing {
+
+/// Rows: red, half-transparent green; transparent blue, grey 128.
+inline constexpr std::string_view kPngRgba2x2 =
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAFklEQVR42mP4z8DwHwgbGEB0Q0PDfwA7YAb8UNK/lAAAAABJ"
+    "RU5ErkJggg==";
+
+/// One grey pixel of 77.
+inline constexpr std::string_view kPngGrey =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mPwBQAATwBOxAN74QAAAABJRU5ErkJggg==";
+
+/// One 16-bit grey pixel of 0x4d4d: 77 in 8 bits.
+inline constexpr std::string_view kPngGrey16 =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABEAAAAABq7kcWAAAAC0lEQVR42mPw9QUAAOoAm19doCgAAAAASUVORK5CYII=";
+
+/// One palette pixel (10, 20, 30).
+inline constexpr std::string_view kPngPalette =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAMAAAAoyzS7AAAABlBMVEUJCQkKFB4rRqocAAAACklEQVR42mNgBAAAAwAC5n2n"
+    "ZwAAAABJRU5ErkJggg==";
+
+/// 64 red pixels.
+inline constexpr std::string_view kJpegRed8x8 =
+    "/9j/2wBDABALDA4MChAODQ4SERATGCgaGBYWGDEjJR0oOjM9PDkzODdASFxOQERXRTc4UG1RV19iZ2hnPk1xeXBkeFxlZ2P/"
+    "2wBDARESEhgVGC8aGi9jQjhCY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2P/wAAR"
+    "CAAIAAgDASIAAhEBAxEB/8QAHwAAAQUBAQEBAQEAAAAAAAAAAAECAwQFBgcICQoL/8QAtRAAAgEDAwIEAwUFBAQAAAF9AQID"
+    "AAQRBRIhMUEGE1FhByJxFDKBkaEII0KxwRVS0fAkM2JyggkKFhcYGRolJicoKSo0NTY3ODk6Q0RFRkdISUpTVFVWV1hZWmNk"
+    "ZWZnaGlqc3R1dnd4eXqDhIWGh4iJipKTlJWWl5iZmqKjpKWmp6ipqrKztLW2t7i5usLDxMXGx8jJytLT1NXW19jZ2uHi4+Tl"
+    "5ufo6erx8vP09fb3+Pn6/8QAHwEAAwEBAQEBAQEBAQAAAAAAAAECAwQFBgcICQoL/8QAtREAAgECBAQDBAcFBAQAAQJ3AAEC"
+    "AxEEBSExBhJBUQdhcRMiMoEIFEKRobHBCSMzUvAVYnLRChYkNOEl8RcYGRomJygpKjU2Nzg5OkNERUZHSElKU1RVVldYWVpj"
+    "ZGVmZ2hpanN0dXZ3eHl6goOEhYaHiImKkpOUlZaXmJmaoqOkpaanqKmqsrO0tba3uLm6wsPExcbHyMnK0tPU1dbX2Nna4uPk"
+    "5ebn6Onq8vP09fb3+Pn6/9oADAMBAAIRAxEAPwDFoooryz7w/9k=";
+
+}  // namespace clpv::testing
