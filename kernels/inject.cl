@@ -11,7 +11,7 @@
 // up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
+// From the host: CLPV_GRID, CLPV_STRIP, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
 // the functions of the basis, clpv_lobe_integrals, clpv_flux, clpv_mean and, for trilinear, Sum and clpv_project_sum.
 #include "coefficients.h"
 #include "inject_cells.h"
@@ -22,18 +22,12 @@
 #define CLPV_LEAST_COSINE 0.1f
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-// What find_cells leaves a texel for later. Geometry: the share of a cell's cross-section its surfel covers, seen
-// along its normal. Trilinear light: where it is between the 8 cells' centres, each coordinate in [0, 1).
-#if CLPV_TRILINEAR
-typedef float4 Detail;
-#else
-typedef float Detail;
-#endif
 
-static inline bool all_finite(const float3 v) {
-  return fabs(v.x) <= MAXFLOAT && fabs(v.y) <= MAXFLOAT && fabs(v.z) <= MAXFLOAT;
+// Conditions as int, joined by &: no branches.
+static inline int all_finite(const float3 v) {
+  return (fabs(v.x) <= MAXFLOAT) & (fabs(v.y) <= MAXFLOAT) & (fabs(v.z) <= MAXFLOAT);
 }
-static inline bool not_zero(const float3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
+static inline int not_zero(const float3 v) { return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f); }
 
 static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
                                   const float depth, const float3 normal) {
@@ -43,42 +37,51 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 }
 
 // keys[texel]: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
-// Scalars, and no floor(): either keeps work-items from vectorising on PoCL, at three times the cost.
-__kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* depths,
-                         __global const SurfaceTexel* normals, __global const SurfaceTexel* colours,
-                         const float colour_scale, __global uint* keys, __global Detail* details) {
-  const uint px = get_global_id(0), py = get_global_id(1);
-  if (px >= view.width || py >= view.height) return;
-  const uint texel = py * view.width + px;
-  const float depth = depths[texel];
-  const float3 normal = clpv_load_normal(normals, texel);
-  const float3 position = clpv_position(view, (float)px, (float)py, depth);
+// details, geometry: the share of a cell's cross-section that the texel's surfel covers, seen along its normal.
+// Trilinear light: where it is between the 8 cells' centres, in [0, 1): all texels' x, all y, all z.
+//
+// One work-item a strip of CLPV_STRIP texels of a row: CPU devices vectorise the loop (which they do not across
+// work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
+__kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* restrict depths,
+                         __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
+                         const float colour_scale, __global uint* restrict keys, __global float* restrict details) {
+  const uint first = get_global_id(0) * CLPV_STRIP, py = get_global_id(1);
+  if (first >= view.width || py >= view.height) return;
+  const uint last = min(first + CLPV_STRIP, view.width);
   const float per_metre = 1.0f / grid.cell;
-  float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
-        z = (position.z - grid.origin[2]) * per_metre;
-  bool counts = depth > 0.0f && all_finite(normal) && not_zero(normal);
+  for (uint px = first; px < last; ++px) {
+    const uint texel = py * view.width + px;
+    const float depth = depths[texel];
+    const float3 normal = clpv_load_normal(normals, texel);
+    const float3 position = clpv_position(view, (float)px, (float)py, depth);
+    float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
+          z = (position.z - grid.origin[2]) * per_metre;
+    int counts = (depth > 0.0f) & all_finite(normal) & not_zero(normal);
 #if CLPV_GEOMETRY
-  details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
+    details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
 #else
-  x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
-  const float3 flux = clpv_load_colour(colours, texel, colour_scale);
-  counts = counts && all_finite(flux) && not_zero(flux);
+    x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
+    const float3 flux = clpv_load_colour(colours, texel, colour_scale);
+    counts = counts & all_finite(flux) & not_zero(flux);
 #endif
-  x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
-  // A point that is not finite is in no grid.
-  counts = counts && in_grid(x, y, z);
-  const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
-  keys[texel] = counts ? cell_key(cx, cy, cz) : CLPV_NO_CELL;
+    x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
+    counts = counts & in_grid(x, y, z);  // no point that is not finite is
+    const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
+    keys[texel] = counts ? cell_key(cx, cy, cz) : CLPV_NO_CELL;
 #if CLPV_TRILINEAR
-  details[texel] = (float4)(x - (float)cx, y - (float)cy, z - (float)cz, 0.0f);
+    const uint texels = view.width * view.height;
+    details[texel] = x - (float)cx;
+    details[texels + texel] = y - (float)cy;
+    details[2 * texels + texel] = z - (float)cz;
 #endif
+  }
 }
 
 // Everything a texel is weighted by.
 #define CLPV_TEXELS                                                                                     \
   __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale, \
-      __global const Detail *details
-#define CLPV_PASS_TEXELS normals, colours, colour_scale, details
+      __global const float *details, const uint texels
+#define CLPV_PASS_TEXELS normals, colours, colour_scale, details, texels
 
 static inline Sums no_sums(void) {
   Sums sums;
@@ -113,11 +116,11 @@ static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS) {
 
 #else
 
-static inline Lanes cell_weights(__global const Detail* details, const uint texel) {
+static inline Lanes cell_weights(__global const float* details, const uint texels, const uint texel) {
 #if CLPV_TRILINEAR
-  const float4 t = details[texel];
-  const float4 plane = (float4)((1.0f - t.x) * (1.0f - t.y), t.x * (1.0f - t.y), (1.0f - t.x) * t.y, t.x * t.y);
-  return (float8)(plane * (1.0f - t.z), plane * t.z);
+  const float x = details[texel], y = details[texels + texel], z = details[2 * texels + texel];
+  const float4 plane = (float4)((1.0f - x) * (1.0f - y), x * (1.0f - y), (1.0f - x) * y, x * y);
+  return (float8)(plane * (1.0f - z), plane * z);
 #else
   return 1.0f;
 #endif
@@ -130,7 +133,7 @@ static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS) {
 #if CLPV_UNIT_FLUX
   flux *= M_PI_F / clpv_flux(lobe);
 #endif
-  const Lanes weights = cell_weights(details, texel);
+  const Lanes weights = cell_weights(details, texels, texel);
   sums.k0 = add_lobe(sums.k0, weights * flux.x, lobe);
   sums.k1 = add_lobe(sums.k1, weights * flux.y, lobe);
   sums.k2 = add_lobe(sums.k2, weights * flux.z, lobe);

@@ -1,7 +1,7 @@
 // Injection's cells: which one a point falls into, as a key to sort by, and how a cell's sum gets into the volume.
 //
 //   CLPV_CELL_SHIFT                 added to a point in units of cells, its whole part is the number of its cell
-//   bool in_grid(x, y, z)           whether a point so shifted has a cell
+//   int in_grid(x, y, z)           whether a point so shifted has a cell
 //   uint cell_key(x, y, z)          key of a cell
 //   uint phase_of(key)              keys of one phase may be delivered at the same time
 //   void deliver(volume, key, sums) adds (light) or merges (geometry) the sum of a cell's texels
@@ -49,9 +49,9 @@ typedef struct {
 #endif
 #define CLPV_HALF_KEYS ((CLPV_KEYS + 1) / 2)
 
-static inline bool in_grid(const float x, const float y, const float z) {
+static inline int in_grid(const float x, const float y, const float z) {
   const float top = (float)CLPV_KEYS;
-  return x >= 0.0f && y >= 0.0f && z >= 0.0f && x < top && y < top && z < top;
+  return (x >= 0.0f) & (y >= 0.0f) & (z >= 0.0f) & (x < top) & (y < top) & (z < top);
 }
 
 static inline uint cell_key(const uint x, const uint y, const uint z) {

@@ -14,8 +14,8 @@ namespace {
 // Segments are short enough that a wall seen by a whole view still makes many work-items, and few enough that
 // one work-item joins those of a single cell.
 constexpr std::size_t kLeastSegment = 32, kMostBlocks = 16384;
-constexpr std::size_t kPhases = 8;  // of trilinear injection
-const cl::NDRange kTexels(64, 1);
+constexpr std::size_t kPhases = 8;     // of trilinear injection
+constexpr std::size_t kCpuStrip = 32;  // texels a work-item finds the cells of: a CPU vectorises over them
 const cl::NDRange kSegments(16);  // long and few work-items: small groups let all compute units have some
 
 std::size_t segment_length(std::size_t texels) {
@@ -45,7 +45,11 @@ void require_shape(const Volume& volume, const VolumeShape& wanted, const char* 
 }  // namespace
 
 Injector::Injector(Session& session, const Basis& basis, const InjectOptions& options)
-    : session_(session), basis_(basis), options_(options), sorter_(session) {}
+    : session_(session),
+      basis_(basis),
+      options_(options),
+      sorter_(session),
+      strip_(session.device().type == "cpu" ? kCpuStrip : 1) {}
 
 Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
   const auto [found, made] = kernels_.try_emplace({kind, format});
@@ -53,6 +57,7 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
     const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
     ProgramSource source{"inject.cl", {}, inject_source(basis_, trilinear)};
     source.literals = {{"CLPV_GRID", std::to_string(options_.grid)},
+                       {"CLPV_STRIP", std::to_string(strip_) + "u"},
                        {"CLPV_GEOMETRY", light ? "0" : "1"},
                        {"CLPV_TRILINEAR", trilinear ? "1" : "0"},
                        {"CLPV_TWO_SIDED", options_.two_sided ? "1" : "0"},
@@ -70,8 +75,7 @@ void Injector::reserve(std::size_t texels) {
   const std::size_t lanes = options_.trilinear ? 8 : 1,
                     coefficients = static_cast<std::size_t>(basis_.size());
   const std::size_t blocks = block_count(texels);
-  details_ = session_.buffer(texels * (options_.trilinear ? sizeof(cl_float4) : sizeof(cl_float)),
-                             "injection, texels");
+  details_ = session_.buffer(texels * (options_.trilinear ? 3 : 1) * sizeof(cl_float), "injection, texels");
   partials_ =
       session_.buffer(2 * blocks * 3 * coefficients * lanes * sizeof(cl_float), "injection, partial sums");
   firsts_ = session_.buffer(blocks * sizeof(cl_uint), "injection, segments");
@@ -86,15 +90,17 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, V
   Kernels& kernel = kernels(kind, surface.format);
   set_arguments(kernel.find_cells, surface.view, grid, surface.depth, surface.normal, surface.colour,
                 surface.colour_scale, sorter_.keys(), details_);
-  session_.launch(kernel.find_cells, cl::NDRange(surface.view.width, surface.view.height), kTexels);
+  session_.launch(kernel.find_cells,
+                  cl::NDRange((surface.view.width + strip_ - 1) / strip_, surface.view.height),
+                  strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
   sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
 
   const auto length = static_cast<cl_uint>(segment_length(texels)),
              blocks = static_cast<cl_uint>(block_count(texels));
   for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
     set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
-                  surface.normal, surface.colour, surface.colour_scale, details_, volume.buffer(), partials_,
-                  firsts_);
+                  surface.normal, surface.colour, surface.colour_scale, details_,
+                  static_cast<cl_uint>(texels), volume.buffer(), partials_, firsts_);
     session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
     set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.buffer(),
                   partials_, firsts_);

@@ -48,6 +48,7 @@ class Injector {
   const Basis& basis_;
   InjectOptions options_;
   CellSorter sorter_;
+  std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;
   std::size_t capacity_ = 0;
   cl::Buffer details_, partials_, firsts_;
