@@ -12,7 +12,7 @@
 // it is made of segments counted from the cell's first texel.
 //
 // From the host: CLPV_GRID, CLPV_STRIP, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
-// the functions of the basis, clpv_lobe_integrals, clpv_flux, clpv_mean and, for trilinear, Sum and clpv_project_sum.
+// what host/pipeline/inject_source.hpp lists.
 #include "coefficients.h"
 #include "inject_cells.h"
 #include "shared/grid.h"

@@ -8,7 +8,7 @@
 //
 // Trilinear: a texel spreads over the 8 cells whose centres surround it. Its key is that of those 8 together, the
 // corner they share, and sums have 8 lanes, one a cell. Two corners share cells unless their coordinates have the
-// same parities: the eight parities are the phases, most significant in the key, so that a phase is one stretch of
+// same parities: the eight combinations are the phases, most significant in the key, so that a phase is one stretch of
 // the sorted texels.
 #ifndef CLPV_INJECT_CELLS_H
 #define CLPV_INJECT_CELLS_H
@@ -23,13 +23,6 @@
 #include "volume/light.h"
 #define CLPV_EACH_CHANNEL(DO) DO(0) DO(1) DO(2)
 #define CLPV_CHANNELS 3
-#endif
-
-#if CLPV_TRILINEAR
-typedef float8 Lanes;  // a value for each of 8 cells, x fastest; Sum and clpv_project_sum come from the host
-#else
-typedef float Lanes;
-typedef Coefficients Sum;
 #endif
 
 // What the texels of a cell add up to: weighted integrals alpha, a channel each.
@@ -63,18 +56,19 @@ static inline uint cell_key(const uint x, const uint y, const uint z) {
 #endif
 }
 
-#if CLPV_TRILINEAR
-
-static inline uint phase_of(const uint key) {
-  return key / (CLPV_HALF_KEYS * CLPV_HALF_KEYS * CLPV_HALF_KEYS);
-}
-
+// One cell's coefficients of a projected sum.
 static inline Coefficients one_lane(const Sum* sum, const int lane) {
   Coefficients c;
 #define CLPV_DO(i) c.c##i = ((const float*)&sum->c##i)[lane];
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
   return c;
+}
+
+#if CLPV_TRILINEAR
+
+static inline uint phase_of(const uint key) {
+  return key / (CLPV_HALF_KEYS * CLPV_HALF_KEYS * CLPV_HALF_KEYS);
 }
 
 static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
@@ -103,16 +97,19 @@ static inline uint phase_of(const uint key) { return 0; }
 
 static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
   const int x = key % CLPV_KEYS, y = key / CLPV_KEYS % CLPV_KEYS, z = key / (CLPV_KEYS * CLPV_KEYS);
+#define CLPV_DO(channel) const Sum projected##channel = clpv_project_sum(sums.k##channel);
+  CLPV_EACH_CHANNEL(CLPV_DO)
+#undef CLPV_DO
 #if CLPV_GEOMETRY
-  const Coefficients blocking = clpv_project(sums.k0);
+  const Coefficients blocking = one_lane(&projected0, 0);
   if (clpv_mean(blocking) > clpv_mean(geometry_load(volume, 0, x, y, z))) {
     geometry_store(volume, 0, x, y, z, blocking);
   }
 #else
-#define CLPV_DO(channel)                                                        \
-  light_store(volume, channel, x, y, z,                                         \
-              clpv_add_scaled(light_load(volume, channel, x, y, z), M_1_PI_F,   \
-                              clpv_project(sums.k##channel)));
+#define CLPV_DO(channel)                                                         \
+  light_store(volume, channel, x, y, z,                                          \
+              clpv_add_scaled(light_load(volume, channel, x, y, z), M_1_PI_F,    \
+                              one_lane(&projected##channel, 0)));
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
 #endif

@@ -12,7 +12,8 @@ namespace clpv {
 ///   Coefficients clpv_lobe_integrals(x, y, z)   alpha of the lobe round the unit normal
 ///   float clpv_flux(Coefficients alpha)         Int of the lobe with those integrals alpha [sr]
 ///   float clpv_mean(Coefficients c)             mean over all directions
-/// and, for trilinear injection, Sum (a value for each of 8 cells a coefficient) and clpv_project_sum.
+///   Lanes, Sum                                  a value for each cell a texel gives to, 1 or 8; N of them
+///   Sum clpv_project_sum(Sum a)                 A^-1 a
 std::string inject_source(const Basis& basis, bool trilinear);
 
 /// How many keys of cells there are: each key is below (kernels/inject_cells.h).

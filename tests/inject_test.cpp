@@ -1,0 +1,358 @@
+// Injection against closed forms: where light goes and how much, what walls block, merging, repeatability; and the
+// kernels against their twin.
+#include "pipeline/inject.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "reference/check.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr int kGrid = 8;
+constexpr float kCell = 0.5f;
+constexpr double kPi = std::numbers::pi;
+// Sums of up to some thousand texels in single precision.
+constexpr double kRounding = 2e-6;
+
+const ClpvGrid kCells = {{-2, -2, -2}, kCell, kGrid, {}};
+
+Session& test_session() {
+  static Session session(choose_device());
+  return session;
+}
+
+/// Looks down on the xz plane from y = 10: x to the right, z downwards. Texels of the given edge [m] around (0, 0).
+ClpvView from_above(unsigned width, unsigned height, float edge) {
+  ClpvView view{};
+  view.eye[1] = 10, view.orthographic = 1, view.far_depth = 100;
+  view.right[0] = 1, view.up[2] = -1, view.forward[1] = -1;
+  view.half_width = 0.5f * edge * static_cast<float>(width);
+  view.half_height = 0.5f * edge * static_cast<float>(height);
+  view.width = width, view.height = height;
+  return view;
+}
+
+SurfaceImage empty_surface(const ClpvView& view) {
+  const std::size_t count = std::size_t{view.width} * view.height;
+  return {view, std::vector<float>(count), std::vector<glm::vec4>(count), std::vector<glm::vec4>(count), {}};
+}
+
+/// A horizontal plane at `height` [m] seen from above, its normal up, `flux` [W] a texel.
+SurfaceImage plane(const ClpvView& view, float height, const glm::vec3& flux = glm::vec3(1)) {
+  SurfaceImage surface = empty_surface(view);
+  std::fill(surface.depth.begin(), surface.depth.end(), view.eye[1] - height);
+  std::fill(surface.normal.begin(), surface.normal.end(), glm::vec4(0, 1, 0, 0));
+  std::fill(surface.colour.begin(), surface.colour.end(), glm::vec4(flux, 0));
+  return surface;
+}
+
+/// One texel at `position` (its ray goes down there) with that normal and flux.
+SurfaceImage one_texel(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& flux) {
+  ClpvView view = from_above(1, 1, 0.01f);
+  view.eye[0] = position.x, view.eye[2] = position.z;
+  SurfaceImage surface = plane(view, position.y, flux);
+  surface.normal[0] = glm::vec4(glm::normalize(normal), 0);
+  return surface;
+}
+
+struct Injection {
+  VolumeShape shape;
+  std::vector<float> values;
+
+  std::vector<double> cell(int channel, int x, int y, int z) const {
+    std::vector<double> c;
+    for (int i = 0; i < shape.coefficients; ++i) {
+      c.push_back(values[static_cast<std::size_t>(
+          (((channel * shape.coefficients + i) * shape.n + z) * shape.n + y) * shape.n + x)]);
+    }
+    return c;
+  }
+  /// Sum over all cells of coefficient i, as a coefficient vector.
+  std::vector<double> total(int channel) const {
+    std::vector<double> sum;
+    const auto samples = static_cast<std::ptrdiff_t>(shape.n) * shape.n * shape.n;
+    for (int i = 0; i < shape.coefficients; ++i) {
+      const auto first = values.begin() + (channel * shape.coefficients + i) * samples;
+      sum.push_back(std::accumulate(first, first + samples, 0.0));
+    }
+    return sum;
+  }
+};
+
+Injection light_of(const Basis& basis, const SurfaceImage& image, InjectOptions options = {}) {
+  Session& session = test_session();
+  options.grid = kGrid;
+  Volume light(session, {kGrid, basis.size(), 3}, "light");
+  Injector(session, basis, options).inject_light(upload_surface(session, image), kCells, light);
+  return {light.shape(), light.read(session)};
+}
+
+Injection geometry_of(const Basis& basis, const std::vector<SurfaceImage>& images,
+                      InjectOptions options = {}) {
+  Session& session = test_session();
+  options.grid = kGrid;
+  Volume geometry(session, {kGrid + 1, basis.size(), 1}, "geometry");
+  Injector injector(session, basis, options);
+  for (const SurfaceImage& image : images) {
+    injector.inject_geometry(upload_surface(session, image), kCells, geometry);
+  }
+  return {geometry.shape(), geometry.read(session)};
+}
+
+bool all_zero(const Injection& injection) {
+  return std::all_of(injection.values.begin(), injection.values.end(), [](float v) { return v == 0.0f; });
+}
+
+std::vector<double> scaled(std::vector<double> c, double factor) {
+  for (double& value : c) value *= factor;
+  return c;
+}
+
+class EachBasis : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<Basis> basis = make_basis(GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(Inject, EachBasis, testing::Values("sh2", "srbf8v2"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_P(EachBasis, OneTexelIsALobeHalfACellOffItsSurface) {
+  const glm::vec3 normal = glm::normalize(glm::vec3(-2, 1, -3)), flux(0.5f, 1, 2);
+  // In cell (4, 4, 4) by itself; moved by (-.267, .134, -.401) cells out of (4.1, 4.9, 4.2).
+  const SurfaceImage texel = one_texel({0.05f, 0.45f, 0.1f}, normal, flux);
+  const Injection light = light_of(*basis, texel);
+  const std::vector<double> lobe = basis->clamped_cosine(glm::dvec3(normal));
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_THAT(light.cell(channel, 3, 5, 3),
+                testing::Pointwise(testing::DoubleNear(1e-5), scaled(lobe, flux[channel] / kPi)));
+  }
+  const std::vector<double> all = light.total(0), there = light.cell(0, 3, 5, 3);
+  EXPECT_EQ(all, there) << "other cells are not empty";
+}
+
+TEST_P(EachBasis, TotalEnergyIsTheFluxOfAllTexels) {
+  // 4096 texels of 1/32 m: 256 to a cell, in many segments; .3 m is in the middle of a layer of cells.
+  const SurfaceImage floor = plane(from_above(64, 64, 1.0f / 32), 0.3f, {1, 0.25f, 0});
+  const double lobe_flux = basis->energy(basis->clamped_cosine({0, 1, 0})) / kPi;
+  EXPECT_NEAR(lobe_flux, 1, basis->centres().empty() ? 1e-12 : 1.5e-3);
+  for (const bool trilinear : {false, true}) {
+    const Injection light = light_of(*basis, floor, {.trilinear = trilinear});
+    EXPECT_NEAR(basis->energy(light.total(0)), 4096 * lobe_flux, 4096 * kRounding);
+    EXPECT_NEAR(basis->energy(light.total(1)), 1024 * lobe_flux, 1024 * kRounding);
+    EXPECT_EQ(basis->energy(light.total(2)), 0);
+  }
+}
+
+TEST_P(EachBasis, UnitFluxLobesCarryExactlyTheFlux) {
+  const SurfaceImage texel = one_texel({0.1f, 0.1f, 0.1f}, {1, 2, 3}, {1, 2, 3});
+  const Injection light = light_of(*basis, texel, {.unit_flux_lobes = true});
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(basis->energy(light.total(channel)), channel + 1, 3 * kRounding);
+  }
+}
+
+TEST_P(EachBasis, NothingSeenIsExactlyNothing) {
+  const SurfaceImage nothing = empty_surface(from_above(20, 30, 0.1f));
+  EXPECT_TRUE(all_zero(light_of(*basis, nothing)));
+  EXPECT_TRUE(all_zero(geometry_of(*basis, {nothing})));
+}
+
+TEST_P(EachBasis, TwoRunsAreIdentical) {
+  SurfaceImage floor = plane(from_above(50, 70, 0.05f), 0.3f);
+  for (std::size_t i = 0; i < floor.depth.size(); ++i)
+    floor.depth[i] += 0.3f * std::sin(static_cast<float>(i));
+  for (const bool trilinear : {false, true}) {
+    const InjectOptions options{.trilinear = trilinear};
+    EXPECT_EQ(light_of(*basis, floor, options).values, light_of(*basis, floor, options).values);
+  }
+  EXPECT_EQ(geometry_of(*basis, {floor}).values, geometry_of(*basis, {floor}).values);
+}
+
+TEST_P(EachBasis, ACellDependsOnItsOwnTexelsAlone) {
+  const SurfaceImage floor = plane(from_above(64, 64, 1.0f / 32), 0.3f, {1.0f / 3, 0.1f, 0.7f});
+  SurfaceImage part = floor;  // without the left half, and so with other texels in every chunk and segment
+  for (std::size_t i = 0; i < part.depth.size(); ++i) {
+    if (i % 64 < 32) part.depth[i] = 0;
+  }
+  const Injection all = light_of(*basis, floor), half = light_of(*basis, part);
+  int occupied = 0;
+  for (int z = 0; z < kGrid; ++z) {
+    for (int x = kGrid / 2; x < kGrid; ++x) {
+      EXPECT_EQ(all.cell(0, x, 5, z), half.cell(0, x, 5, z));
+      occupied += half.cell(0, x, 5, z)[0] != 0;
+    }
+  }
+  EXPECT_EQ(occupied, 2 * 4) << "a square metre in cells of half a metre";
+}
+
+TEST(Inject, TrilinearSharesAddUpRoundThePoint) {
+  const auto basis = make_basis("sh2");
+  // Moved up to (4.25, 4.5, 4.75) cells: between the centres of 3 and 4 in x, of 4 and 5 in z, on that of 4 in y.
+  const SurfaceImage texel = one_texel({0.125f, 0, 0.375f}, {0, 1, 0}, glm::vec3(1));
+  const Injection light = light_of(*basis, texel, {.trilinear = true});
+  const double whole = light.total(0)[0];
+  EXPECT_NEAR(light.cell(0, 3, 4, 4)[0], 0.25 * 0.75 * whole, kRounding);
+  EXPECT_NEAR(light.cell(0, 4, 4, 4)[0], 0.75 * 0.75 * whole, kRounding);
+  EXPECT_NEAR(light.cell(0, 3, 4, 5)[0], 0.25 * 0.25 * whole, kRounding);
+  EXPECT_NEAR(light.cell(0, 4, 4, 5)[0], 0.75 * 0.25 * whole, kRounding);
+  EXPECT_NEAR(basis->energy(light.total(0)), 1, kRounding);
+}
+
+TEST(Inject, TrilinearLosesWhatFallsOutsideTheGrid) {
+  const auto basis = make_basis("sh2");
+  // A quarter of a cell inside the grid's face x = -2: the quarter of it that belongs to the cell beyond is gone.
+  const SurfaceImage texel = one_texel({-1.875f, 0, 0.125f}, {0, 1, 0}, glm::vec3(1));
+  const Injection light = light_of(*basis, texel, {.trilinear = true});
+  EXPECT_NEAR(basis->energy(light.total(0)), 0.75, kRounding);
+}
+
+TEST(Inject, WhatIsOutsideTheGridIsDropped) {
+  const auto basis = make_basis("sh2");
+  for (const glm::vec3 p :
+       {glm::vec3(2.01f, 0, 0), glm::vec3(0, -2.3f, 0), glm::vec3(0, 0, -2.01f), glm::vec3(0, 9, 0)}) {
+    const SurfaceImage texel = one_texel(p, {0, 1, 0}, glm::vec3(1));
+    EXPECT_TRUE(all_zero(light_of(*basis, texel))) << p.x << " " << p.y << " " << p.z;
+  }
+  // Below the grid, but its light is half a cell above it.
+  EXPECT_FALSE(all_zero(light_of(*basis, one_texel({0, -2.1f, 0}, {0, 1, 0}, glm::vec3(1)))));
+  EXPECT_TRUE(all_zero(geometry_of(*basis, {one_texel({0, 2.3f, 0}, {0, 1, 0}, glm::vec3(1))})));
+  // The outermost corners are half a cell's reach beyond the cells.
+  EXPECT_FALSE(all_zero(geometry_of(*basis, {one_texel({0, 2.2f, 0}, {0, 1, 0}, glm::vec3(1))})));
+}
+
+TEST(Inject, ValuesThatAreNotFiniteAreSkipped) {
+  const auto basis = make_basis("sh2");
+  SurfaceImage row = plane(from_above(6, 1, 0.1f), 0.3f);
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
+  row.depth[0] = nan;
+  row.depth[1] = infinity;
+  row.normal[2].x = nan;
+  row.normal[3] = glm::vec4(0);
+  row.colour[4].y = infinity;
+  EXPECT_NEAR(basis->energy(light_of(*basis, row).total(0)), 1, kRounding) << "the sixth texel's flux";
+  const Injection blocked = geometry_of(*basis, {row});
+  EXPECT_TRUE(
+      std::all_of(blocked.values.begin(), blocked.values.end(), [](float v) { return std::isfinite(v); }));
+}
+
+TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
+  const auto basis = make_basis("sh2");
+  // Two metres square: from corner 2 to 6, each inner corner's square full of 8 x 8 texels. Layer 5 is .5 m.
+  const SurfaceImage wall = plane(from_above(32, 32, 1.0f / 16), 0.55f);
+  const Injection one_sided = geometry_of(*basis, {wall}, {.two_sided = false});
+  const Injection two_sided = geometry_of(*basis, {wall});
+  for (const int x : {3, 4, 5}) {
+    EXPECT_NEAR(basis->value(one_sided.cell(0, x, 5, 4), {0, 1, 0}), 0.75, kRounding);
+    EXPECT_NEAR(basis->value(one_sided.cell(0, x, 5, 4), {0, -1, 0}), -0.25, kRounding);
+    // sh2 has no function that is even in w but for the constant: both sides average.
+    EXPECT_NEAR(basis->value(two_sided.cell(0, x, 5, 4), {0, 1, 0}), 0.5, kRounding);
+    EXPECT_NEAR(basis->value(two_sided.cell(0, x, 5, 4), {1, 0, 0}), 0.5, kRounding);
+  }
+  EXPECT_NEAR(basis->value(one_sided.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding) << "half a square";
+}
+
+TEST(Inject, SlantedSurfelsCoverMoreUpToALimit) {
+  const auto basis = make_basis("sh2");
+  const auto mean = [&](double cosine) {
+    const glm::vec3 normal(std::sqrt(1 - cosine * cosine), cosine, 0);
+    const Injection blocked = geometry_of(*basis, {one_texel({0, 0, 0}, normal, glm::vec3(1))});
+    return basis->energy(blocked.cell(0, 4, 4, 4)) / (4 * kPi);
+  };
+  const double across = 0.01 * 0.01 / (kCell * kCell);  // of a cell, in the view's plane
+  EXPECT_NEAR(mean(1.0), across / 2, across * 1e-5);
+  EXPECT_NEAR(mean(0.5), across, across * 1e-5);
+  EXPECT_NEAR(mean(0.01), across / 0.1 / 2, across * 1e-4);
+}
+
+TEST(Inject, PerspectiveFootprintsTileTheWall) {
+  const auto basis = make_basis("sh2");
+  // A camera 3 m above a floor, 90 degrees wide: the floor's squares in view are covered once, however slanted.
+  ClpvView camera = from_above(240, 240, 1);
+  camera.orthographic = 0, camera.eye[1] = 3.1f, camera.half_width = camera.half_height = 1;
+  const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)}, {.two_sided = false});
+  for (const int x : {1, 4, 6}) {
+    // Squares hold 40 x 40 pixels, cut by pixel centres.
+    EXPECT_NEAR(basis->value(blocked.cell(0, x, 4, 3), {0, 1, 0}), 0.75, 0.02) << x;
+  }
+}
+
+TEST(Inject, SurfacesThatSeeTheSameWallDoNotAddUp) {
+  const auto basis = make_basis("sh2");
+  ClpvView camera = from_above(200, 200, 1);
+  camera.orthographic = 0, camera.eye[1] = 3.1f, camera.half_width = camera.half_height = 1;
+  const SurfaceImage rsm = plane(from_above(64, 64, 1.0f / 16), 0.1f), seen = plane(camera, 0.1f);
+  const Injection by_rsm = geometry_of(*basis, {rsm}), by_camera = geometry_of(*basis, {seen});
+  const Injection merged = geometry_of(*basis, {rsm, seen});
+  int larger_by_rsm = 0, larger_by_camera = 0;
+  for (int x = 0; x <= kGrid; ++x) {
+    for (int z = 0; z <= kGrid; ++z) {
+      const auto one = by_rsm.cell(0, x, 4, z), other = by_camera.cell(0, x, 4, z);
+      const bool camera_wins = basis->energy(other) > basis->energy(one);
+      EXPECT_EQ(merged.cell(0, x, 4, z), camera_wins ? other : one);
+      ++(camera_wins ? larger_by_camera : larger_by_rsm);
+    }
+  }
+  EXPECT_GT(larger_by_rsm, 0);
+  EXPECT_GT(larger_by_camera, 0);
+  EXPECT_EQ(merged.values, geometry_of(*basis, {seen, rsm}).values) << "in either order";
+}
+
+TEST(Inject, LightOfSeveralSurfacesAddsUp) {
+  const auto basis = make_basis("sh2");
+  Session& session = test_session();
+  Volume light(session, {kGrid, basis->size(), 3}, "light");
+  Injector injector(session, *basis, {.grid = kGrid});
+  const SurfaceImage floor = plane(from_above(16, 16, 0.1f), 0.3f);
+  for (int i = 0; i < 2; ++i) injector.inject_light(upload_surface(session, floor), kCells, light);
+  const Injection once = light_of(*basis, floor);
+  const std::vector<float> twice = light.read(session);
+  for (std::size_t i = 0; i < twice.size(); ++i) ASSERT_EQ(twice[i], 2 * once.values[i]);
+}
+
+TEST(Inject, OneInjectorTakesSurfacesOfAllSizesAndFormats) {
+  const auto basis = make_basis("sh2");
+  Session& session = test_session();
+  Injector injector(session, *basis, {.grid = kGrid});
+  const auto energy = [&](unsigned width, unsigned height, RsmFormat format) {
+    Volume light(session, {kGrid, basis->size(), 3}, "light");
+    const SurfaceImage floor = plane(from_above(width, height, 0.02f), 0.3f);
+    injector.inject_light(upload_surface(session, floor, format), kCells, light);
+    return basis->energy(Injection{light.shape(), light.read(session)}.total(0));
+  };
+  EXPECT_NEAR(energy(3, 5, RsmFormat::float32), 15, 15 * kRounding);
+  EXPECT_NEAR(energy(150, 120, RsmFormat::float32), 18000, 18000 * kRounding * 10);
+  EXPECT_NEAR(energy(1, 1, RsmFormat::float32), 1, kRounding);
+  EXPECT_NEAR(energy(40, 7, RsmFormat::paper), 280, 280 * kRounding);
+}
+
+TEST(Inject, VolumesOfAnotherShapeAreRefused) {
+  const auto basis = make_basis("sh2");
+  Session& session = test_session();
+  Injector injector(session, *basis, {.grid = kGrid});
+  const Surface surface = upload_surface(session, plane(from_above(2, 2, 0.1f), 0));
+  Volume small(session, {kGrid - 1, basis->size(), 3}, "light"),
+      corners(session, {kGrid, basis->size(), 1}, "corners");
+  EXPECT_THROW(injector.inject_light(surface, kCells, small), Error);
+  EXPECT_THROW(injector.inject_geometry(surface, kCells, corners), Error);
+}
+
+TEST(Inject, KernelsAgreeWithTheTwin) {
+  const reference::CheckResults results = reference::check_inject(test_session());
+  EXPECT_GT(results.size(), basis_names().size());
+  for (const reference::CheckResult& result : results) {
+    RecordProperty(result.variant, std::to_string(result.worst));
+    EXPECT_TRUE(result.passed()) << result.variant << ": " << result.worst << " > " << result.allowed
+                                 << " at " << result.place;
+  }
+}
+
+}  // namespace
+}  // namespace clpv
