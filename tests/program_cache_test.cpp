@@ -1,0 +1,203 @@
+// Compiled programs kept on disk: what is stored comes back, and whatever else a file holds never does.
+#include "device/program_cache.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+
+#include "device/session.hpp"
+#include "run_program.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+using Binary = ProgramCache::Binary;
+
+void write_file(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::size_t file_count(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+class ProgramCacheTest : public ::testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  ProgramCache cache_{folder_.path() / "made" / "on demand"};
+};
+
+TEST_F(ProgramCacheTest, GivesBackWhatWasStored) {
+  EXPECT_FALSE(cache_.load("key").has_value());
+  const Binary binary = {0, 1, 255, '\n', 0};
+  EXPECT_TRUE(cache_.store("key", binary));
+  EXPECT_EQ(cache_.load("key"), binary);
+  EXPECT_TRUE(cache_.store("key", {7}));
+  EXPECT_EQ(cache_.load("key"), Binary{7});
+  EXPECT_EQ(file_count(cache_.folder()), 1u) << "nothing is left beside";
+  cache_.remove("key");
+  EXPECT_FALSE(cache_.load("key").has_value());
+}
+
+TEST_F(ProgramCacheTest, KeyTellsEverythingApart) {
+  Device device;
+  device.platform = "p", device.name = "n", device.driver = "d", device.version = "v";
+  const std::string key = ProgramCache::key(device, "options", "text");
+  EXPECT_NE(ProgramCache::key(device, "options2", "text"), key);
+  EXPECT_NE(ProgramCache::key(device, "options", "text2"), key);
+  for (auto field :
+       {&Device::platform, &Device::platform_version, &Device::name, &Device::driver, &Device::version}) {
+    Device other = device;
+    other.*field += "2";
+    EXPECT_NE(ProgramCache::key(other, "options", "text"), key);
+  }
+}
+
+TEST_F(ProgramCacheTest, SameFileNameOfAnotherKeyIsNotTaken) {
+  cache_.store("one", {1});
+  fs::rename(cache_.file_of("one"), cache_.file_of("two"));  // as if both had one hash
+  EXPECT_FALSE(cache_.load("two").has_value());
+}
+
+TEST_F(ProgramCacheTest, AnyDamageIsFound) {
+  const Binary binary(40, 9);
+  cache_.store("key", binary);
+  const fs::path file = cache_.file_of("key");
+  const std::string whole = test::read_file(file);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    write_file(file, whole.substr(0, i));
+    EXPECT_FALSE(cache_.load("key").has_value()) << "cut after byte " << i;
+    std::string flipped = whole;
+    flipped[i] ^= 0x10;
+    write_file(file, flipped);
+    EXPECT_FALSE(cache_.load("key").has_value()) << "bit turned in byte " << i;
+  }
+  write_file(file, whole);
+  EXPECT_EQ(cache_.load("key"), binary);
+}
+
+TEST_F(ProgramCacheTest, FolderThatCannotBeMadeIsNoFailure) {
+  write_file(folder_.path() / "file", "");
+  const ProgramCache cache(folder_.path() / "file" /
+                           "below");  // root may write anywhere, but not below a file
+  EXPECT_FALSE(cache.store("key", {1}));
+  EXPECT_FALSE(cache.load("key").has_value());
+}
+
+TEST_F(ProgramCacheTest, DropsWhatWasUsedLongestAgo) {
+  const ProgramCache cache(folder_.path(), 2500);
+  const Binary binary(1000, 1);
+  const auto now = fs::file_time_type::clock::now();
+  for (const char* key : {"a", "b"}) cache.store(key, binary);
+  fs::last_write_time(cache.file_of("a"), now - std::chrono::hours(2));
+  fs::last_write_time(cache.file_of("b"), now - std::chrono::hours(1));
+  EXPECT_TRUE(cache.load("a").has_value());  // used: "b" is the oldest now
+  cache.store("c", binary);
+  EXPECT_TRUE(cache.load("a").has_value());
+  EXPECT_FALSE(cache.load("b").has_value());
+  EXPECT_TRUE(cache.load("c").has_value());
+}
+
+TEST_F(ProgramCacheTest, UsersFolderIsTheDocumentedOne) {
+  setenv("HOME", "/home/me", 1);
+  setenv("XDG_CACHE_HOME", "/cache", 1);
+  unsetenv("CLPV_PROGRAM_CACHE");
+  EXPECT_EQ(ProgramCache::of_user()->folder(), "/cache/clpv");
+  setenv("XDG_CACHE_HOME", "", 1);
+  EXPECT_EQ(ProgramCache::of_user()->folder(), "/home/me/.cache/clpv");
+  setenv("CLPV_PROGRAM_CACHE", "off", 1);
+  EXPECT_FALSE(ProgramCache::of_user().has_value());
+  unsetenv("CLPV_PROGRAM_CACHE");
+  unsetenv("HOME");
+  EXPECT_FALSE(ProgramCache::of_user().has_value());
+}
+
+/// Stores and reads one key over and over; true if every binary read was one of the writers', whole.
+bool store_and_read_often(const ProgramCache& cache, unsigned char writer) {
+  for (int i = 0; i < 200; ++i) {
+    if (!cache.store("key", Binary(5000, writer))) return false;
+    const auto read = cache.load("key");
+    if (!read || read->size() != 5000 || *read != Binary(5000, read->front())) return false;
+  }
+  return true;
+}
+
+TEST_F(ProgramCacheTest, ManyProcessesAtOnceNeverReadATornFile) {
+  std::vector<pid_t> children;
+  for (unsigned char writer = 0; writer < 4; ++writer) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) _exit(store_and_read_often(cache_, writer) ? 0 : 1);
+    children.push_back(child);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  }
+  EXPECT_EQ(file_count(cache_.folder()), 1u);
+}
+
+/// A session's program out of the cache, told from a compiled one by what the kernel writes.
+class CachedSession : public ProgramCacheTest {
+ protected:
+  CachedSession() {
+    setenv("CLPV_KERNEL_DIR", folder_.path().c_str(), 1);
+    write_file(folder_.path() / "answer.cl",
+               "__kernel void answer(__global int* a) { if (get_global_id(0) == 0) a[0] = CLPV_ANSWER; }\n");
+  }
+  ~CachedSession() override { unsetenv("CLPV_KERNEL_DIR"); }
+
+  static ProgramSource source(int value) {
+    return {.file = "answer.cl", .literals = {{"CLPV_ANSWER", std::to_string(value)}}, .generated = {}};
+  }
+  std::string key(int value) const {
+    return ProgramCache::key(choose_device(), source(value).options, program_text(source(value)));
+  }
+  /// What the kernel of source(value) writes, its program kept afterwards.
+  int answer(int value) const {
+    Session session(choose_device(), cache_);
+    cl::Kernel kernel = session.kernel(source(value), "answer");
+    const cl::Buffer out = session.buffer(sizeof(int), "answer");
+    kernel.setArg(0, out);
+    session.launch(kernel, cl::NDRange(1), cl::NDRange(1));
+    const int read = session.read<int>(out, 1)[0];
+    session.store_programs();
+    return read;
+  }
+};
+
+TEST_F(CachedSession, TakesTheStoredProgram) {
+  EXPECT_EQ(answer(1), 1);
+  EXPECT_EQ(answer(2), 2);
+  const auto two = cache_.load(key(2));
+  ASSERT_TRUE(two.has_value()) << "store_programs() kept it";
+  cache_.store(key(1), *two);
+  EXPECT_EQ(answer(1), 2) << "the cache was not asked";
+}
+
+TEST_F(CachedSession, RebuildsWhatIsDamagedOrRefused) {
+  EXPECT_EQ(answer(3), 3);
+  write_file(cache_.file_of(key(3)), "clpv program 1\nrubbish");
+  EXPECT_EQ(answer(3), 3);
+  EXPECT_TRUE(cache_.load(key(3)).has_value()) << "and replaced";
+  const Binary refused(100, 42);
+  cache_.store(key(3), refused);
+  EXPECT_EQ(answer(3), 3);
+  EXPECT_NE(cache_.load(key(3)), refused);
+}
+
+TEST_F(CachedSession, GoesOnWithoutAFolder) {
+  write_file(folder_.path() / "file", "");
+  cache_ = ProgramCache(folder_.path() / "file" / "below");
+  EXPECT_EQ(answer(4), 4);
+}
+
+}  // namespace
+}  // namespace clpv
