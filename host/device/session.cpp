@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 
 #include "device/cl_error.hpp"
 #include "support/log.hpp"
@@ -29,6 +33,16 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
                   cl_error_name(error.err()));
     return std::nullopt;
   }
+}
+
+/// Writes a program's text to the folder CLPV_PROGRAM_DUMP names: for other compilers, and for reports on this one.
+void dump(const ProgramSource& source, const std::string& text) {
+  const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
+  if (folder == nullptr || *folder == '\0') return;
+  const std::filesystem::path file =
+      std::filesystem::path(folder) / fmt::format("{:016x}.{}", std::hash<std::string>{}(text), source.file);
+  std::ofstream out(file, std::ios::binary);
+  if (!(out << text)) throw Error(ExitCode::run_time, "CLPV_PROGRAM_DUMP: cannot write {}", file.string());
 }
 
 }  // namespace
@@ -60,6 +74,7 @@ cl::Kernel Session::kernel(const ProgramSource& source, const std::string& name)
   const std::string key = ProgramCache::key(device_, source.options, text);
   auto found = programs_.find(key);
   if (found == programs_.end()) {
+    dump(source, text);
     const auto start = std::chrono::steady_clock::now();
     Built built;
     built.program = build(source, text, key, built.stored);
