@@ -1,5 +1,6 @@
 #include "scene/gltf_mesh.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "scene/bounds.hpp"
@@ -20,8 +21,21 @@ class Appender {
  public:
   Appender(const GltfDocument& document, Scene& scene) : document_(document), scene_(scene) {}
 
+  /// Makes room for `count` instances of a primitive, or refuses all of them before any is made.
+  void reserve(const LocalPrimitive& primitive, std::size_t count) {
+    const std::uint64_t vertices = scene_.vertices.size() + count * primitive.vertices.size();
+    const std::uint64_t triangles = scene_.triangles.size() + count * primitive.triangles.size();
+    if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
+      refuse(document_.file, primitive.place,
+             fmt::format("{} vertices and {} triangles so far, this one standing at {} nodes", vertices,
+                         triangles, count),
+             fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
+    }
+    grow(scene_.vertices, vertices);
+    grow(scene_.triangles, triangles);
+  }
+
   void append(const LocalPrimitive& primitive, const GltfNode& node) {
-    check_room(primitive, node);
     const glm::dmat3 linear(node.to_world);
     const glm::dmat3 to_normal = normal_matrix(linear);
     const bool mirrored = glm::determinant(linear) < 0;
@@ -36,14 +50,10 @@ class Appender {
   }
 
  private:
-  void check_room(const LocalPrimitive& primitive, const GltfNode& node) const {
-    const std::uint64_t vertices = scene_.vertices.size() + primitive.vertices.size();
-    const std::uint64_t triangles = scene_.triangles.size() + primitive.triangles.size();
-    if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
-      refuse(document_.file, fmt::format("/nodes/{}", node.index),
-             fmt::format("{} vertices and {} triangles with {}", vertices, triangles, primitive.place),
-             fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
-    }
+  /// Reserves geometrically, as push_back would: exact reserves for each primitive would copy all at each.
+  template <typename T>
+  static void grow(std::vector<T>& values, std::uint64_t size) {
+    if (size > values.capacity()) values.reserve(std::max<std::size_t>(size, 2 * values.capacity()));
   }
 
   Vertex placed(const LocalVertex& local, const GltfNode& node, const glm::dmat3& to_normal,
@@ -91,6 +101,7 @@ void append_meshes(const GltfDocument& document, const std::vector<GltfNode>& no
       const Room room{bounds::kVertices - scene.vertices.size(), bounds::kTriangles - scene.triangles.size()};
       const LocalPrimitive primitive = read_primitive(document, index, i, materials, room, map, notes);
       if (primitive.triangles.empty()) continue;
+      appender.reserve(primitive, placed.size());
       for (const GltfNode* node : placed) appender.append(primitive, *node);
     }
     if (!document.model.meshes[index].weights.empty()) {

@@ -1,0 +1,147 @@
+// glTF materials, textures and texture coordinates, feature by feature.
+#include <glm/gtc/constants.hpp>
+
+#include "gltf_fixture.hpp"
+
+namespace clpv::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+struct GltfMaterialTest : GltfTest {};
+
+TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
+  model.document["materials"] = json::parse(R"([
+    {"name": "plain", "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 1},
+     "emissiveFactor": [0.5, 0.25, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}}},
+    {"name": "mask", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true},
+    {"name": "mask by default", "alphaMode": "MASK"},
+    {"name": "glass", "alphaMode": "BLEND", "alphaCutoff": 0.9}])");
+  model.triangle({{"material", 0}});
+  const Scene scene = load();
+  ASSERT_EQ(scene.materials.size(), 4u);
+  EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f)) << "of a metal too";
+  EXPECT_THAT(scene.materials[0].emissive, ElementsAre(4, 2, 8));
+  EXPECT_EQ(scene.materials[0].flags, 0u);
+  EXPECT_EQ(scene.materials[1].flags, CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED);
+  EXPECT_EQ(scene.materials[1].alpha_cutoff, 0.25f);
+  EXPECT_EQ(scene.materials[2].alpha_cutoff, 0.5f);
+  EXPECT_EQ(scene.materials[3].flags, CLPV_MATERIAL_MASKED);
+  EXPECT_EQ(scene.materials[3].alpha_cutoff, 0.5f) << "BLEND is MASK at one half";
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/materials/3 ('glass') blends")));
+}
+
+TEST_F(GltfMaterialTest, TexturesKeepTheirBytes) {
+  textured(kPngRgba2x2);
+  textured_triangle();
+  const Scene scene = load();
+  ASSERT_EQ(scene.textures.size(), 1u);
+  const Texture& texture = scene.textures[0];
+  EXPECT_EQ(texture.width, 2u);
+  EXPECT_EQ(texture.height, 2u);
+  // Row 0 first, colours not multiplied by alpha.
+  EXPECT_THAT(texture.rgba, ElementsAre(255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 128, 128, 128, 255));
+  EXPECT_EQ(scene.materials[0].texture, 0u);
+}
+
+TEST_F(GltfMaterialTest, ImagesOfOtherKindsBecomeRgba) {
+  const auto rgba = [&](std::string_view image) {
+    GltfTest::model = GltfBuilder();
+    textured(image);
+    textured_triangle();
+    return load().textures.at(0).rgba;
+  };
+  EXPECT_THAT(rgba(kPngGrey), ElementsAre(77, 77, 77, 255));
+  EXPECT_THAT(rgba(kPngGrey16), ElementsAre(77, 77, 77, 255));
+  EXPECT_THAT(rgba(kPngPalette), ElementsAre(10, 20, 30, 255));
+  const auto red = rgba(kJpegRed8x8);  // under a name that says PNG: content decides
+  ASSERT_EQ(red.size(), 256u);
+  EXPECT_NEAR(red[0], 255, 4);
+  EXPECT_NEAR(red[1], 0, 4);
+}
+
+TEST_F(GltfMaterialTest, ImagesInBuffersAndDataUris) {
+  const std::string png = decode_base64(kPngGrey);
+  model.add("images", {{"bufferView", model.view(png)}, {"mimeType", "image/png"}});
+  model.add("images", {{"uri", "data:image/png;base64," + std::string(kPngPalette)}});
+  for (int i = 0; i < 2; ++i) {
+    model.add("textures", {{"source", i}});
+    model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+  }
+  textured_triangle();
+  const Scene scene = load_scene(folder.write("model.glb", model.glb()));
+  ASSERT_EQ(scene.textures.size(), 2u);
+  EXPECT_THAT(scene.textures[0].rgba, ElementsAre(77, 77, 77, 255));
+  EXPECT_THAT(scene.textures[1].rgba, ElementsAre(10, 20, 30, 255));
+}
+
+TEST_F(GltfMaterialTest, WrapModesComeFromTheSampler) {
+  textured(kPngGrey);
+  textured_triangle();
+  model.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}, {{"magFilter", 9728}}};
+  model.document["textures"][0]["sampler"] = 0;
+  Scene scene = load();
+  EXPECT_EQ(scene.textures[0].wrap_u, CLPV_WRAP_CLAMP);
+  EXPECT_EQ(scene.textures[0].wrap_v, CLPV_WRAP_MIRROR);
+  model.document["textures"][0]["sampler"] = 1;
+  scene = load();
+  EXPECT_EQ(scene.textures[0].wrap_u, CLPV_WRAP_REPEAT);
+  EXPECT_EQ(scene.textures[0].wrap_v, CLPV_WRAP_REPEAT);
+}
+
+TEST_F(GltfMaterialTest, OneImageServesManyMaterials) {
+  textured(kPngGrey);
+  model.document["materials"].push_back(model.document["materials"][0]);
+  textured_triangle();
+  EXPECT_EQ(load().textures.size(), 1u);
+}
+
+TEST_F(GltfMaterialTest, TextureTransformScalesTurnsAndMoves) {
+  json& material = textured(kPngGrey);
+  material["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"rotation", glm::half_pi<double>()}, {"scale", {2, 4}}};
+  model.document["extensionsRequired"] = {"KHR_texture_transform"};
+  textured_triangle();
+  const Scene scene = load();
+  EXPECT_THAT(uv(scene, 0), IsNear(glm::vec2(0.5f, 0.25f), kClose));
+  EXPECT_THAT(uv(scene, 1), IsNear(glm::vec2(0.5f, -1.75f), kClose))
+      << "u turns towards -v, upwards in the image";
+  EXPECT_THAT(uv(scene, 2), IsNear(glm::vec2(4.5f, 0.25f), kClose));
+}
+
+TEST_F(GltfMaterialTest, TextureCoordinateSets) {
+  json& texture = textured(kPngGrey)["pbrMetallicRoughness"]["baseColorTexture"];
+  const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int first = model.accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
+  const int second = model.accessor<float>("VEC2", {7, 7, 8, 8, 9, 9});
+  model.mesh({{"POSITION", position}, {"TEXCOORD_0", first}, {"TEXCOORD_3", second}}, {{"material", 0}});
+  EXPECT_EQ(uv(load(), 0), glm::vec2(0));
+  texture["texCoord"] = 3;
+  EXPECT_EQ(uv(load(), 0), glm::vec2(7));
+  texture["texCoord"] = 0;
+  texture["extensions"]["KHR_texture_transform"] = {{"texCoord", 3}};
+  EXPECT_EQ(uv(load(), 0), glm::vec2(7)) << "the extension overrides";
+  texture["extensions"]["KHR_texture_transform"] = {{"texCoord", 5}};
+  EXPECT_THAT(load().notes, ::testing::Contains(HasSubstr("TEXCOORD_5")));
+}
+
+TEST_F(GltfMaterialTest, EmissiveTextures) {
+  json& material = textured(kPngGrey);
+  material["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+  textured_triangle();
+  EXPECT_EQ(load().materials[0].emissive_texture, CLPV_NO_TEXTURE) << "the factor is 0";
+  material["emissiveFactor"] = {1, 1, 1};
+  Scene scene = load();
+  EXPECT_EQ(scene.materials[0].emissive_texture, 0u);
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/materials/0/emissiveTexture")));
+  material["emissiveTexture"].erase("texCoord");
+  EXPECT_THAT(load().notes, Not(::testing::Contains(HasSubstr("emissiveTexture"))));
+  material.erase("pbrMetallicRoughness");
+  scene = load();
+  EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
+  EXPECT_EQ(uv(scene, 1), glm::vec2(1, 0)) << "without a base-colour texture its own coordinates serve";
+}
+
+}  // namespace
+}  // namespace clpv::testing

@@ -1,0 +1,222 @@
+// Scene files: what they say, what they replace, what is added where nothing is given; and Sponza as a whole.
+#include "scene/scene.hpp"
+
+#include <chrono>
+#include <glm/gtc/constants.hpp>
+
+#include "gltf_builder.hpp"
+
+namespace clpv::testing {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr float kClose = 1e-6f;
+
+constexpr const char* kFull = R"({
+  "comment": "what it shows",
+  "model": "models/model.gltf",
+  "metres_per_unit": 0.5,
+  "exposure": -1.5,
+  "cameras": [
+    {"name": "a", "eye": [2, 4, 6], "target": [2, 4, 0], "vertical_fov_degrees": 90, "near": 0.5, "light": "sun"},
+    {"name": "b", "eye": [0, 0, 0], "target": [0, 3, 0], "up": [0, 1, 1]}],
+  "lights": [
+    {"name": "sun", "kind": "directional", "direction": [0, -2, 0], "illuminance_lux": 10, "colour": [1, 0.5, 0]},
+    {"kind": "point", "position": [2, 0, 0], "intensity_candela": 7, "range": 8},
+    {"name": "torch", "kind": "spot", "position": [0, 2, 0], "direction": [1, 0, 0], "intensity_candela": 3,
+     "inner_cone_degrees": 20, "outer_cone_degrees": 60}],
+  "cascades": {"count": 2, "size_metres": 8}
+})";
+
+/// A model with a triangle, a camera and a light, in models/.
+struct SceneTest : ::testing::Test {
+  TempFolder folder;
+
+  GltfBuilder model() {
+    GltfBuilder made;
+    made.triangle();
+    made.document["cameras"] = {
+        {{"name", "own"}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    made.document["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"name", "lamp"}, {"type", "point"}, {"range", 4}}};
+    made.add("nodes", {{"camera", 0},
+                       {"translation", {0, 0, 8}},
+                       {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    return made;
+  }
+
+  void SetUp() override {
+    GltfBuilder made = model();
+    made.finish("model.bin");
+    folder.write("models/model.bin", made.binary);
+    folder.write("models/model.gltf", made.document.dump());
+  }
+
+  Scene load(const std::string& text, const LoadOptions& options = {}) {
+    return load_scene(folder.write("test.json", text), options);
+  }
+};
+
+TEST_F(SceneTest, EverythingASceneFileSays) {
+  const Scene scene = load(kFull);
+  EXPECT_EQ(scene.name, "test");
+  EXPECT_EQ(scene.exposure, -1.5f);
+  EXPECT_EQ(scene.cascades, 2);
+  EXPECT_EQ(scene.cascade_size, 8.0f);
+  EXPECT_EQ(scene.upper, glm::vec3(0.5f, 0.5f, 0)) << "half a metre per unit";
+  EXPECT_THAT(scene.notes, IsEmpty());
+}
+
+TEST_F(SceneTest, CamerasAreScaledToMetres) {
+  const Scene scene = load(kFull);
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  const Camera& a = scene.cameras[0];
+  EXPECT_EQ(a.eye, glm::vec3(1, 2, 3));
+  EXPECT_THAT(a.forward, IsNear(glm::vec3(0, 0, -1), kClose));
+  EXPECT_NEAR(a.vertical_fov, glm::half_pi<float>(), kClose);
+  EXPECT_EQ(a.near_depth, 0.25f);
+  const Camera& b = scene.cameras[1];
+  EXPECT_THAT(b.up, IsNear(glm::vec3(0, 0, 1), kClose)) << "made perpendicular";
+  EXPECT_NEAR(b.vertical_fov, glm::pi<float>() / 3, kClose) << "60 degrees by default";
+}
+
+TEST_F(SceneTest, LightsAreScaledButNotTheirIntensities) {
+  const Scene scene = load(kFull);
+  ASSERT_EQ(scene.lights.size(), 3u);
+  const ClpvLight &sun = scene.lights[0].data, &lamp = scene.lights[1].data, &torch = scene.lights[2].data;
+  EXPECT_THAT(sun.direction, ElementsAre(0, -1, 0));
+  EXPECT_THAT(sun.intensity, ElementsAre(10, 5, 0));
+  EXPECT_THAT(lamp.position, ElementsAre(1, 0, 0));
+  EXPECT_EQ(lamp.range, 4);
+  EXPECT_THAT(lamp.intensity, ElementsAre(7, 7, 7));
+  EXPECT_EQ(torch.kind, static_cast<unsigned>(CLPV_LIGHT_SPOT));
+  EXPECT_NEAR(std::cos(glm::radians(20.f)) * torch.cone_scale + torch.cone_offset, 1, 1e-5);
+  EXPECT_NEAR(std::cos(glm::radians(60.f)) * torch.cone_scale + torch.cone_offset, 0, 1e-5);
+}
+
+TEST_F(SceneTest, ACameraMayNameItsLight) {
+  const Scene scene = load(kFull);
+  const auto only = scene.lights_for(scene.camera("a"));
+  ASSERT_EQ(only.size(), 1u);
+  EXPECT_EQ(only[0].name, "sun");
+  EXPECT_EQ(scene.lights_for(scene.camera("b")).size(), 3u);
+}
+
+TEST_F(SceneTest, CamerasAreFoundByName) {
+  const Scene scene = load(kFull);
+  EXPECT_EQ(scene.camera("").name, "a");
+  EXPECT_EQ(scene.camera("b").name, "b");
+  try {
+    scene.camera("c");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("'c'"), HasSubstr("a, b")));
+  }
+}
+
+TEST_F(SceneTest, WithoutItsOwnTheModelsCamerasAndLightsServe) {
+  const Scene scene = load(R"({"model": "models/model.gltf", "metres_per_unit": 2})");
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.cameras[0].name, "own");
+  EXPECT_EQ(scene.cameras[0].eye, glm::vec3(0, 0, 16));
+  EXPECT_EQ(scene.cameras[0].near_depth, 2);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].data.range, 8);
+  EXPECT_THAT(scene.notes, IsEmpty());
+}
+
+TEST_F(SceneTest, AnEmptyListOfLightsMeansDarkness) {
+  const Scene scene = load(R"({"model": "models/model.gltf", "lights": []})");
+  EXPECT_THAT(scene.lights, IsEmpty());
+  EXPECT_THAT(scene.notes, IsEmpty());
+}
+
+TEST_F(SceneTest, TheModelCanBeReplaced) {
+  GltfBuilder other;
+  other.triangle();
+  other.triangle();
+  const Scene scene = load(kFull, {other.write(folder, "other.gltf")});
+  EXPECT_EQ(scene.triangles.size(), 2u);
+  EXPECT_EQ(scene.cameras.size(), 2u);
+  EXPECT_EQ(load("{}", {folder / "other.gltf"}).triangles.size(), 2u) << "and need not be given at all";
+}
+
+TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
+  GltfBuilder bare;
+  bare.mesh({{"POSITION", bare.accessor<float>("VEC3", {-3, 0, -1, 5, 0, 2, 0, 4, 1})}});
+  const Scene scene = load_scene(bare.write(folder));
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].data.kind, static_cast<unsigned>(CLPV_LIGHT_DIRECTIONAL));
+  EXPECT_LT(scene.lights[0].data.direction[1], -0.5f);
+  EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("no camera"), HasSubstr("no light")));
+  const Camera& camera = scene.cameras[0];
+  for (const Vertex& vertex : scene.vertices) {  // every corner is in view, in a square image
+    const glm::vec3 d = glm::vec3(vertex.position[0], vertex.position[1], vertex.position[2]) - camera.eye;
+    EXPECT_GT(glm::dot(d, camera.forward), camera.near_depth);
+    EXPECT_GT(glm::dot(glm::normalize(d), camera.forward), std::cos(camera.vertical_fov / 2));
+  }
+}
+
+TEST_F(SceneTest, AnEmptyModelIsAScene) {
+  GltfBuilder empty;
+  const Scene scene = load_scene(empty.write(folder));
+  EXPECT_THAT(scene.triangles, IsEmpty());
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("no triangles")));
+}
+
+/// Where Sponza lies, or empty.
+std::filesystem::path sponza() {
+  const char* given = std::getenv("CLPV_SPONZA");
+  std::filesystem::path path = given != nullptr && *given != '\0' ? std::filesystem::path(given)
+                                                                  : std::filesystem::path(CLPV_SOURCE_DIR) /
+                                                                        "../shared/scenes/sponza/Sponza.gltf";
+  if (std::filesystem::is_directory(path)) path /= "Sponza.gltf";
+  return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+TEST(SponzaTest, IsWhatItsReadmeSays) {
+  const auto model = sponza();
+  if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA says where it lies";
+  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/sponza.json", {model});
+  EXPECT_EQ(scene.triangles.size(), 262267u);
+  EXPECT_EQ(scene.vertices.size(), 192870u);
+  EXPECT_EQ(scene.materials.size(), 25u);
+  const auto masked = std::count_if(scene.materials.begin(), scene.materials.end(),
+                                    [](const Material& m) { return (m.flags & CLPV_MATERIAL_MASKED) != 0; });
+  EXPECT_EQ(masked, 3);
+  EXPECT_EQ(scene.textures.size(), 25u);
+  // The README's box at the node scale, to the millimetre, made metres.
+  EXPECT_THAT(scene.lower, IsNear(1.25f * glm::vec3(-15.365f, -1.012f, -9.462f), 2e-3f));
+  EXPECT_THAT(scene.upper, IsNear(1.25f * glm::vec3(14.395f, 11.435f, 8.843f), 2e-3f));
+  EXPECT_THAT(scene.notes, IsEmpty());
+  for (const char* name : {"curtains", "atrium", "columns"}) {
+    const auto lights = scene.lights_for(scene.camera(name));
+    ASSERT_EQ(lights.size(), 1u);
+    EXPECT_EQ(lights[0].name, name);
+    const float* d = lights[0].data.direction;
+    EXPECT_NEAR(glm::length(glm::vec3(d[0], d[1], d[2])), 1, kClose);
+  }
+  EXPECT_THAT(scene.camera("curtains").eye, IsNear(glm::vec3(-9.5f, 1.625f, -1.125f), 1e-5f));
+}
+
+TEST(SponzaTest, StoredNormalsAgreeWithTheFaces) {
+  const auto model = sponza();
+  if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA says where it lies";
+  const Scene scene = load_scene(model);
+  std::size_t agreeing = 0;
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) ASSERT_NEAR(glm::length(normal(scene, t, k)), 1, 1e-5f) << t;
+    agreeing += glm::dot(face_normal(scene, t), normal(scene, t, 0)) > 0 ? 1u : 0u;
+  }
+  EXPECT_GT(static_cast<double>(agreeing), 0.98 * static_cast<double>(scene.triangles.size()));
+}
+
+}  // namespace
+}  // namespace clpv::testing
