@@ -14,7 +14,7 @@ foreach(directory IN LISTS oiio_includes)
   endif()
 endforeach()
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_present}")
-find_package(CLI11 REQUIRED)
+find_package(CLI11 REQUIRED)  # of the program, not of the library
 find_package(Threads REQUIRED)
 find_package(embree 3 REQUIRED)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
@@ -26,7 +26,7 @@ function(clpv_link_dependencies target)
     CL_TARGET_OPENCL_VERSION=120 GLM_FORCE_EXPLICIT_CTOR SPDLOG_FMT_EXTERNAL)
   target_link_libraries(${target}
     PUBLIC OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json
-           CLI11::CLI11 spdlog::spdlog Threads::Threads
+           spdlog::spdlog Threads::Threads
     PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} embree)
   target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
 endfunction()
