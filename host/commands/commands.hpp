@@ -15,6 +15,9 @@ struct Shared {
 
 // Each in commands/NAME.cpp. The callbacks throw clpv::Error; main turns it into an exit code.
 void add_devices(CLI::App& app, Shared& shared);
+void add_render(CLI::App& app, Shared& shared);
+void add_propagate(CLI::App& app, Shared& shared);
+void add_check(CLI::App& app, Shared& shared);
 void add_compare(CLI::App& app, Shared& shared);
 void add_reference(CLI::App& app, Shared& shared);
 

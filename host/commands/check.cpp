@@ -1,0 +1,124 @@
+// clpv check: every stage's kernels against their double-precision twins, on a device of the user's choice.
+#include "reference/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace {
+
+struct Stage {
+  std::string name;
+  std::function<reference::CheckResults(Session&)> check;
+};
+
+const std::vector<Stage>& stages() {
+  static const std::vector<Stage> all = {
+      {"inject", reference::check_inject}, {"propagate", reference::check_propagate},
+      {"gather", reference::check_gather}, {"shade", reference::check_shade},
+  };
+  return all;
+}
+
+std::vector<std::string> stage_names() {
+  std::vector<std::string> names;
+  for (const Stage& stage : stages()) names.push_back(stage.name);
+  return names;
+}
+
+struct Options {
+  std::vector<std::string> only;
+  bool json = false;
+};
+
+/// The result nearest to its tolerance, or beyond it.
+const reference::CheckResult& worst_of(const reference::CheckResults& results) {
+  const auto share = [](const reference::CheckResult& r) {
+    return r.passed() ? r.worst / std::max(r.allowed, 1e-300) : 1e300;
+  };
+  return *std::max_element(results.begin(), results.end(),
+                           [&](const auto& a, const auto& b) { return share(a) < share(b); });
+}
+
+void print(const std::string& stage, const reference::CheckResults& results) {
+  const auto failed =
+      std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
+  const reference::CheckResult& worst = worst_of(results);
+  fmt::print("{:<10} {:>4} of {:<4} {}  worst {:.2e} of {:.0e} allowed ({})\n", stage,
+             results.size() - failed, results.size(), failed == 0 ? "ok    " : "FAILED", worst.worst,
+             worst.allowed, worst.variant);
+  for (const auto& r : results) {
+    if (!r.passed())
+      fmt::print("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.worst, r.allowed, r.place);
+    if (r.passed()) spdlog::debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.worst, r.allowed);
+  }
+  std::fflush(stdout);
+}
+
+nlohmann::json to_json(const reference::CheckResults& results) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& r : results) {
+    list.push_back({{"stage", r.stage},
+                    {"variant", r.variant},
+                    {"worst", r.worst},
+                    {"allowed", r.allowed},
+                    {"place", r.place},
+                    {"passed", r.passed()}});
+  }
+  return list;
+}
+
+void run(const Options& options, const Shared& shared) {
+  Session session(choose_device(shared.device));
+  spdlog::info("checking {} ({}), driver {}", session.device().name, session.device().platform,
+               session.device().driver);
+  reference::CheckResults all;
+  Progress progress("check", stages().size());
+  for (const Stage& stage : stages()) {
+    progress.advance();
+    if (!options.only.empty() && std::count(options.only.begin(), options.only.end(), stage.name) == 0)
+      continue;
+    const reference::CheckResults results = stage.check(session);
+    if (results.empty()) throw Error(ExitCode::validation, "stage {} was not compared at all", stage.name);
+    if (!options.json) print(stage.name, results);
+    all.insert(all.end(), results.begin(), results.end());
+  }
+  const auto failed = std::count_if(all.begin(), all.end(), [](const auto& r) { return !r.passed(); });
+  if (options.json) {
+    const Device& d = session.device();
+    fmt::print("{}\n",
+               nlohmann::json{{"schema", 1},
+                              {"device", {{"platform", d.platform}, {"name", d.name}, {"driver", d.driver}}},
+                              {"passed", failed == 0},
+                              {"checks", to_json(all)}}
+                   .dump(2));
+  }
+  if (failed > 0)
+    throw Error(ExitCode::validation, "{} of {} comparisons failed on {}", failed, all.size(),
+                session.device().name);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Shared& shared) {
+  CLI::App* command =
+      app.add_subcommand("check", "Hold every stage's kernels against double-precision twins on this device");
+  auto options = std::make_shared<Options>();
+  command->add_option("--stage", options->only, "only these stages; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(stage_names()));
+  command->add_flag("--json", options->json, "JSON on stdout");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

@@ -1,0 +1,31 @@
+#include "commands/frame_options.hpp"
+
+#include <fmt/format.h>
+
+namespace clpv {
+
+void add_frame_options(CLI::App& command, GivenOptions& given) {
+  for (const OptionInfo& info : list_options(RenderOptions{})) {
+    const auto take = [&given, name = info.name](const std::string& text) {
+      RenderOptions probe;
+      set_option(probe, name, text);  // a bad value is told before any scene is read
+      given[name] = text;
+    };
+    command
+        .add_option_function<std::string>("--" + info.name, take,
+                                          fmt::format("{} ({})", info.help, info.allowed))
+        ->default_str(info.value)
+        ->type_name("")
+        ->group("Frame");
+  }
+}
+
+RenderOptions resolve_options(const GivenOptions& given, const Scene& scene) {
+  RenderOptions options;
+  if (scene.cascade_size) options.cascade_size = *scene.cascade_size;
+  if (scene.cascades) options.cascades = *scene.cascades;
+  for (const auto& [name, value] : given) set_option(options, name, value);
+  return options;
+}
+
+}  // namespace clpv

@@ -1,0 +1,183 @@
+// clpv render: a scene, lit by cascaded light propagation volumes, into an image.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "commands/frame_options.hpp"
+#include "image/image_io.hpp"
+#include "image/tone_map.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/frame_stats.hpp"
+#include "pipeline/volume_files.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string scene, model, output, camera, tonemap = "aces", stats, dump;
+  std::vector<std::string> views;
+  std::optional<float> exposure;
+  GivenOptions frame;
+};
+
+/// FILE.png, or FILE.VIEW.png where there are several.
+fs::path png_path(const fs::path& output, const std::string& view, bool several) {
+  if (!several) return output;
+  fs::path path = output;
+  return path.replace_extension("." + view + output.extension().string());
+}
+
+std::vector<Show> parse_views(const std::vector<std::string>& names) {
+  std::vector<Show> views;
+  for (const std::string& name : names) views.push_back(show_named(name));
+  if (views.empty()) views.push_back(Show::full);
+  return views;
+}
+
+/// Everything that can be known to be wrong before the device is touched.
+void check_outputs(const Options& options, const std::vector<Show>& views) {
+  const std::string extension = fs::path(options.output).extension().string();
+  if (extension != ".exr" && extension != ".png") {
+    throw Error(ExitCode::usage, "--output {}: found extension '{}', allowed: .exr, .png", options.output,
+                extension);
+  }
+  if (extension == ".exr") check_writable(options.output);
+  for (const Show view : views) {
+    if (extension == ".png") check_writable(png_path(options.output, name_of(view), views.size() > 1));
+  }
+  if (!options.stats.empty()) check_writable(options.stats);
+  if (!options.dump.empty()) {
+    std::error_code failed;
+    fs::create_directories(options.dump, failed);
+    if (failed) throw Error(ExitCode::run_time, "--dump-volume {}: {}", options.dump, failed.message());
+    check_writable(fs::path(options.dump) / "cascade0.npy");
+  }
+}
+
+Image view_image(Frame& frame, Show view) {
+  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
+  image.pixels = frame.read(view);
+  return image;
+}
+
+void write_images(Frame& frame, const Options& options, const std::vector<Show>& views, float exposure,
+                  const std::map<std::string, std::string>& metadata) {
+  const fs::path output = options.output;
+  if (output.extension() == ".exr") {
+    Image all;
+    for (const Show view : views) {
+      append_layer(all, view_image(frame, view), views.size() == 1 ? "" : name_of(view));
+    }
+    all.metadata = metadata;
+    return write_exr(output, all);
+  }
+  for (const Show view : views) {
+    const Image shown = display_image(view_image(frame, view), exposure, parse_tone_map(options.tonemap));
+    write_png(png_path(output, name_of(view), views.size() > 1), shown);
+  }
+}
+
+void dump_volume(Session& session, const Options& options, const CascadeVolumes& volumes) {
+  const std::vector<float> values = volumes.accumulated.read(session);
+  const VolumeShape& shape = volumes.accumulated.shape();
+  const fs::path stem = fs::path(options.dump) / fmt::format("cascade{}", volumes.cascade);
+  write_volume_npy(stem.string() + ".npy", values, shape.n, shape.coefficients);
+  write_volume_vti(stem.string() + ".vti", values, volumes.grid, shape.coefficients);
+}
+
+void run(const Options& options, const Shared& shared) {
+  const std::vector<Show> views = parse_views(options.views);
+  parse_tone_map(options.tonemap);
+  check_outputs(options, views);
+  FrameStats stats;
+  Progress progress("render", 4);
+  const Scene scene = load_scene(options.scene, {options.model});
+  for (const std::string& note : scene.notes) spdlog::info("{}", note);
+  const Camera& camera = scene.camera(options.camera);
+  const RenderOptions resolved = resolve_options(options.frame, scene);
+  progress.advance();
+
+  stats.begin_startup();
+  Session session(choose_device(shared.device));
+  Frame frame(session, scene, resolved);
+  stats.end_startup(session);
+  spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
+                session.device().driver);
+  spdlog::debug("options: {}", to_json(resolved).dump());
+  progress.advance();
+  frame.render(camera, [&](const CascadeVolumes& volumes) {
+    if (!options.stats.empty()) stats.add_energy(session, frame.basis(), volumes);
+    if (!options.dump.empty()) dump_volume(session, options, volumes);
+  });
+  stats.end_first_frame(session);
+  progress.advance();
+  if (!options.stats.empty()) {
+    session.timeline().clear();
+    stats.begin_frame();
+    frame.render(camera);
+    stats.end_frame(session);
+  }
+
+  const float exposure = options.exposure.value_or(scene.exposure);
+  nlohmann::json all = to_json(resolved);
+  all.update({{"scene", options.scene},
+              {"model", options.model},
+              {"camera", camera.name},
+              {"exposure", exposure},
+              {"tonemap", options.tonemap}});
+  std::map<std::string, std::string> metadata;
+  for (const auto& [name, value] : all.items())
+    metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
+  write_images(frame, options, views, exposure, metadata);
+  if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, all).dump(2) + "\n");
+  progress.advance();
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Shared& shared) {
+  CLI::App* command =
+      app.add_subcommand("render", "Render a scene with indirect light from light propagation volumes");
+  auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "image: .exr (linear, options in its metadata) or .png (tone-mapped, sRGB)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--model", options->model, "replaces the scene file's model")->type_name("PATH");
+  command->add_option("--camera", options->camera, "camera by name; default: the scene's first")
+      ->type_name("NAME");
+  command
+      ->add_option("--view", options->views,
+                   fmt::format("what to write ({}); several: layers of one EXR, or FILE.VIEW.png",
+                               fmt::join(show_names(), "|")))
+      ->delimiter(',')
+      ->type_name("VIEW")
+      ->default_str("full");
+  command->add_option("--exposure", options->exposure, "brightness of a PNG [EV]; default: the scene's")
+      ->type_name("EV");
+  command->add_option("--tonemap", options->tonemap, "tone curve of a PNG: none|reinhard|aces")
+      ->capture_default_str();
+  command
+      ->add_option("--stats", options->stats, "stage times of a second frame, options and energies, as JSON")
+      ->type_name("FILE.json");
+  command
+      ->add_option("--dump-volume", options->dump,
+                   "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]")
+      ->type_name("DIR");
+  add_frame_options(*command, options->frame);
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

@@ -1,0 +1,201 @@
+#include "pipeline/frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/view.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+InjectOptions inject_options(const RenderOptions& options, const Transport& transport) {
+  return {.grid = options.grid,
+          .trilinear = options.injection == "trilinear",
+          .two_sided = options.blocking == "two-sided",
+          .unit_flux_lobes = transport.unit_flux_lobes};
+}
+
+GatherOptions gather_options(const RenderOptions& options) {
+  return {.grid = options.grid,
+          .gather_offset = options.gather_offset,
+          .late_light = options.late_light,
+          .floor = options.gather_floor};
+}
+
+/// Bytes of the volumes of a frame at this grid.
+double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) {
+  const double plane = std::pow(grid + 2.0, 3) * sizeof(float);
+  const double carried = options.travelling() == State::fluxes ? 6.0 : basis.size();
+  const double per_cascade = 3.0 * basis.size() * (options.late_light ? 2 : 1);
+  return plane * (3.0 * basis.size() + 3 * 3 * carried + per_cascade * options.cascades + 2.0 * basis.size());
+}
+
+/// Refuses a grid whose volumes exceed the device, naming the largest that fits.
+void require_memory(const Session& session, const RenderOptions& options, const Basis& basis) {
+  const Device& device = session.device();
+  const auto fits = [&](int grid) {
+    const double one = std::pow(grid + 2.0, 3) * sizeof(float) * 3.0 * std::max(6, basis.size());
+    return one <= static_cast<double>(device.max_alloc_bytes) &&
+           volume_bytes(options, basis, grid) <= static_cast<double>(device.memory_bytes);
+  };
+  if (fits(options.grid)) return;
+  int grid = options.grid;
+  while (grid > 1 && !fits(grid)) --grid;
+  throw Error(ExitCode::run_time,
+              "--grid {}: light volumes of {} need {:.0f} MiB; {} has {} MiB, {} MiB a buffer; the largest "
+              "grid that fits "
+              "is {}",
+              options.grid, basis.name(), volume_bytes(options, basis, options.grid) / 1048576, device.name,
+              device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
+}
+
+VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
+  return {options.grid, basis.size(), 3};
+}
+
+const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis) {
+  require_memory(session, options, basis);
+  return options;
+}
+
+}  // namespace
+
+Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
+    : session_(session),
+      scene_(scene),
+      basis_(make_basis(options.basis, options.lambda)),
+      options_(checked(session, options, *basis_)),
+      transport_(make_transport(options.transport, *basis_)),
+      buffers_(upload_scene(session, scene)),
+      rasterizer_(session, buffers_),
+      injector_(session, *basis_, inject_options(options, transport_)),
+      propagator_(session, *basis_, transport_, {.grid = options.grid, .state = options.travelling()}),
+      gatherer_(session, *basis_, transport_, gather_options(options)),
+      shader_(session),
+      injected_(session, light_shape(options, *basis_), "injected light") {
+  for (int c = 0; c < options.cascades; ++c) {
+    accumulated_.push_back(
+        std::make_unique<Volume>(session, light_shape(options, *basis_), "accumulated light"));
+    if (options.late_light)
+      late_.push_back(std::make_unique<Volume>(session, light_shape(options, *basis_), "late light"));
+  }
+  if (options.occlusion) {
+    geometry_ = std::make_unique<Volume>(session, VolumeShape{options.grid + 1, basis_->size(), 1},
+                                         "geometry volume");
+  }
+  const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+  irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
+  image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
+}
+
+void Frame::prepare_lights(const Camera& camera) {
+  const std::vector<Light> shining = scene_.lights_for(camera);
+  if (lights_.size() == shining.size() && lit_by_ == camera.light) return;
+  lights_.clear();
+  lit_by_ = camera.light;
+  for (const Light& light : shining) {
+    const auto same = [&](const Light& other) { return other.name == light.name; };
+    const auto found = std::find_if(scene_.lights.begin(), scene_.lights.end(), same);
+    LitLight lit{light.data, static_cast<int>(found - scene_.lights.begin()), {}, {light.data, {}, {}}};
+    lit.shadow.views = shadow_views(light.data, buffers_.bounds, options_.shadow_size);
+    const auto texels =
+        static_cast<std::size_t>(options_.shadow_size) * static_cast<std::size_t>(options_.shadow_size);
+    for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
+      lit.shadow.depths.push_back(session_.buffer(texels * sizeof(float), "shadow map"));
+    }
+    lights_.push_back(std::move(lit));
+  }
+}
+
+void Frame::rasterize_camera(const Camera& camera) {
+  const StageScope scope(session_, {"rasterize-camera"});
+  const ClpvView view = camera_view(camera, options_.width, options_.height);
+  if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, true);
+  camera_surface_->view = view;
+  rasterizer_.rasterize_camera(*camera_surface_);
+}
+
+void Frame::rasterize_shadows() {
+  for (LitLight& lit : lights_) {
+    const StageScope scope(session_, {"rasterize-shadow", {}, lit.index});
+    for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
+      rasterizer_.rasterize_shadow(lit.shadow.views[v], lit.shadow.depths[v]);
+    }
+  }
+}
+
+void Frame::rasterize_rsms(int cascade) {
+  for (LitLight& lit : lights_) {
+    // Only a directional light's map follows the cascade; others see all they light from where they stand.
+    if (cascade > 0 && lit.light.kind != CLPV_LIGHT_DIRECTIONAL) continue;
+    const StageScope scope(session_, {"rasterize-rsm", cascade, lit.index});
+    const auto views =
+        rsm_views(lit.light, grids_[static_cast<std::size_t>(cascade)], buffers_.bounds, options_.rsm_size);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (lit.rsms.size() <= v) lit.rsms.push_back(make_surface(session_, views[v], options_.rsm(), false));
+      lit.rsms[v].view = views[v];
+      rasterizer_.rasterize_rsm(lit.light, lit.rsms[v]);
+    }
+  }
+}
+
+void Frame::inject(int cascade) {
+  const ClpvGrid& grid = grids_[static_cast<std::size_t>(cascade)];
+  {
+    const StageScope scope(session_, {"inject-light", cascade});
+    injected_.clear(session_);
+    for (const LitLight& lit : lights_) {
+      for (const Surface& rsm : lit.rsms) injector_.inject_light(rsm, grid, injected_);
+    }
+  }
+  if (!geometry_) return;
+  const StageScope scope(session_, {"inject-geometry", cascade});
+  geometry_->clear(session_);
+  for (const LitLight& lit : lights_) {
+    for (const Surface& rsm : lit.rsms) injector_.inject_geometry(rsm, grid, *geometry_);
+  }
+  injector_.inject_geometry(*camera_surface_, grid, *geometry_);
+}
+
+void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
+  rasterize_rsms(cascade);
+  inject(cascade);
+  const auto c = static_cast<std::size_t>(cascade);
+  {
+    const StageScope scope(session_, {"propagate", cascade});
+    propagator_.propagate(
+        {injected_, geometry_.get(), *accumulated_[c], options_.late_light ? late_[c].get() : nullptr},
+        options_.iterations);
+  }
+  if (observer) observer({cascade, grids_[c], injected_, geometry_.get(), *accumulated_[c]});
+}
+
+void Frame::render(const Camera& camera, const CascadeObserver& observer) {
+  prepare_lights(camera);
+  grids_ = cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
+  rasterize_camera(camera);
+  rasterize_shadows();
+  for (int cascade = 0; cascade < options_.cascades; ++cascade) light_cascade(cascade, observer);
+  std::vector<const Volume*> accumulated, late;
+  for (const auto& volume : accumulated_) accumulated.push_back(volume.get());
+  for (const auto& volume : late_) late.push_back(volume.get());
+  {
+    const StageScope scope(session_, {"gather"});
+    gatherer_.gather(*camera_surface_, grids_, accumulated, late, irradiance_);
+  }
+  std::vector<ShadowedLight> shadowed;
+  for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);
+  const StageScope scope(session_, {"shade"});
+  shader_.light(*camera_surface_, shadowed);
+  shader_.show(Show::full, *camera_surface_, irradiance_, image_);
+  shown_ = Show::full;
+}
+
+std::vector<float> Frame::read(Show view) {
+  if (view != shown_) shader_.show(view, *camera_surface_, irradiance_, image_);
+  shown_ = view;
+  return session_.read<float>(image_, static_cast<std::size_t>(options_.width) * options_.height * 4);
+}
+
+}  // namespace clpv

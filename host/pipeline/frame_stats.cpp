@@ -1,0 +1,72 @@
+#include "pipeline/frame_stats.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace clpv {
+
+std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume) {
+  const std::vector<float> values = volume.read(session);
+  const auto plane = values.size() / 3 / static_cast<std::size_t>(basis.size());
+  std::array<double, 3> energy{};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (std::size_t i = 0; i < basis.integrals().size(); ++i) {
+      double sum = 0;
+      for (std::size_t p = 0; p < plane; ++p)
+        sum += values[(channel * basis.integrals().size() + i) * plane + p];
+      energy[channel] += sum * basis.integrals()[i];
+    }
+  }
+  return energy;
+}
+
+void FrameStats::end_startup(const Session&) {
+  startup_ms_ = since_mark();
+  mark_ = Clock::now();
+}
+
+void FrameStats::end_first_frame(Session& session) {
+  session.queue().finish();
+  first_frame_ms_ = since_mark();
+}
+
+void FrameStats::end_frame(Session& session) {
+  session.queue().finish();
+  frame_ms_ = since_mark();
+  stages_ = session.timeline().times();
+}
+
+void FrameStats::add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes) {
+  energies_.push_back({volumes.cascade, volume_energy(session, basis, volumes.injected),
+                       volume_energy(session, basis, volumes.accumulated)});
+}
+
+nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {
+  const auto number_or_null = [](const std::optional<int>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+  };
+  nlohmann::json stages = nlohmann::json::array(), energy = nlohmann::json::array();
+  for (const StageTime& time : stages_) {
+    stages.push_back({{"stage", time.mark.stage},
+                      {"cascade", number_or_null(time.mark.cascade)},
+                      {"light", number_or_null(time.mark.light)},
+                      {"ms", time.ms},
+                      {"timer", time.from_events ? "event" : "wall"}});
+  }
+  for (const Energy& e : energies_) {
+    energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
+  }
+  const Device& device = session.device();
+  return {{"schema", 1},
+          {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
+          {"options", options},
+          {"stages", stages},
+          {"frame_ms", frame_ms_},
+          {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms_)},
+          {"build_ms", session.build_ms()},
+          {"startup_ms", startup_ms_},
+          {"device_bytes", session.device_bytes()},
+          {"energy", energy}};
+}
+
+}  // namespace clpv

@@ -1,0 +1,45 @@
+// What `--stats` tells of a frame: device, options, stage times, memory and energies.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "pipeline/frame.hpp"
+
+namespace clpv {
+
+/// Collects the figures of one `clpv render`; times are wall times unless a stage says "event".
+class FrameStats {
+ public:
+  void begin_startup() { mark_ = Clock::now(); }
+  void end_startup(const Session& session);  ///< device opened, programs built, scene uploaded
+  void end_first_frame(Session& session);    ///< the first launches compile for their work-group sizes
+  void begin_frame() { mark_ = Clock::now(); }
+  void end_frame(Session& session);  ///< keeps the timeline's stage times
+  void add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes);
+
+  /// Schema 1: device, options, stages, frame_ms, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
+  nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double since_mark() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - mark_).count();
+  }
+
+  struct Energy {
+    int cascade;
+    std::array<double, 3> injected, accumulated;
+  };
+  Clock::time_point mark_;
+  double startup_ms_ = 0, first_frame_ms_ = 0, frame_ms_ = 0;
+  std::vector<StageTime> stages_;
+  std::vector<Energy> energies_;
+};
+
+/// Int f dw summed over all cells of a light volume, a channel [W].
+std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume);
+
+}  // namespace clpv

@@ -1,0 +1,42 @@
+#include "pipeline/volume_files.hpp"
+
+#include <array>
+
+#include "support/npy.hpp"
+#include "support/vti.hpp"
+
+namespace clpv {
+
+void write_volume_npy(const std::filesystem::path& path, const std::vector<float>& values, int cells,
+                      int coefficients) {
+  const auto n = static_cast<std::size_t>(cells);
+  const std::array<std::size_t, 5> shape{3, static_cast<std::size_t>(coefficients), n, n, n};
+  write_npy(path, values, shape);
+}
+
+void write_volume_vti(const std::filesystem::path& path, const std::vector<float>& values,
+                      const ClpvGrid& grid, int coefficients) {
+  const std::size_t cells = static_cast<std::size_t>(grid.n) * grid.n * grid.n;
+  const auto components = static_cast<std::size_t>(coefficients);
+  // A .vti keeps a cell's components together; volumes keep a component's cells together.
+  std::array<std::vector<float>, 3> channels;
+  for (std::size_t c = 0; c < 3; ++c) {
+    channels[c].resize(cells * components);
+    for (std::size_t i = 0; i < components; ++i) {
+      for (std::size_t p = 0; p < cells; ++p)
+        channels[c][p * components + i] = values[(c * components + i) * cells + p];
+    }
+  }
+  VtiGrid place;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    place.cells[axis] = static_cast<int>(grid.n);
+    place.origin[axis] = grid.origin[axis];
+    place.spacing[axis] = grid.cell;
+  }
+  const std::array<VtiArray, 3> arrays{VtiArray{"red", coefficients, channels[0]},
+                                       VtiArray{"green", coefficients, channels[1]},
+                                       VtiArray{"blue", coefficients, channels[2]}};
+  write_vti(path, place, arrays);
+}
+
+}  // namespace clpv
