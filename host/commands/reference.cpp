@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/tracing_options.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/view.hpp"
 #include "reference/path_tracer.hpp"
@@ -15,7 +16,6 @@
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
-#include "support/progress.hpp"
 
 namespace clpv {
 namespace {
@@ -23,19 +23,9 @@ namespace {
 struct Options {
   std::string scene, model, camera, output, stats;
   std::vector<std::string> views = {"full"};
-  std::string bounces = "1";
   int width = 960, height = 540;
-  reference::PathTracerOptions tracing;
+  TracingOptions tracing;
 };
-
-int parse_bounces(const std::string& text) {
-  if (text == "all") return reference::PathTracerOptions::kAllBounces;
-  int bounces = 0;
-  if (!CLI::detail::lexical_cast(text, bounces) || bounces < 1) {
-    throw Error(ExitCode::usage, "--bounces {}: a number from 1, or all", text);
-  }
-  return bounces;
-}
 
 /// Everything that is wrong with the outputs, before any time is spent on them.
 void check_outputs(const Options& options) {
@@ -46,31 +36,18 @@ void check_outputs(const Options& options) {
   if (!options.stats.empty()) check_writable(options.stats);
 }
 
-/// A bar fed with shares of the whole.
-class Bar {
- public:
-  Bar() : progress_("path tracing", kSteps) {}
-  void show(double share) {
-    const auto step = static_cast<std::uint64_t>(share * kSteps);
-    if (step > shown_) progress_.advance(step - shown_);
-    shown_ = std::max(shown_, step);  // an estimate may turn out too hopeful; the bar then waits
-  }
-
- private:
-  static constexpr std::uint64_t kSteps = 10000;
-  Progress progress_;
-  std::uint64_t shown_ = 0;
-};
-
 nlohmann::json resolved(const Options& options, const Camera& camera) {
-  nlohmann::json json = {{"scene", options.scene},     {"camera", camera.name},
-                         {"width", options.width},     {"height", options.height},
-                         {"bounces", options.bounces}, {"seed", options.tracing.seed}};
+  nlohmann::json json = {{"scene", options.scene},
+                         {"camera", camera.name},
+                         {"width", options.width},
+                         {"height", options.height},
+                         {"bounces", options.tracing.bounces},
+                         {"seed", options.tracing.values.seed}};
   if (!options.model.empty()) json["model"] = options.model;
-  if (options.tracing.samples > 0) {
-    json["spp"] = options.tracing.samples;
+  if (options.tracing.values.samples > 0) {
+    json["spp"] = options.tracing.values.samples;
   } else {
-    json["noise"] = options.tracing.noise;
+    json["noise"] = options.tracing.values.noise;
   }
   return json;
 }
@@ -102,22 +79,22 @@ void write_outputs(const Options& options, const Camera& camera, const reference
   write_file(options.stats, stats.dump(2) + "\n");
 }
 
-void run(Options options) {
-  options.tracing.bounces = parse_bounces(options.bounces);
+void run(const Options& options) {
+  const reference::PathTracerOptions tracing = options.tracing.resolved();
   for (const std::string& view : options.views) show_named(view);
   check_outputs(options);
   const Scene scene = load_scene(options.scene, {options.model});
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const Camera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
-  Bar bar;
+  TraceBar bar("path tracing");
   const reference::TracedImage traced = reference::trace_paths(
-      scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), options.tracing,
+      scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       [&](double share) { bar.show(share); });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  if (options.tracing.samples == 0 && traced.noise > options.tracing.noise) {
+  if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
-                 traced.samples, options.tracing.noise);
+                 traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, camera, traced, seconds);
   spdlog::info("{} paths a pixel, noise {:.4f}, {:.1f} s", traced.samples, traced.noise, seconds);
@@ -140,26 +117,7 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("--height", options.height, "[pixels]")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
-  command
-      .add_option("--bounces", options.bounces,
-                  "surfaces between a light and the surface seen; 1: what a volume estimates; or all")
-      ->type_name("N|all")
-      ->capture_default_str();
-  auto* samples = command.add_option("--spp", options.tracing.samples, "paths a pixel")
-                      ->type_name("N")
-                      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples));
-  command
-      .add_option(
-          "--noise", options.tracing.noise,
-          "stops once the standard error of the indirect light is this share of it (root mean square)")
-      ->check(CLI::PositiveNumber)
-      ->excludes(samples)
-      ->capture_default_str();
-  command.add_option("--seed", options.tracing.seed, "the same seed gives the same bytes")
-      ->capture_default_str();
-  command.add_option("--threads", options.tracing.threads, "default: one a processor")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_tracing_options(command, options.tracing);
   command.add_option("--stats", options.stats, "paths, noise, rays and seconds as JSON")
       ->type_name("FILE.json");
 }

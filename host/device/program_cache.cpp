@@ -10,6 +10,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
@@ -83,15 +84,9 @@ ProgramCache::ProgramCache(fs::path folder, std::uint64_t max_bytes)
     : folder_(std::move(folder)), max_bytes_(max_bytes) {}
 
 std::optional<ProgramCache> ProgramCache::of_user() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::string(value == nullptr ? "" : value);
-  };
-  if (variable("CLPV_PROGRAM_CACHE") == "off") return std::nullopt;
-  if (const std::string home = variable("XDG_CACHE_HOME"); !home.empty())
-    return ProgramCache(fs::path(home) / "clpv");
-  if (const std::string home = variable("HOME"); !home.empty())
-    return ProgramCache(fs::path(home) / ".cache/clpv");
+  const char* wish = std::getenv("CLPV_PROGRAM_CACHE");
+  if (wish && std::string_view(wish) == "off") return std::nullopt;
+  if (const auto folder = user_cache_folder()) return ProgramCache(*folder);
   spdlog::debug("neither XDG_CACHE_HOME nor HOME is set: compiled programs are not kept");
   return std::nullopt;
 }
