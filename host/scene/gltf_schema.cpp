@@ -270,6 +270,22 @@ void check_accessors(const json& document, const std::string& file) {
   }
 }
 
+/// tinygltf refuses indices without a view, and does not say where.
+void check_indices(const json& document, const std::string& file) {
+  if (!document.contains("meshes")) return;
+  for (std::size_t m = 0; m < document["meshes"].size(); ++m) {
+    const json& primitives = document["meshes"][m]["primitives"];
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      if (!primitives[p].contains("indices")) continue;
+      const std::size_t accessor = primitives[p]["indices"];
+      if (!document["accessors"][accessor].contains("bufferView")) {
+        refuse(file, fmt::format("/meshes/{}/primitives/{}/indices", m, p),
+               fmt::format("/accessors/{} without a bufferView", accessor), "an accessor with a bufferView");
+      }
+    }
+  }
+}
+
 }  // namespace
 
 bool reads_extension(const std::string& name) {
@@ -291,6 +307,7 @@ void check_gltf(const json& document, const std::string& file) {
   check_typed(document, kPunctual + "/lights", file);
   check_views(document, file);
   check_accessors(document, file);
+  check_indices(document, file);
 }
 
 }  // namespace clpv
