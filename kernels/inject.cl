@@ -11,8 +11,8 @@
 // up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_STRIP, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
-// what host/pipeline/inject_source.hpp lists.
+// From the host: CLPV_GRID, CLPV_STRIP, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX,
+// CLPV_SURFACE_PAPER; as text what host/pipeline/inject_source.hpp lists.
 #include "coefficients.h"
 #include "inject_cells.h"
 #include "shared/grid.h"
@@ -22,12 +22,13 @@
 #define CLPV_LEAST_COSINE 0.1f
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-
-// Conditions as int, joined by &: no branches.
-static inline int all_finite(const float3 v) {
-  return (fabs(v.x) <= MAXFLOAT) & (fabs(v.y) <= MAXFLOAT) & (fabs(v.z) <= MAXFLOAT);
+// Conditions as int, joined by &: no branches. Of scalars: Oclgrind 21.10 trips over comparisons of float3.
+static inline int all_finite(const float x, const float y, const float z) {
+  return (fabs(x) <= MAXFLOAT) & (fabs(y) <= MAXFLOAT) & (fabs(z) <= MAXFLOAT);
 }
-static inline int not_zero(const float3 v) { return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f); }
+static inline int not_zero(const float x, const float y, const float z) {
+  return (x != 0.0f) | (y != 0.0f) | (z != 0.0f);
+}
 
 static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
                                   const float depth, const float3 normal) {
@@ -56,13 +57,13 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
     const float3 position = clpv_position(view, (float)px, (float)py, depth);
     float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
           z = (position.z - grid.origin[2]) * per_metre;
-    int counts = (depth > 0.0f) & all_finite(normal) & not_zero(normal);
+    int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
 #if CLPV_GEOMETRY
     details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
 #else
     x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
     const float3 flux = clpv_load_colour(colours, texel, colour_scale);
-    counts = counts & all_finite(flux) & not_zero(flux);
+    counts = counts & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
 #endif
     x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
     counts = counts & in_grid(x, y, z);  // no point that is not finite is
@@ -106,11 +107,10 @@ static inline Sum add_lobe(Sum sum, const Lanes weight, const Coefficients lobe)
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS) {
   const float3 n = clpv_load_normal(normals, texel);
-  Coefficients lobe = clpv_lobe_integrals(n.x, n.y, n.z);
+  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(n.x, n.y, n.z));
 #if CLPV_TWO_SIDED
-  lobe = clpv_add(lobe, clpv_lobe_integrals(-n.x, -n.y, -n.z));
+  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(-n.x, -n.y, -n.z));
 #endif
-  sums.k0 = add_lobe(sums.k0, details[texel], lobe);
   return sums;
 }
 

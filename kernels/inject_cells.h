@@ -95,16 +95,20 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
 
 static inline uint phase_of(const uint key) { return 0; }
 
+#if CLPV_GEOMETRY
+static inline Coefficients larger_mean(const Coefficients found, const Coefficients kept) {
+  return clpv_mean(found) > clpv_mean(kept) ? found : kept;
+}
+#endif
+
 static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
   const int x = key % CLPV_KEYS, y = key / CLPV_KEYS % CLPV_KEYS, z = key / (CLPV_KEYS * CLPV_KEYS);
 #define CLPV_DO(channel) const Sum projected##channel = clpv_project_sum(sums.k##channel);
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
 #if CLPV_GEOMETRY
-  const Coefficients blocking = one_lane(&projected0, 0);
-  if (clpv_mean(blocking) > clpv_mean(geometry_load(volume, 0, x, y, z))) {
-    geometry_store(volume, 0, x, y, z, blocking);
-  }
+  geometry_store(volume, 0, x, y, z,
+                 larger_mean(one_lane(&projected0, 0), geometry_load(volume, 0, x, y, z)));
 #else
 #define CLPV_DO(channel)                                                         \
   light_store(volume, channel, x, y, z,                                          \
