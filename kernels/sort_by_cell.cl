@@ -37,9 +37,10 @@ __kernel void count_runs(__global const uint* keys, const uint texels, const uin
   }
 }
 
-// First pass, scattering: runs[i] = (key, first texel and length).
+// First pass, scattering: runs[2 i] the key, runs[2 i + 1] first texel and length. (Storing both as a uint2 makes
+// Oclgrind 21.10 report a fault that is none.)
 __kernel void scatter_runs(__global const uint* keys, const uint texels, const uint chunk, const uint chunks,
-                           const uint low_bits, __global uint* counts, __global uint2* runs) {
+                           const uint low_bits, __global uint* counts, __global uint* runs) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, texels);
@@ -49,38 +50,41 @@ __kernel void scatter_runs(__global const uint* keys, const uint texels, const u
     const uint key = keys[texel];
     if (starts_run(texel, key, previous)) {
       const uint to = counts[(key & mask) * chunks + c]++;
-      runs[to] = (uint2)(key, texel << CLPV_RUN_BITS | (run_length(keys, texels, texel, key) - 1));
+      runs[2 * to] = key;
+      runs[2 * to + 1] = texel << CLPV_RUN_BITS | (run_length(keys, texels, texel, key) - 1);
     }
     previous = key;
   }
 }
 
 // Second pass, counting texels: one work-item a chunk of `chunk` runs.
-__kernel void count_texels(__global const uint2* runs, __global const uint* run_count, const uint chunk,
+__kernel void count_texels(__global const uint* runs, __global const uint* run_count, const uint chunk,
                            const uint chunks, const uint low_bits, __global uint* counts) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, run_count[0]);
   for (uint i = c * chunk; i < last; ++i) {
-    const uint2 run = runs[i];
-    counts[(run.x >> low_bits) * chunks + c] += run.y % CLPV_LONGEST_RUN + 1;
+    counts[(runs[2 * i] >> low_bits) * chunks + c] += runs[2 * i + 1] % CLPV_LONGEST_RUN + 1;
   }
 }
 
-// Second pass, scattering: sorted[i] = (key, texel).
-__kernel void scatter_texels(__global const uint2* runs, __global const uint* run_count, const uint chunk,
+// Second pass, scattering: sorted[2 i] the key, sorted[2 i + 1] the texel.
+__kernel void scatter_texels(__global const uint* runs, __global const uint* run_count, const uint chunk,
                              const uint chunks, const uint low_bits, __global uint* counts,
-                             __global uint2* sorted) {
+                             __global uint* sorted) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, run_count[0]);
   for (uint i = c * chunk; i < last; ++i) {
-    const uint2 run = runs[i];
-    const uint first = run.y >> CLPV_RUN_BITS, length = run.y % CLPV_LONGEST_RUN + 1;
-    const uint at = (run.x >> low_bits) * chunks + c;
+    const uint key = runs[2 * i], run = runs[2 * i + 1];
+    const uint first = run >> CLPV_RUN_BITS, length = run % CLPV_LONGEST_RUN + 1;
+    const uint at = (key >> low_bits) * chunks + c;
     const uint to = counts[at];
     counts[at] = to + length;
-    for (uint k = 0; k < length; ++k) sorted[to + k] = (uint2)(run.x, first + k);
+    for (uint k = 0; k < length; ++k) {
+      sorted[2 * (to + k)] = key;
+      sorted[2 * (to + k) + 1] = first + k;
+    }
   }
 }
 
