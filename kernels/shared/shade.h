@@ -14,9 +14,10 @@
 #define CLPV_SHADOW_TAPS 4  // texels along each side of the shadow filter; no map may be smaller
 
 // How far a receiver is lifted off itself along its normal [texels of the shadow map where it lies]: always, and times
-// the sine of the light's angle to the normal. 1.5 texels at grazing light hold the outermost tap, 2 texels away, up to
-// a shading normal 36 degrees off the triangle's.
-#define CLPV_SHADOW_LIFT_FLAT 0.5f
-#define CLPV_SHADOW_LIFT_SLOPED 1.0f
+// the sine of the light's angle to the normal. Against ray-cast shadows in Sponza at 1024^2 texels, twice as much
+// doubles the light that leaks under ledges (1 to 2 % of the dark pixels) and saves .1 % of the lit ones from their own
+// shadow.
+#define CLPV_SHADOW_LIFT_FLAT 0.25f
+#define CLPV_SHADOW_LIFT_SLOPED 0.5f
 
 #endif
