@@ -52,7 +52,7 @@ typedef struct {
 
 // Trilinear at `at`, in cells from the first cell's centre; points beyond the outermost centres take their value.
 // At the last centre the eight cells are those before it, so that their offsets are literals.
-static inline Packed clpv_sample(__global const float8* volume, const float3 at) {
+CLPV_INLINE Packed clpv_sample(__global const float8* volume, const float3 at) {
   const float3 p = clamp(at, 0.0f, (float)(CLPV_GRID - 1));
   const float3 low = min(floor(p), (float)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0));
   const float3 t = p - low;
@@ -73,7 +73,7 @@ static inline Packed clpv_sample(__global const float8* volume, const float3 at)
 }
 
 // weights . coefficients, a channel.
-static inline float3 clpv_weigh(const Coefficients weights, const Packed sampled) {
+CLPV_INLINE float3 clpv_weigh(const Coefficients weights, const Packed sampled) {
   float8 sum = 0.0f;
 #define CLPV_DO(j, even, odd) \
   sum = fma((float8)((float4)(even(weights)), (float4)(odd(weights))), sampled.p##j, sum);
@@ -83,7 +83,7 @@ static inline float3 clpv_weigh(const Coefficients weights, const Packed sampled
 }
 
 // E s^2 of one volume.
-static inline float3 clpv_irradiance(__global const float8* volume, const float3 at, const Coefficients weights) {
+CLPV_INLINE float3 clpv_irradiance(__global const float8* volume, const float3 at, const Coefficients weights) {
   const Packed sampled = clpv_sample(volume, at);
   float3 least = 0.0f;
 #if CLPV_FLOORED

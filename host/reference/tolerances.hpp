@@ -19,8 +19,9 @@ inline constexpr Tolerance kTolerances[] = {
      "condition number; measured 2e-7 (sh2) to 5e-6 (srbf14)"},
     {"propagate", 2e-5,
      "float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14)"},
-    {"shade", 2e-5,
-     "float32 light angles and distances; a shadow filter's weights hang on texel coordinates good to 1e-5"},
+    {"shade", 5e-6,
+     "float32 light angles and distances; a shadow filter weighs texels by coordinates good to 1e-6 of its "
+     "side"},
     {"gather", 5e-6,
      "float32 trilinear weights and N products of mixed sign; a position 1e-6 m off at 10 m moves them too"},
 };
