@@ -77,7 +77,7 @@ static inline void append(const ClpvView view, const ClpvProjected a, ClpvProjec
   r.y[0] = a.y, r.y[1] = b.y, r.y[2] = c.y;
   r.nearest = fmin(a.key, fmin(b.key, c.key));
   r.farthest = fmax(a.key, fmax(b.key, c.key));
-  const float3 plane = clpv_key_plane(view, face, (float)left, (float)top);
+  const Vec plane = clpv_key_plane(view, face, (float)left, (float)top);
   const bool edge_on = !isfinite(plane.x) || !isfinite(plane.y) || !isfinite(plane.z);
   r.key = edge_on ? r.nearest : plane.x;
   r.key_x = edge_on ? 0.0f : plane.y;
@@ -105,7 +105,8 @@ __kernel void set_up(const ClpvView view, const uint first, const uint count, co
     to_clip[atomic_inc(counts + 1)] = first + i;
     return;
   }
-  append(view, a, b, c, clpv_face(view, vertices, t.vertex[0], t.vertex[1], t.vertex[2]), first + i,
+  append(view, a, b, c,
+         clpv_face(view, vertices + t.vertex[0], vertices + t.vertex[1], vertices + t.vertex[2]), first + i,
          materials[t.material].flags, cull, counts, capacity, list);
 }
 
@@ -121,7 +122,7 @@ __kernel void set_up_clipped(const ClpvView view, const uint count, const uint c
   float4 polygon[CLPV_CLIP_CORNERS];
   for (int k = 0; k < 3; ++k) polygon[k] = clpv_view_point(view, vload3(0, vertices[t.vertex[k]].position));
   const int corners = clpv_clip(view, polygon);
-  const Face face = clpv_face(view, vertices, t.vertex[0], t.vertex[1], t.vertex[2]);
+  const Face face = clpv_face(view, vertices + t.vertex[0], vertices + t.vertex[1], vertices + t.vertex[2]);
   const ClpvProjected apex = clpv_project(view, polygon[0]);
   for (int k = 2; k < corners; ++k) {
     append(view, apex, clpv_project(view, polygon[k - 1]), clpv_project(view, polygon[k]), face, triangle,
@@ -184,19 +185,20 @@ __kernel void bin_triangles(const uint count, const uint tiles_x, const uint fil
 static bool is_solid(const ClpvView view, const uint triangle, const int px, const int py, const float key,
                      __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                      __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
-                     __global const uchar4* texels) {
+                     __global const uint* texels) {
   const ClpvTriangle t = triangles[triangle];
   __global const ClpvMaterial* material = materials + t.material;
-  const Face face = clpv_face(view, vertices, t.vertex[0], t.vertex[1], t.vertex[2]);
-  const float depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
-  const float3 w = clpv_weights_at(view, face, clpv_weights(face), (float)px, (float)py, depth);
   __global const ClpvVertex* a = vertices + t.vertex[0];
   __global const ClpvVertex* b = vertices + t.vertex[1];
   __global const ClpvVertex* c = vertices + t.vertex[2];
+  const Face face = clpv_face(view, a, b, c);
+  const float depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+  const Vec w = clpv_weights_at(view, face, clpv_weights(face), (float)px, (float)py, depth);
   float alpha = material->base_colour[3] * (w.x * a->colour[3] + w.y * b->colour[3] + w.z * c->colour[3]);
   if (material->texture != CLPV_NO_TEXTURE) {
-    const float2 uv = w.x * vload2(0, a->uv) + w.y * vload2(0, b->uv) + w.z * vload2(0, c->uv);
-    alpha *= clpv_bilinear_alpha(textures[material->texture * CLPV_TEXTURE_LEVELS], texels, uv);
+    alpha *= clpv_bilinear_alpha(textures + material->texture * CLPV_TEXTURE_LEVELS, texels,
+                                 w.x * a->uv[0] + w.y * b->uv[0] + w.z * c->uv[0],
+                                 w.x * a->uv[1] + w.y * b->uv[1] + w.z * c->uv[1]);
   }
   return alpha >= material->alpha_cutoff;
 }
@@ -205,7 +207,7 @@ __kernel void draw_tiles(const ClpvView view, const uint tiles_x, const uint til
                          __global const ClpvRasterTriangle* list, __global const uint* ends,
                          __global const uint* binned, __global const ClpvVertex* vertices,
                          __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
-                         __global const ClpvTexture* textures, __global const uchar4* texels,
+                         __global const ClpvTexture* textures, __global const uint* texels,
                          __global float8* keys, __global uint8* seen) {
   const uint tile = get_global_id(0);
   if (tile >= tiles) return;

@@ -1,145 +1,166 @@
 // What each pixel sees, once rasterize.cl knows which triangle that is: depth, normal, and albedo or flux.
-// One work-item a pixel, in the order of the tiles.
+// One work-item a pixel. Scalars and selections instead of branches, so that work-items vectorise on PoCL: a pixel
+// that sees nothing looks at triangle 0 and forgets it, a material without texture looks at a white texel.
+//
+// From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER, and what the scene needs of CLPV_TEXTURED (any texture at
+// all), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (materials that emit); CLPV_WHITE_TEXTURE, the
+// texture of materials that have none.
 #include "lighting.h"
 #include "shared/raster.h"
 #include "texture.h"
 #include "triangle.h"
 
-// Where in a tile-ordered buffer's pixel i stands on the screen.
-static inline int2 pixel_at(const uint i, const uint tiles_x) {
-  const uint tile = i / (CLPV_TILE * CLPV_TILE), in_tile = i % (CLPV_TILE * CLPV_TILE);
-  return (int2)((int)(tile % tiles_x * CLPV_TILE + in_tile % CLPV_TILE),
-                (int)(tile / tiles_x * CLPV_TILE + in_tile / CLPV_TILE));
+#ifndef CLPV_TEXTURED
+#define CLPV_TEXTURED 1
+#define CLPV_COLOURED 1
+#define CLPV_EMISSIVE 1
+#define CLPV_WHITE_TEXTURE 0
+#endif
+
+// Where the tile-ordered buffers of rasterize.cl hold a pixel.
+static inline uint in_tiles(const uint px, const uint py, const uint tiles_x) {
+  const uint tile = py / CLPV_TILE * tiles_x + px / CLPV_TILE;
+  return tile * (CLPV_TILE * CLPV_TILE) + py % CLPV_TILE * CLPV_TILE + px % CLPV_TILE;
 }
 
+// 0 where there is no surface.
 static inline float depth_of(const ClpvView view, const float key) {
-  return fmax(CLPV_ORTHOGRAPHIC ? key : -1.0f / key, view.near_depth);
+  const float depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+  return key == INFINITY ? 0.0f : depth > view.near_depth ? depth : view.near_depth;
 }
 
-__kernel void resolve_depth(const ClpvView view, const uint tiles_x, const uint count,
-                            __global const float* keys, __global float* depths) {
-  const uint i = get_global_id(0);
-  const int2 p = pixel_at(i, tiles_x);
-  if (i >= count || p.x >= (int)view.width || p.y >= (int)view.height) return;
-  depths[(uint)p.y * view.width + (uint)p.x] = isinf(keys[i]) ? 0.0f : depth_of(view, keys[i]);
+__kernel void resolve_depth(const ClpvView view, const uint tiles_x, __global const float* keys,
+                            __global float* depths) {
+  const uint px = get_global_id(0), py = get_global_id(1);
+  if (px >= view.width || py >= view.height) return;
+  depths[py * view.width + px] = depth_of(view, keys[in_tiles(px, py, tiles_x)]);
 }
 
 typedef struct {
-  float depth;    // [m]
-  float3 normal;  // unit, on the viewer's side
-  float3 albedo;
-  float3 emissive;  // [W/m^2/sr]
+  Vec normal;  // unit, on the viewer's side
+  Vec albedo;
+  Vec emissive;  // [W/m^2/sr]
 } Seen;
 
-static inline float2 blend2(const float3 w, const float2 a, const float2 b, const float2 c) {
-  return w.x * a + w.y * b + w.z * c;
+// How far uv moves on a face when its point moves by `by` from pixel to pixel across the view.
+static inline float2 uv_step(const Face face, const Weights weights, const Vec along, const Vec by,
+                             const float2 uv1, const float2 uv2) {
+  const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
+  const float w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
+  return (float2)(w1 * uv1.x + w2 * uv2.x, w1 * uv1.y + w2 * uv2.y);
 }
 
-static inline float3 blend3(const float3 w, const float3 a, const float3 b, const float3 c) {
-  return w.x * a + w.y * b + w.z * c;
+static inline Vec texture_or_white(__global const ClpvTexture* textures, __global const uint* texels,
+                                   const uint texture, const float u, const float v, const float2 step_x,
+                                   const float2 step_y) {
+  return clpv_trilinear(textures, texels, texture == CLPV_NO_TEXTURE ? CLPV_WHITE_TEXTURE : texture, u, v,
+                        step_x, step_y);
 }
 
 // The surface of `triangle` behind pixel (px, py).
 static inline Seen look(const ClpvView view, const float px, const float py, const float depth,
                         const uint triangle, __global const ClpvVertex* vertices,
                         __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
-                        __global const ClpvTexture* textures, __global const uchar4* texels) {
-  const ClpvTriangle t = triangles[triangle];
-  __global const ClpvVertex* a = vertices + t.vertex[0];
-  __global const ClpvVertex* b = vertices + t.vertex[1];
-  __global const ClpvVertex* c = vertices + t.vertex[2];
-  __global const ClpvMaterial* material = materials + t.material;
-  const Face face = clpv_face(view, vertices, t.vertex[0], t.vertex[1], t.vertex[2]);
+                        __global const ClpvTexture* textures, __global const uint* texels) {
+  __global const ClpvVertex* a = vertices + triangles[triangle].vertex[0];
+  __global const ClpvVertex* b = vertices + triangles[triangle].vertex[1];
+  __global const ClpvVertex* c = vertices + triangles[triangle].vertex[2];
+  __global const ClpvMaterial* material = materials + triangles[triangle].material;
+  const Face face = clpv_face(view, a, b, c);
   const Weights weights = clpv_weights(face);
-  const float3 w = clpv_weights_at(view, face, weights, px, py, depth);
-  const float2 screen = clpv_screen(view, px, py);
-  const float3 ray =
-      clpv_float3(view.forward) + (CLPV_ORTHOGRAPHIC ? (float3)(0.0f) : clpv_across(view, screen));
+  const Vec w = clpv_weights_at(view, face, weights, px, py, depth);
+  const Vec ray = clpv_along(view, px, py);
+  const float facing = vec_dot(face.normal, ray);
 
   Seen seen;
-  seen.depth = depth;
-  // The side comes from the triangle itself: near a silhouette an interpolated normal may point away from the
-  // viewer.
-  const float3 facing = dot(face.normal, ray) > 0.0f ? -face.normal : face.normal;
-  float3 normal = blend3(w, vload3(0, a->normal), vload3(0, b->normal), vload3(0, c->normal));
-  normal = dot(normal, facing) < 0.0f ? -normal : normal;
-  seen.normal = normalize(dot(normal, normal) > 0.0f ? normal : facing);
-  seen.albedo = vload3(0, material->base_colour) *
-                blend3(w, vload3(0, a->colour), vload3(0, b->colour), vload3(0, c->colour));
-  seen.emissive = vload3(0, material->emissive);
-  if (material->texture == CLPV_NO_TEXTURE && material->emissive_texture == CLPV_NO_TEXTURE) return seen;
-
-  // How far the hit moves on the plane from a pixel to the next one, hence uv.
+  // The side comes from the triangle itself: near a silhouette an interpolated normal may point away from the viewer.
+  const Vec front = vec_times(face.normal, facing > 0.0f ? -1.0f : 1.0f);
+  const Vec blended = vec_blend(w, vec_load(a->normal), vec_load(b->normal), vec_load(c->normal));
+  const bool usable = vec_dot(blended, blended) > 0.0f;
+  const Vec normal =
+      vec(usable ? blended.x : front.x, usable ? blended.y : front.y, usable ? blended.z : front.z);
+  const float length2 = vec_dot(normal, normal);
+  seen.normal = vec_times(normal, (vec_dot(normal, front) < 0.0f ? -1.0f : 1.0f) / sqrt(length2));
+  seen.albedo = vec_load(material->base_colour);
+  seen.emissive = vec_load(material->emissive);
+#if CLPV_COLOURED
+  seen.albedo =
+      vec_product(seen.albedo, vec_blend(w, vec_load(a->colour), vec_load(b->colour), vec_load(c->colour)));
+#endif
+#if CLPV_TEXTURED
+  const float2 uv1 = (float2)(b->uv[0] - a->uv[0], b->uv[1] - a->uv[1]);
+  const float2 uv2 = (float2)(c->uv[0] - a->uv[0], c->uv[1] - a->uv[1]);
+  const float u = a->uv[0] + w.y * uv1.x + w.z * uv2.x, v = a->uv[1] + w.y * uv1.y + w.z * uv2.y;
   const float scale = CLPV_ORTHOGRAPHIC ? 1.0f : depth;
-  const float3 right = clpv_float3(view.right) * (scale * clpv_step_x(view));
-  const float3 down = clpv_float3(view.up) * (scale * clpv_step_y(view));
-  const float3 along = ray / dot(face.normal, ray);
-  const float3 x = right - along * dot(face.normal, right);
-  const float3 y = down - along * dot(face.normal, down);
-  const float2 uv_a = vload2(0, a->uv), uv_b = vload2(0, b->uv), uv_c = vload2(0, c->uv);
-  const float2 uv = blend2(w, uv_a, uv_b, uv_c);
-  const float2 uv_x = (uv_b - uv_a) * dot(x, weights.gradient1) + (uv_c - uv_a) * dot(x, weights.gradient2);
-  const float2 uv_y = (uv_b - uv_a) * dot(y, weights.gradient1) + (uv_c - uv_a) * dot(y, weights.gradient2);
-  if (material->texture != CLPV_NO_TEXTURE) {
-    seen.albedo *= clpv_trilinear(textures, texels, material->texture, uv, uv_x, uv_y).xyz;
-  }
-  if (material->emissive_texture != CLPV_NO_TEXTURE) {
-    seen.emissive *= clpv_trilinear(textures, texels, material->emissive_texture, uv, uv_x, uv_y).xyz;
-  }
+  const Vec along = vec_times(ray, 1.0f / facing);
+  const float2 step_x =
+      uv_step(face, weights, along, vec_times(vec_of(view.right), scale * clpv_step_x(view)), uv1, uv2);
+  const float2 step_y =
+      uv_step(face, weights, along, vec_times(vec_of(view.up), scale * clpv_step_y(view)), uv1, uv2);
+  seen.albedo =
+      vec_product(seen.albedo, texture_or_white(textures, texels, material->texture, u, v, step_x, step_y));
+#if CLPV_EMISSIVE
+  seen.emissive = vec_product(
+      seen.emissive, texture_or_white(textures, texels, material->emissive_texture, u, v, step_x, step_y));
+#endif
+#endif
   return seen;
 }
 
-// `emissives` may be null.
-__kernel void resolve_camera(const ClpvView view, const uint tiles_x, const uint count,
-                             __global const float* keys, __global const uint* triangles_seen,
-                             __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                             __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
-                             __global const uchar4* texels, __global float* depths,
-                             __global SurfaceTexel* normals, __global SurfaceTexel* colours,
-                             __global float4* emissives) {
-  const uint i = get_global_id(0);
-  const int2 p = pixel_at(i, tiles_x);
-  if (i >= count || p.x >= (int)view.width || p.y >= (int)view.height) return;
-  Seen seen = {0.0f, (float3)(0.0f), (float3)(0.0f), (float3)(0.0f)};
-  if (triangles_seen[i] != UINT_MAX) {
-    seen = look(view, (float)p.x, (float)p.y, depth_of(view, keys[i]), triangles_seen[i], vertices, triangles,
-                materials, textures, texels);
-  }
-  const uint at = (uint)p.y * view.width + (uint)p.x;
-  depths[at] = seen.depth;
-  clpv_store_normal(normals, at, seen.normal);
-  clpv_store_colour(colours, at, seen.albedo, 1.0f);
-  if (emissives) emissives[at] = (float4)(seen.emissive, 0.0f);
-}
+#define CLPV_SCENE                                                                  \
+  __global const ClpvVertex *vertices, __global const ClpvTriangle *triangles,      \
+      __global const ClpvMaterial *materials, __global const ClpvTexture *textures, \
+      __global const uint *texels
+#define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
-// What the light sends through a pixel [W].
-static inline float3 incident_flux(const ClpvView view, const ClpvLight light, const float px, const float py,
-                                   const float depth) {
-  float3 towards;
-  return clpv_footprint(view, px, py, depth) *
-         clpv_light_irradiance(light, clpv_position(view, px, py, depth), &towards);
+// Emission goes to `emissives` where CLPV_EMISSIVE; a scene that does not emit has none to write.
+__kernel void resolve_camera(const ClpvView view, const uint tiles_x, __global const float* keys,
+                             __global const uint* triangles_seen, CLPV_SCENE, __global float* depths,
+                             __global SurfaceTexel* normals, __global SurfaceTexel* colours
+#if CLPV_EMISSIVE
+                             ,
+                             __global float* emissives
+#endif
+) {
+  const uint px = get_global_id(0), py = get_global_id(1);
+  if (px >= view.width || py >= view.height) return;
+  const uint at = in_tiles(px, py, tiles_x), pixel = py * view.width + px;
+  const float depth = depth_of(view, keys[at]);
+  const bool hit = triangles_seen[at] != UINT_MAX;
+  const Seen seen = look(view, (float)px, (float)py, depth, hit ? triangles_seen[at] : 0, CLPV_PASS_SCENE);
+  depths[pixel] = depth;
+  const Vec normal = vec_if(hit, seen.normal);
+  clpv_store_normal(normals, pixel, normal.x, normal.y, normal.z);
+  const Vec albedo = vec_if(hit, seen.albedo);
+  clpv_store_colour(colours, pixel, albedo.x, albedo.y, albedo.z, 1.0f);
+#if CLPV_EMISSIVE
+  const Vec emissive = vec_if(hit, seen.emissive);
+  emissives[4 * pixel] = emissive.x;
+  emissives[4 * pixel + 1] = emissive.y;
+  emissives[4 * pixel + 2] = emissive.z;
+  emissives[4 * pixel + 3] = 0.0f;
+#endif
 }
 
 // `colour_scale`: Surface::colour_scale.
-__kernel void resolve_rsm(const ClpvView view, const ClpvLight light, const uint tiles_x, const uint count,
-                          __global const float* keys, __global const uint* triangles_seen,
-                          __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                          __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
-                          __global const uchar4* texels, __global float* depths,
-                          __global SurfaceTexel* normals, __global SurfaceTexel* fluxes,
-                          const float colour_scale) {
-  const uint i = get_global_id(0);
-  const int2 p = pixel_at(i, tiles_x);
-  if (i >= count || p.x >= (int)view.width || p.y >= (int)view.height) return;
-  Seen seen = {0.0f, (float3)(0.0f), (float3)(0.0f), (float3)(0.0f)};
-  if (triangles_seen[i] != UINT_MAX) {
-    const float depth = depth_of(view, keys[i]);
-    seen = look(view, (float)p.x, (float)p.y, depth, triangles_seen[i], vertices, triangles, materials,
-                textures, texels);
-    seen.albedo *= incident_flux(view, light, (float)p.x, (float)p.y, depth);
-  }
-  const uint at = (uint)p.y * view.width + (uint)p.x;
-  depths[at] = seen.depth;
-  clpv_store_normal(normals, at, seen.normal);
-  clpv_store_colour(fluxes, at, seen.albedo, colour_scale);
+__kernel void resolve_rsm(const ClpvView view, const ClpvLight light, const uint tiles_x,
+                          __global const float* keys, __global const uint* triangles_seen, CLPV_SCENE,
+                          __global float* depths, __global SurfaceTexel* normals,
+                          __global SurfaceTexel* fluxes, const float colour_scale) {
+  const uint px = get_global_id(0), py = get_global_id(1);
+  if (px >= view.width || py >= view.height) return;
+  const uint at = in_tiles(px, py, tiles_x), pixel = py * view.width + px;
+  const float depth = depth_of(view, keys[at]);
+  const bool hit = triangles_seen[at] != UINT_MAX;
+  const Seen seen = look(view, (float)px, (float)py, depth, hit ? triangles_seen[at] : 0, CLPV_PASS_SCENE);
+  float3 towards;
+  const float3 irradiance =
+      clpv_light_irradiance(light, clpv_position(view, (float)px, (float)py, depth), &towards);
+  const Vec incident = vec_times(vec(irradiance.x, irradiance.y, irradiance.z),
+                                 clpv_footprint(view, (float)px, (float)py, depth));
+  const Vec flux = vec_if(hit, vec_product(seen.albedo, incident));
+  depths[pixel] = depth;
+  const Vec normal = vec_if(hit, seen.normal);
+  clpv_store_normal(normals, pixel, normal.x, normal.y, normal.z);
+  clpv_store_colour(fluxes, pixel, flux.x, flux.y, flux.z, colour_scale);
 }

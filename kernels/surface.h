@@ -16,7 +16,9 @@ typedef uchar4 SurfaceTexel;
 typedef float4 SurfaceTexel;
 #endif
 
-static inline float3 clpv_float3(const float v[3]) { return (float3)(v[0], v[1], v[2]); }
+static inline float3 clpv_float3(const float v[3]) {
+  return (float3)(v[0], v[1], v[2]);
+}
 
 // (sx, sy) of a pixel's centre.
 static inline float2 clpv_screen(const ClpvView view, const float px, const float py) {
@@ -55,7 +57,8 @@ static inline float clpv_footprint(const ClpvView view, const float px, const fl
 static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, const uint pixel) {
 #if CLPV_SURFACE_PAPER
   __global const uchar* n = (__global const uchar*)(normals + pixel);
-  const float x = n[0] * (2.0f / 255.0f) - 1.0f, y = n[1] * (2.0f / 255.0f) - 1.0f, z = n[2] * (2.0f / 255.0f) - 1.0f;
+  const float x = n[0] * (2.0f / 255.0f) - 1.0f, y = n[1] * (2.0f / 255.0f) - 1.0f,
+              z = n[2] * (2.0f / 255.0f) - 1.0f;
   const float scale = rsqrt(x * x + y * y + z * z);
   return (float3)(scale * x, scale * y, scale * z);
 #else
@@ -64,16 +67,32 @@ static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, cons
 #endif
 }
 
-static inline void clpv_store_normal(__global SurfaceTexel* normals, const uint pixel, const float3 normal) {
+// Scalars, and a rounding of its own: so that work-items vectorise on PoCL.
+static inline uchar clpv_byte(const float value) {
+  const float bounded = value > 0.0f ? (value < 255.0f ? value : 255.0f) : 0.0f;
+  return (uchar)(int)(bounded + 0.5f);
+}
+
+static inline void clpv_store_normal(__global SurfaceTexel* normals, const uint pixel, const float x,
+                                     const float y, const float z) {
 #if CLPV_SURFACE_PAPER
-  normals[pixel] = convert_uchar4_sat_rte((float4)(normal * 127.5f + 127.5f, 255.0f));
+  __global uchar* n = (__global uchar*)(normals + pixel);
+  n[0] = clpv_byte(x * 127.5f + 127.5f);
+  n[1] = clpv_byte(y * 127.5f + 127.5f);
+  n[2] = clpv_byte(z * 127.5f + 127.5f);
+  n[3] = 255;
 #else
-  normals[pixel] = (float4)(normal, 0.0f);
+  __global float* n = (__global float*)(normals + pixel);
+  n[0] = x;
+  n[1] = y;
+  n[2] = z;
+  n[3] = 0.0f;
 #endif
 }
 
 // `scale`: what a stored 1 means (the light's largest flux a texel; 1 for albedo).
-static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, const uint pixel, const float scale) {
+static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, const uint pixel,
+                                      const float scale) {
 #if CLPV_SURFACE_PAPER
   __global const uchar* c = (__global const uchar*)(colours + pixel);
   return (float3)(c[0] * (scale / 255.0f), c[1] * (scale / 255.0f), c[2] * (scale / 255.0f));
@@ -83,12 +102,20 @@ static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, cons
 #endif
 }
 
-static inline void clpv_store_colour(__global SurfaceTexel* colours, const uint pixel, const float3 colour,
-                                     const float scale) {
+static inline void clpv_store_colour(__global SurfaceTexel* colours, const uint pixel, const float r,
+                                     const float g, const float b, const float scale) {
 #if CLPV_SURFACE_PAPER
-  colours[pixel] = convert_uchar4_sat_rte((float4)(colour * (255.0f / scale), 255.0f));
+  __global uchar* c = (__global uchar*)(colours + pixel);
+  c[0] = clpv_byte(r * (255.0f / scale));
+  c[1] = clpv_byte(g * (255.0f / scale));
+  c[2] = clpv_byte(b * (255.0f / scale));
+  c[3] = 255;
 #else
-  colours[pixel] = (float4)(colour, 1.0f);
+  __global float* c = (__global float*)(colours + pixel);
+  c[0] = r;
+  c[1] = g;
+  c[2] = b;
+  c[3] = 1.0f;
 #endif
 }
 

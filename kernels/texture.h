@@ -1,17 +1,24 @@
-// Filtered look-ups in the scene's textures (kernels/shared/mesh.h): sRGB decoded before filtering, linear
-// result.
+// Filtered look-ups in the scene's textures (kernels/shared/mesh.h): sRGB decoded before filtering, linear result.
+// Scalars, selections instead of branches, and no floor() or log2(): so that work-items vectorise on PoCL.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
 
 #include "shared/mesh.h"
 #include "srgb.h"
+#include "vec.h"
 
-// A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two
-// ends then clamp.
+// A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two ends
+// then clamp. A coordinate that is no number, or beyond the integers, reads 0.
 static inline float clpv_fold(const float u, const uint wrap) {
-  if (wrap == CLPV_WRAP_REPEAT) return u - floor(u);
-  if (wrap == CLPV_WRAP_MIRROR) return fabs(u - 2.0f * rint(0.5f * u));
-  return clamp(u, 0.0f, 1.0f);
+  const float whole = (float)(int)u;
+  const float repeated = u - (whole > u ? whole - 1.0f : whole);
+  const float half_turns = (float)(int)(0.5f * u + (u < 0.0f ? -0.5f : 0.5f));
+  const float mirrored = u - 2.0f * half_turns;
+  float folded = wrap == CLPV_WRAP_REPEAT   ? repeated
+                 : wrap == CLPV_WRAP_MIRROR ? (mirrored < 0.0f ? -mirrored : mirrored)
+                                            : u;
+  if (wrap == CLPV_WRAP_CLAMP) folded = u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
+  return folded >= 0.0f && folded <= 1.0f ? folded : 0.0f;
 }
 
 // The two texels a coordinate lies between, and the weight of the second.
@@ -22,61 +29,87 @@ typedef struct {
 
 static inline Between clpv_between(const float u, const int size, const uint wrap) {
   const float at = clpv_fold(u, wrap) * (float)size - 0.5f;
-  const float before = floor(at);
-  const int i = (int)before;
+  const int i = (int)(at + 1.0f) - 1;  // its floor: at is -1/2 or more
   const bool repeat = wrap == CLPV_WRAP_REPEAT;
   Between between;
-  between.weight = at - before;
-  // The last clamp also keeps a coordinate that is no number inside the texture.
-  between.first = clamp(i < 0 && repeat ? size - 1 : i, 0, size - 1);
-  between.second = clamp(i + 1 >= size && repeat ? 0 : i + 1, 0, size - 1);
+  between.weight = at - (float)i;
+  between.first = i >= 0 ? i : repeat ? size - 1 : 0;
+  between.second = i + 1 < size ? i + 1 : repeat ? 0 : size - 1;
   return between;
 }
 
-static inline float4 clpv_decode(const uchar4 texel) {
-  return (float4)(clpv_srgb[texel.x], clpv_srgb[texel.y], clpv_srgb[texel.z],
-                  (float)texel.w * (1.0f / 255.0f));
+static inline float clpv_mix(const float a, const float b, const float weight) {
+  return a + weight * (b - a);
 }
 
-// Bilinear, in one mip level. Linear colour and alpha.
-static inline float4 clpv_bilinear(const ClpvTexture texture, __global const uchar4* texels,
-                                   const float2 uv) {
-  const Between x = clpv_between(uv.x, (int)texture.width, texture.wrap & 15u);
-  const Between y = clpv_between(uv.y, (int)texture.height, texture.wrap >> 4);
-  __global const uchar4* upper = texels + texture.offset + (uint)y.first * texture.width;
-  __global const uchar4* lower = texels + texture.offset + (uint)y.second * texture.width;
-  return mix(mix(clpv_decode(upper[x.first]), clpv_decode(upper[x.second]), x.weight),
-             mix(clpv_decode(lower[x.first]), clpv_decode(lower[x.second]), x.weight), y.weight);
+// The four texels round a point, and their weights: rows y, columns x.
+typedef struct {
+  uint texel[4];
+  float x, y;
+} Four;
+
+static inline Four clpv_four(__global const ClpvTexture* texture, __global const uint* texels, const float u,
+                             const float v) {
+  const uint width = texture->width, wrap = texture->wrap, offset = texture->offset;
+  const Between x = clpv_between(u, (int)width, wrap & 15u);
+  const Between y = clpv_between(v, (int)texture->height, wrap >> 4);
+  const uint upper = offset + (uint)y.first * width, lower = offset + (uint)y.second * width;
+  Four four;
+  four.texel[0] = texels[upper + (uint)x.first];
+  four.texel[1] = texels[upper + (uint)x.second];
+  four.texel[2] = texels[lower + (uint)x.first];
+  four.texel[3] = texels[lower + (uint)x.second];
+  four.x = x.weight;
+  four.y = y.weight;
+  return four;
 }
 
-// The same, of alpha alone.
-static inline float clpv_bilinear_alpha(const ClpvTexture texture, __global const uchar4* texels,
-                                        const float2 uv) {
-  const Between x = clpv_between(uv.x, (int)texture.width, texture.wrap & 15u);
-  const Between y = clpv_between(uv.y, (int)texture.height, texture.wrap >> 4);
-  __global const uchar4* upper = texels + texture.offset + (uint)y.first * texture.width;
-  __global const uchar4* lower = texels + texture.offset + (uint)y.second * texture.width;
-  return mix(mix((float)upper[x.first].w, (float)upper[x.second].w, x.weight),
-             mix((float)lower[x.first].w, (float)lower[x.second].w, x.weight), y.weight) *
-         (1.0f / 255.0f);
+static inline float clpv_filter(const Four f, const float a, const float b, const float c, const float d) {
+  return clpv_mix(clpv_mix(a, b, f.x), clpv_mix(c, d, f.x), f.y);
 }
 
-// Trilinear: mip levels chosen by the longer of the two steps in uv that a pixel makes, so that a texel of
-// the level is about as large as that.
-static inline float4 clpv_trilinear(__global const ClpvTexture* textures, __global const uchar4* texels,
-                                    const uint texture, const float2 uv, const float2 uv_x,
-                                    const float2 uv_y) {
+// Bilinear, in one mip level: linear colour.
+static inline Vec clpv_bilinear(__global const ClpvTexture* texture, __global const uint* texels,
+                                const float u, const float v) {
+  const Four f = clpv_four(texture, texels, u, v);
+#define CLPV_CHANNEL(shift)                                                                        \
+  clpv_filter(f, clpv_srgb[(f.texel[0] >> shift) & 255u], clpv_srgb[(f.texel[1] >> shift) & 255u], \
+              clpv_srgb[(f.texel[2] >> shift) & 255u], clpv_srgb[(f.texel[3] >> shift) & 255u])
+  return vec(CLPV_CHANNEL(0), CLPV_CHANNEL(8), CLPV_CHANNEL(16));
+#undef CLPV_CHANNEL
+}
+
+// The same, of alpha: 0..1.
+static inline float clpv_bilinear_alpha(__global const ClpvTexture* texture, __global const uint* texels,
+                                        const float u, const float v) {
+  const Four f = clpv_four(texture, texels, u, v);
+#define CLPV_ALPHA(i) ((float)(int)(f.texel[i] >> 24) * (1.0f / 255.0f))
+  return clpv_filter(f, CLPV_ALPHA(0), CLPV_ALPHA(1), CLPV_ALPHA(2), CLPV_ALPHA(3));
+#undef CLPV_ALPHA
+}
+
+// The mip level, 0 being the texture itself, for steps of `square` squared texels from pixel to pixel: log2 of the
+// step, by straight lines between the powers of two of its square (off by less than 1/20 of a level).
+static inline float clpv_mip_level(const float square) {
+  const float level = 0.5f * ((float)as_int(square) * (1.0f / 8388608.0f) - 127.0f);
+  const float most = (float)(CLPV_TEXTURE_LEVELS - 1);
+  return level > 0.0f ? (level < most ? level : most) : 0.0f;
+}
+
+// Trilinear: the mip levels chosen by the longer of the two steps (du, dv) that a pixel makes.
+static inline Vec clpv_trilinear(__global const ClpvTexture* textures, __global const uint* texels,
+                                 const uint texture, const float u, const float v, const float2 step_x,
+                                 const float2 step_y) {
   __global const ClpvTexture* levels = textures + texture * CLPV_TEXTURE_LEVELS;
-  const float2 size = (float2)((float)levels[0].width, (float)levels[0].height);
-  const float2 x = uv_x * size, y = uv_y * size;
-  // fmin: steps that are no number (a surface seen edge-on) take the coarsest level.
-  const float square = fmax(dot(x, x), dot(y, y));
-  const float level = clamp(0.5f * log2(fmin(square, 1e9f)), 0.0f, (float)(CLPV_TEXTURE_LEVELS - 1));
-  const uint fine = (uint)level;
-  const float4 colour = clpv_bilinear(levels[fine], texels, uv);
+  const float width = (float)(int)levels->width, height = (float)(int)levels->height;
+  const float xx = step_x.x * width, xy = step_x.y * height, yx = step_y.x * width, yy = step_y.y * height;
+  const float x2 = xx * xx + xy * xy, y2 = yx * yx + yy * yy;
+  const float level = clpv_mip_level(x2 > y2 ? x2 : y2);
+  const int fine = (int)level;
+  const int coarse = fine + 1 < CLPV_TEXTURE_LEVELS ? fine + 1 : fine;
   const float weight = level - (float)fine;
-  if (weight == 0.0f) return colour;
-  return mix(colour, clpv_bilinear(levels[min(fine + 1u, CLPV_TEXTURE_LEVELS - 1u)], texels, uv), weight);
+  const Vec a = clpv_bilinear(levels + fine, texels, u, v), b = clpv_bilinear(levels + coarse, texels, u, v);
+  return vec(clpv_mix(a.x, b.x, weight), clpv_mix(a.y, b.y, weight), clpv_mix(a.z, b.z, weight));
 }
 
 #endif

@@ -7,25 +7,26 @@
 
 #include "shared/mesh.h"
 #include "surface.h"
+#include "vec.h"
 
 #ifndef CLPV_ORTHOGRAPHIC
 #define CLPV_ORTHOGRAPHIC 0
 #endif
 
 typedef struct {
-  float3 corner;        // first vertex - eye [m]
-  float3 edge1, edge2;  // second and third vertex - first
-  float3 normal;        // edge1 x edge2; towards whom the triangle's front faces
+  Vec corner;        // first vertex - eye [m]
+  Vec edge1, edge2;  // second and third vertex - first
+  Vec normal;        // edge1 x edge2; towards whom the triangle's front faces
 } Face;
 
-static inline Face clpv_face(const ClpvView view, __global const ClpvVertex* vertices, const uint a,
-                             const uint b, const uint c) {
-  const float3 p = vload3(0, vertices[a].position);
+static inline Face clpv_face(const ClpvView view, __global const ClpvVertex* a, __global const ClpvVertex* b,
+                             __global const ClpvVertex* c) {
+  const Vec p = vec_load(a->position);
   Face face;
-  face.corner = p - clpv_float3(view.eye);
-  face.edge1 = vload3(0, vertices[b].position) - p;
-  face.edge2 = vload3(0, vertices[c].position) - p;
-  face.normal = cross(face.edge1, face.edge2);
+  face.corner = vec_minus(p, vec_of(view.eye));
+  face.edge1 = vec_minus(vec_load(b->position), p);
+  face.edge2 = vec_minus(vec_load(c->position), p);
+  face.normal = vec_cross(face.edge1, face.edge2);
   return face;
 }
 
@@ -37,57 +38,70 @@ static inline float clpv_step_y(const ClpvView view) {
   return -2.0f * view.half_height / (float)view.height;
 }
 
-static inline float3 clpv_across(const ClpvView view, const float2 s) {
-  return s.x * clpv_float3(view.right) + s.y * clpv_float3(view.up);
+// From the middle of the screen to a pixel, across the view.
+static inline Vec clpv_across(const ClpvView view, const float px, const float py) {
+  const float2 s = clpv_screen(view, px, py);
+  return vec_add_scaled(vec_times(vec_of(view.right), s.x), s.y, vec_of(view.up));
+}
+
+// Along a pixel's ray, one metre deeper.
+static inline Vec clpv_along(const ClpvView view, const float px, const float py) {
+#if CLPV_ORTHOGRAPHIC
+  return vec_of(view.forward);
+#else
+  return vec_add_scaled(clpv_across(view, px, py), 1.0f, vec_of(view.forward));
+#endif
 }
 
 // From the eye to the point at `depth` behind a pixel.
-static inline float3 clpv_to_point(const ClpvView view, const float px, const float py, const float depth) {
-  const float3 across = clpv_across(view, clpv_screen(view, px, py));
+static inline Vec clpv_to_point(const ClpvView view, const float px, const float py, const float depth) {
 #if CLPV_ORTHOGRAPHIC
-  return depth * clpv_float3(view.forward) + across;
+  return vec_add_scaled(clpv_across(view, px, py), depth, vec_of(view.forward));
 #else
-  return depth * (clpv_float3(view.forward) + across);
+  return vec_times(clpv_along(view, px, py), depth);
 #endif
 }
 
-// The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not
-// finite where the plane is seen edge-on.
-static inline float3 clpv_key_plane(const ClpvView view, const Face face, const float px, const float py) {
-  const float3 across = clpv_across(view, clpv_screen(view, px, py));
-  const float right = dot(face.normal, clpv_float3(view.right)) * clpv_step_x(view);
-  const float down = dot(face.normal, clpv_float3(view.up)) * clpv_step_y(view);
+// The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite
+// where the plane is seen edge-on.
+static inline Vec clpv_key_plane(const ClpvView view, const Face face, const float px, const float py) {
+  const float right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);
+  const float down = vec_dot(face.normal, vec_of(view.up)) * clpv_step_y(view);
 #if CLPV_ORTHOGRAPHIC
-  const float scale = 1.0f / dot(face.normal, clpv_float3(view.forward));
-  return (float3)(dot(face.normal, face.corner - across) * scale, -right * scale, -down * scale);
+  const float scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
+  const Vec beside = vec_minus(face.corner, clpv_across(view, px, py));
+  return vec(vec_dot(face.normal, beside) * scale, -right * scale, -down * scale);
 #else
-  const float scale = -1.0f / dot(face.normal, face.corner);
-  return (float3)(dot(face.normal, clpv_float3(view.forward) + across) * scale, right * scale, down * scale);
+  const float scale = -1.0f / vec_dot(face.normal, face.corner);
+  return vec(vec_dot(face.normal, clpv_along(view, px, py)) * scale, right * scale, down * scale);
 #endif
 }
 
-// Weights of the second and third vertex, as functions of position: weight = dot(point - corner, gradient).
+// Weights of the second and third vertex, as functions of position: weight = (point - corner) . gradient.
 typedef struct {
-  float3 gradient1, gradient2;  // 0 for a triangle without area: its first vertex stands for it
+  Vec gradient1, gradient2;  // 0 for a triangle without area: its first vertex stands for it
 } Weights;
 
 static inline Weights clpv_weights(const Face face) {
-  const float area2 = dot(face.normal, face.normal);
+  const float area2 = vec_dot(face.normal, face.normal);
   const float scale = area2 > 0.0f ? 1.0f / area2 : 0.0f;
   Weights weights;
-  weights.gradient1 = cross(face.edge2, face.normal) * scale;
-  weights.gradient2 = cross(face.normal, face.edge1) * scale;
+  weights.gradient1 = vec_times(vec_cross(face.edge2, face.normal), scale);
+  weights.gradient2 = vec_times(vec_cross(face.normal, face.edge1), scale);
   return weights;
 }
 
-// The weights of all three vertices at `depth` behind a pixel. Kept inside the triangle: snapped to the
-// sub-pixel grid it may cover the centre of a pixel that it misses by a hair.
-static inline float3 clpv_weights_at(const ClpvView view, const Face face, const Weights weights,
-                                     const float px, const float py, const float depth) {
-  const float3 offset = clpv_to_point(view, px, py, depth) - face.corner;
-  const float w1 = clamp(dot(offset, weights.gradient1), 0.0f, 1.0f);
-  const float w2 = clamp(dot(offset, weights.gradient2), 0.0f, 1.0f - w1);
-  return (float3)(1.0f - w1 - w2, w1, w2);
+// The weights of all three vertices at `depth` behind a pixel. Kept inside the triangle: snapped to the sub-pixel
+// grid it may cover the centre of a pixel that it misses by a hair.
+static inline Vec clpv_weights_at(const ClpvView view, const Face face, const Weights weights, const float px,
+                                  const float py, const float depth) {
+  const Vec offset = vec_minus(clpv_to_point(view, px, py, depth), face.corner);
+  float w1 = vec_dot(offset, weights.gradient1), w2 = vec_dot(offset, weights.gradient2);
+  w1 = w1 > 0.0f ? w1 : 0.0f;
+  w1 = w1 < 1.0f ? w1 : 1.0f;
+  w2 = w2 > 0.0f ? w2 : 0.0f;
+  w2 = w2 < 1.0f - w1 ? w2 : 1.0f - w1;
+  return vec(1.0f - w1 - w2, w1, w2);
 }
 
 #endif

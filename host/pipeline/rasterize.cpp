@@ -28,11 +28,26 @@ unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
 }
 
-ProgramSource program(const char* file, const ClpvView& view, RsmFormat format = RsmFormat::float32) {
+ProgramSource rasterize_program(const ClpvView& view) {
   ProgramSource source;
-  source.file = file;
-  source.literals = {{"CLPV_ORTHOGRAPHIC", view.orthographic != 0 ? "1" : "0"},
-                     {"CLPV_SURFACE_PAPER", format == RsmFormat::paper ? "1" : "0"}};
+  source.file = "rasterize.cl";
+  source.literals = {{"CLPV_ORTHOGRAPHIC", view.orthographic != 0 ? "1" : "0"}};
+  return source;
+}
+
+const char* literal(bool value) {
+  return value ? "1" : "0";
+}
+
+ProgramSource resolve_program(const ClpvView& view, RsmFormat format, const SceneBuffers& scene,
+                              bool emissive) {
+  ProgramSource source = rasterize_program(view);
+  source.file = "resolve.cl";
+  source.literals["CLPV_SURFACE_PAPER"] = literal(format == RsmFormat::paper);
+  source.literals["CLPV_TEXTURED"] = literal(scene.textured);
+  source.literals["CLPV_COLOURED"] = literal(scene.coloured);
+  source.literals["CLPV_EMISSIVE"] = literal(emissive);
+  source.literals["CLPV_WHITE_TEXTURE"] = std::to_string(scene.texture_count) + "u";
   return source;
 }
 
@@ -69,7 +84,7 @@ cl::Buffer& Rasterizer::grown(Scratch& scratch, std::size_t bytes, const char* w
 }
 
 void Rasterizer::find_visible(const Pass& pass) {
-  const ProgramSource source = program("rasterize.cl", pass.view);
+  const ProgramSource source = rasterize_program(pass.view);
   const std::size_t pixels = padded_pixels(pass.view);
   grown(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   grown(seen_, pixels * sizeof(cl_uint), "triangles seen");
@@ -85,7 +100,7 @@ void Rasterizer::find_visible(const Pass& pass) {
 /// many.
 unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   if (count == 0) return 0;
-  const ProgramSource source = program("rasterize.cl", pass.view);
+  const ProgramSource source = rasterize_program(pass.view);
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   for (;;) {
     const auto capacity = static_cast<cl_uint>(listed_.bytes / sizeof(ClpvRasterTriangle));
@@ -109,7 +124,7 @@ unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
 
 void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
   if (listed == 0) return;
-  cl::Kernel kernel = session_.kernel(program("rasterize.cl", view), "bin_triangles");
+  cl::Kernel kernel = session_.kernel(rasterize_program(view), "bin_triangles");
   set_args(kernel, listed, tiles_along(view.width), cl_uint{fill}, listed_.buffer, places_.buffer,
            binned_.buffer);
   session_.launch(kernel, listed, kGroup);
@@ -143,39 +158,57 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
   }
   grown(binned_, total * sizeof(cl_uint), "triangles by tile");
   bin(view, listed, true);
-  cl::Kernel tiles = session_.kernel(program("rasterize.cl", view), "draw_tiles");
+  cl::Kernel tiles = session_.kernel(rasterize_program(view), "draw_tiles");
   set_args(tiles, view, tiles_along(view.width), tile_count(view), cl_uint{fresh}, listed_.buffer,
            places_.buffer, binned_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
            scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
   session_.launch(tiles, tile_count(view), kTileGroup);
 }
 
+void Rasterizer::clear(Surface& surface) {
+  const std::size_t texel = surface.format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
+  const std::size_t count = std::size_t{surface.view.width} * surface.view.height;
+  session_.fill_zero(surface.depth, count * sizeof(cl_float));
+  session_.fill_zero(surface.normal, count * texel);
+  session_.fill_zero(surface.colour, count * texel);
+}
+
 void Rasterizer::rasterize_camera(Surface& surface) {
   const ClpvView& view = surface.view;
+  const bool has_emissive = surface.emissive() != nullptr;
+  if (has_emissive && !scene_.emissive) {
+    session_.fill_zero(surface.emissive, std::size_t{view.width} * view.height * sizeof(cl_float4));
+  }
+  if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, true});
-  cl::Kernel resolve = session_.kernel(program("resolve.cl", view, surface.format), "resolve_camera");
-  set_args(resolve, view, tiles_along(view.width), padded_pixels(view), keys_.buffer, seen_.buffer,
-           scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth,
-           surface.normal, surface.colour, surface.emissive);
-  session_.launch(resolve, padded_pixels(view), kGroup);
+  const bool emissive = has_emissive && scene_.emissive;
+  cl::Kernel resolve =
+      session_.kernel(resolve_program(view, surface.format, scene_, emissive), "resolve_camera");
+  set_args(resolve, view, tiles_along(view.width), keys_.buffer, seen_.buffer, scene_.vertices,
+           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth, surface.normal,
+           surface.colour);
+  if (emissive) resolve.setArg(12, surface.emissive);
+  session_.launch(resolve, cl::NDRange(view.width, view.height), cl::NDRange(kGroup, 1));
 }
 
 void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
   const ClpvView& view = surface.view;
   if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
+  if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, false});
-  cl::Kernel resolve = session_.kernel(program("resolve.cl", view, surface.format), "resolve_rsm");
-  set_args(resolve, view, light, tiles_along(view.width), padded_pixels(view), keys_.buffer, seen_.buffer,
-           scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth,
-           surface.normal, surface.colour, surface.colour_scale);
-  session_.launch(resolve, padded_pixels(view), kGroup);
+  cl::Kernel resolve = session_.kernel(resolve_program(view, surface.format, scene_, false), "resolve_rsm");
+  set_args(resolve, view, light, tiles_along(view.width), keys_.buffer, seen_.buffer, scene_.vertices,
+           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth, surface.normal,
+           surface.colour, surface.colour_scale);
+  session_.launch(resolve, cl::NDRange(view.width, view.height), cl::NDRange(kGroup, 1));
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, cl::Buffer& depth) {
   find_visible({view, false});
-  cl::Kernel resolve = session_.kernel(program("resolve.cl", view), "resolve_depth");
-  set_args(resolve, view, tiles_along(view.width), padded_pixels(view), keys_.buffer, depth);
-  session_.launch(resolve, padded_pixels(view), kGroup);
+  cl::Kernel resolve =
+      session_.kernel(resolve_program(view, RsmFormat::float32, scene_, false), "resolve_depth");
+  set_args(resolve, view, tiles_along(view.width), keys_.buffer, depth);
+  session_.launch(resolve, cl::NDRange(view.width, view.height), cl::NDRange(kGroup, 1));
 }
 
 }  // namespace clpv

@@ -42,6 +42,7 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
+  void clear(Surface& surface);
   void find_visible(const Pass& pass);
   void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
   unsigned set_up(const Pass& pass, unsigned first, unsigned count);

@@ -81,7 +81,25 @@ TextureTable make_table(const Scene& scene) {
     check_texture(scene, scene.textures[i]);
     append(table, mip_chain(scene.textures[i], masked[i]));
   }
+  Texture white;  // what materials without texture are looked up in
+  white.width = white.height = 1;
+  white.rgba.assign(4, 255);
+  append(table, {white});
   return table;
+}
+
+bool is_coloured(const std::vector<Vertex>& vertices) {
+  return std::any_of(vertices.begin(), vertices.end(), [](const Vertex& v) {
+    return std::any_of(v.colour, v.colour + 3, [](float c) { return c != 1; });
+  });
+}
+
+bool is_textured(const Material& material) {
+  return material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
+}
+
+bool is_emissive(const Material& material) {
+  return std::any_of(material.emissive, material.emissive + 3, [](float e) { return e != 0; });
 }
 
 Bounds bounds_of(const std::vector<Vertex>& vertices) {
@@ -110,6 +128,9 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.triangle_count = static_cast<unsigned>(scene.triangles.size());
   buffers.material_count = static_cast<unsigned>(scene.materials.size());
   buffers.texture_count = static_cast<unsigned>(scene.textures.size());
+  buffers.textured = std::any_of(scene.materials.begin(), scene.materials.end(), is_textured);
+  buffers.coloured = is_coloured(scene.vertices);
+  buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
   buffers.bounds = bounds_of(scene.vertices);
   return buffers;
 }
