@@ -7,20 +7,19 @@
 #ifndef CLPV_CLIP_H
 #define CLPV_CLIP_H
 
+#pragma OPENCL FP_CONTRACT OFF
+
 #include "shared/raster.h"
 #include "triangle.h"
-
-#pragma OPENCL FP_CONTRACT OFF
 
 #define CLPV_CLIP_PLANES 5
 #define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may, at worst, add a few
 
-static inline float4 clpv_view_point(const ClpvView view, const float3 world) {
-  const float3 p = world - clpv_float3(view.eye);
-  const float x = p.x * view.right[0] + p.y * view.right[1] + p.z * view.right[2];
-  const float y = p.x * view.up[0] + p.y * view.up[1] + p.z * view.up[2];
-  const float z = p.x * view.forward[0] + p.y * view.forward[1] + p.z * view.forward[2];
-  return (float4)(x, y, CLPV_ORTHOGRAPHIC ? 1.0f : z, z);
+static inline float4 clpv_view_point(const ClpvView view, __global const ClpvVertex* vertex) {
+  const Vec p = vec_minus(vec_load(vertex->position), vec_of(view.eye));
+  const float z = vec_dot(p, vec_of(view.forward));
+  return (float4)(vec_dot(p, vec_of(view.right)), vec_dot(p, vec_of(view.up)), CLPV_ORTHOGRAPHIC ? 1.0f : z,
+                  z);
 }
 
 // How far the guard band reaches on the screen, in units of clpv_screen().

@@ -31,7 +31,7 @@ __kernel void project_vertices(const ClpvView view, const uint count, __global c
                                __global ClpvProjected* projected) {
   const uint i = get_global_id(0);
   if (i >= count) return;
-  const float4 p = clpv_view_point(view, vload3(0, vertices[i].position));
+  const float4 p = clpv_view_point(view, vertices + i);
   const uint where = where_is(view, p);
   ClpvProjected result = {0, 0, 0.0f, 0};
   if ((where & CLPV_NEEDS_CLIPPING) == 0) result = clpv_project(view, p);
@@ -120,7 +120,7 @@ __kernel void set_up_clipped(const ClpvView view, const uint count, const uint c
   const uint triangle = to_clip[i];
   const ClpvTriangle t = triangles[triangle];
   float4 polygon[CLPV_CLIP_CORNERS];
-  for (int k = 0; k < 3; ++k) polygon[k] = clpv_view_point(view, vload3(0, vertices[t.vertex[k]].position));
+  for (int k = 0; k < 3; ++k) polygon[k] = clpv_view_point(view, vertices + t.vertex[k]);
   const int corners = clpv_clip(view, polygon);
   const Face face = clpv_face(view, vertices + t.vertex[0], vertices + t.vertex[1], vertices + t.vertex[2]);
   const ClpvProjected apex = clpv_project(view, polygon[0]);
@@ -203,15 +203,15 @@ static bool is_solid(const ClpvView view, const uint triangle, const int px, con
   return alpha >= material->alpha_cutoff;
 }
 
-__kernel void draw_tiles(const ClpvView view, const uint tiles_x, const uint tiles, const uint fresh,
-                         __global const ClpvRasterTriangle* list, __global const uint* ends,
-                         __global const uint* binned, __global const ClpvVertex* vertices,
-                         __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
-                         __global const ClpvTexture* textures, __global const uint* texels,
-                         __global float8* keys, __global uint8* seen) {
-  const uint tile = get_global_id(0);
-  if (tile >= tiles) return;
-  const int tile_x = (int)(tile % tiles_x) * CLPV_TILE, tile_y = (int)(tile / tiles_x) * CLPV_TILE;
+__kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
+                         __global const uint* ends, __global const uint* binned,
+                         __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
+                         __global const ClpvMaterial* materials, __global const ClpvTexture* textures,
+                         __global const uint* texels, __global float8* keys, __global uint8* seen) {
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0), y = get_global_id(1);
+  if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
+  const uint tile = y * tiles_x + x;
+  const int tile_x = (int)x * CLPV_TILE, tile_y = (int)y * CLPV_TILE;
   const float far_key = CLPV_ORTHOGRAPHIC ? view.far_depth : -1.0f / view.far_depth;
   __global float8* tile_keys = keys + tile * CLPV_TILE;
   __global uint8* tile_seen = seen + tile * CLPV_TILE;

@@ -1,6 +1,6 @@
 // What each pixel sees, once rasterize.cl knows which triangle that is: depth, normal, and albedo or flux.
-// One work-item a pixel. Scalars and selections instead of branches, so that work-items vectorise on PoCL: a pixel
-// that sees nothing looks at triangle 0 and forgets it, a material without texture looks at a white texel.
+// One work-item a pixel. Selections instead of branches: a pixel that sees nothing looks at triangle 0 and forgets
+// it, a material without texture looks at a white texel.
 //
 // From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER, and what the scene needs of CLPV_TEXTURED (any texture at
 // all), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (materials that emit); CLPV_WHITE_TEXTURE, the
@@ -43,25 +43,26 @@ typedef struct {
 } Seen;
 
 // How far uv moves on a face when its point moves by `by` from pixel to pixel across the view.
-static inline float2 uv_step(const Face face, const Weights weights, const Vec along, const Vec by,
-                             const float2 uv1, const float2 uv2) {
+static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by, const Uv uv1,
+                         const Uv uv2) {
   const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
   const float w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
-  return (float2)(w1 * uv1.x + w2 * uv2.x, w1 * uv1.y + w2 * uv2.y);
+  const Uv step = {w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
+  return step;
 }
 
 static inline Vec texture_or_white(__global const ClpvTexture* textures, __global const uint* texels,
-                                   const uint texture, const float u, const float v, const float2 step_x,
-                                   const float2 step_y) {
+                                   const uint texture, const float u, const float v, const Uv step_x,
+                                   const Uv step_y) {
   return clpv_trilinear(textures, texels, texture == CLPV_NO_TEXTURE ? CLPV_WHITE_TEXTURE : texture, u, v,
                         step_x, step_y);
 }
 
 // The surface of `triangle` behind pixel (px, py).
-static inline Seen look(const ClpvView view, const float px, const float py, const float depth,
-                        const uint triangle, __global const ClpvVertex* vertices,
-                        __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
-                        __global const ClpvTexture* textures, __global const uint* texels) {
+CLPV_INLINE Seen look(const ClpvView view, const float px, const float py, const float depth,
+                      const uint triangle, __global const ClpvVertex* vertices,
+                      __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
+                      __global const ClpvTexture* textures, __global const uint* texels) {
   __global const ClpvVertex* a = vertices + triangles[triangle].vertex[0];
   __global const ClpvVertex* b = vertices + triangles[triangle].vertex[1];
   __global const ClpvVertex* c = vertices + triangles[triangle].vertex[2];
@@ -88,14 +89,14 @@ static inline Seen look(const ClpvView view, const float px, const float py, con
       vec_product(seen.albedo, vec_blend(w, vec_load(a->colour), vec_load(b->colour), vec_load(c->colour)));
 #endif
 #if CLPV_TEXTURED
-  const float2 uv1 = (float2)(b->uv[0] - a->uv[0], b->uv[1] - a->uv[1]);
-  const float2 uv2 = (float2)(c->uv[0] - a->uv[0], c->uv[1] - a->uv[1]);
-  const float u = a->uv[0] + w.y * uv1.x + w.z * uv2.x, v = a->uv[1] + w.y * uv1.y + w.z * uv2.y;
+  const Uv uv1 = {b->uv[0] - a->uv[0], b->uv[1] - a->uv[1]};
+  const Uv uv2 = {c->uv[0] - a->uv[0], c->uv[1] - a->uv[1]};
+  const float u = a->uv[0] + w.y * uv1.u + w.z * uv2.u, v = a->uv[1] + w.y * uv1.v + w.z * uv2.v;
   const float scale = CLPV_ORTHOGRAPHIC ? 1.0f : depth;
   const Vec along = vec_times(ray, 1.0f / facing);
-  const float2 step_x =
+  const Uv step_x =
       uv_step(face, weights, along, vec_times(vec_of(view.right), scale * clpv_step_x(view)), uv1, uv2);
-  const float2 step_y =
+  const Uv step_y =
       uv_step(face, weights, along, vec_times(vec_of(view.up), scale * clpv_step_y(view)), uv1, uv2);
   seen.albedo =
       vec_product(seen.albedo, texture_or_white(textures, texels, material->texture, u, v, step_x, step_y));

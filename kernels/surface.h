@@ -67,7 +67,7 @@ static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, cons
 #endif
 }
 
-// Scalars, and a rounding of its own: so that work-items vectorise on PoCL.
+// As convert_uchar_sat(value + 0.5f), which is a call on PoCL.
 static inline uchar clpv_byte(const float value) {
   const float bounded = value > 0.0f ? (value < 255.0f ? value : 255.0f) : 0.0f;
   return (uchar)(int)(bounded + 0.5f);

@@ -1,5 +1,5 @@
 // Filtered look-ups in the scene's textures (kernels/shared/mesh.h): sRGB decoded before filtering, linear result.
-// Scalars, selections instead of branches, and no floor() or log2(): so that work-items vectorise on PoCL.
+// Selections instead of branches, and no floor() or log2(), which are calls on PoCL.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
 
@@ -7,17 +7,19 @@
 #include "srgb.h"
 #include "vec.h"
 
+// PoCL leaves functions of this size out of line, at a tenth of the cost of resolve.cl.
+#define CLPV_INLINE static inline __attribute__((always_inline))
+
 // A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two ends
 // then clamp. A coordinate that is no number, or beyond the integers, reads 0.
 static inline float clpv_fold(const float u, const uint wrap) {
   const float whole = (float)(int)u;
   const float repeated = u - (whole > u ? whole - 1.0f : whole);
   const float half_turns = (float)(int)(0.5f * u + (u < 0.0f ? -0.5f : 0.5f));
-  const float mirrored = u - 2.0f * half_turns;
-  float folded = wrap == CLPV_WRAP_REPEAT   ? repeated
-                 : wrap == CLPV_WRAP_MIRROR ? (mirrored < 0.0f ? -mirrored : mirrored)
-                                            : u;
-  if (wrap == CLPV_WRAP_CLAMP) folded = u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
+  const float mirrored = fabs(u - 2.0f * half_turns);
+  const float clamped = u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
+  float folded = wrap & CLPV_WRAP_MIRROR ? mirrored : repeated;
+  folded = wrap & CLPV_WRAP_CLAMP ? clamped : folded;
   return folded >= 0.0f && folded <= 1.0f ? folded : 0.0f;
 }
 
@@ -48,8 +50,8 @@ typedef struct {
   float x, y;
 } Four;
 
-static inline Four clpv_four(__global const ClpvTexture* texture, __global const uint* texels, const float u,
-                             const float v) {
+CLPV_INLINE Four clpv_four(__global const ClpvTexture* texture, __global const uint* texels, const float u,
+                           const float v) {
   const uint width = texture->width, wrap = texture->wrap, offset = texture->offset;
   const Between x = clpv_between(u, (int)width, wrap & 15u);
   const Between y = clpv_between(v, (int)texture->height, wrap >> 4);
@@ -69,8 +71,8 @@ static inline float clpv_filter(const Four f, const float a, const float b, cons
 }
 
 // Bilinear, in one mip level: linear colour.
-static inline Vec clpv_bilinear(__global const ClpvTexture* texture, __global const uint* texels,
-                                const float u, const float v) {
+CLPV_INLINE Vec clpv_bilinear(__global const ClpvTexture* texture, __global const uint* texels, const float u,
+                              const float v) {
   const Four f = clpv_four(texture, texels, u, v);
 #define CLPV_CHANNEL(shift)                                                                        \
   clpv_filter(f, clpv_srgb[(f.texel[0] >> shift) & 255u], clpv_srgb[(f.texel[1] >> shift) & 255u], \
@@ -97,12 +99,12 @@ static inline float clpv_mip_level(const float square) {
 }
 
 // Trilinear: the mip levels chosen by the longer of the two steps (du, dv) that a pixel makes.
-static inline Vec clpv_trilinear(__global const ClpvTexture* textures, __global const uint* texels,
-                                 const uint texture, const float u, const float v, const float2 step_x,
-                                 const float2 step_y) {
+CLPV_INLINE Vec clpv_trilinear(__global const ClpvTexture* textures, __global const uint* texels,
+                               const uint texture, const float u, const float v, const Uv step_x,
+                               const Uv step_y) {
   __global const ClpvTexture* levels = textures + texture * CLPV_TEXTURE_LEVELS;
   const float width = (float)(int)levels->width, height = (float)(int)levels->height;
-  const float xx = step_x.x * width, xy = step_x.y * height, yx = step_y.x * width, yy = step_y.y * height;
+  const float xx = step_x.u * width, xy = step_x.v * height, yx = step_y.u * width, yy = step_y.v * height;
   const float x2 = xx * xx + xy * xy, y2 = yx * yx + yy * yy;
   const float level = clpv_mip_level(x2 > y2 ? x2 : y2);
   const int fine = (int)level;

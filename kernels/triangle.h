@@ -40,8 +40,9 @@ static inline float clpv_step_y(const ClpvView view) {
 
 // From the middle of the screen to a pixel, across the view.
 static inline Vec clpv_across(const ClpvView view, const float px, const float py) {
-  const float2 s = clpv_screen(view, px, py);
-  return vec_add_scaled(vec_times(vec_of(view.right), s.x), s.y, vec_of(view.up));
+  const float x = (2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width;
+  const float y = (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height;
+  return vec_add_scaled(vec_times(vec_of(view.right), x), y, vec_of(view.up));
 }
 
 // Along a pixel's ray, one metre deeper.

@@ -1,10 +1,15 @@
-// Vectors of three named scalars. Arithmetic on float3 keeps work-items from vectorising on PoCL; this does not.
+// Vectors of named scalars. Cheaper on PoCL than float3, whose fourth component is computed too.
 #ifndef CLPV_VEC_H
 #define CLPV_VEC_H
 
 typedef struct {
   float x, y, z;
 } Vec;
+
+// Texture coordinates.
+typedef struct {
+  float u, v;
+} Uv;
 
 static inline Vec vec(const float x, const float y, const float z) {
   const Vec v = {x, y, z};

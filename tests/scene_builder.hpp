@@ -10,8 +10,9 @@
 namespace clpv::testing {
 
 inline Session& test_session() {
-  static Session session(choose_device());
-  return session;
+  // Never released: a driver's own statics may be gone before a static session is.
+  static Session* const session = new Session(choose_device());
+  return *session;
 }
 
 inline unsigned add_material(Scene& scene, const glm::vec3& albedo = glm::vec3(1), unsigned flags = 0) {

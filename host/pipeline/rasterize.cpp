@@ -1,5 +1,7 @@
 #include "pipeline/rasterize.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -28,15 +30,15 @@ unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
 }
 
+std::string literal(bool value) {
+  return value ? "1" : "0";
+}
+
 ProgramSource rasterize_program(const ClpvView& view) {
   ProgramSource source;
   source.file = "rasterize.cl";
-  source.literals = {{"CLPV_ORTHOGRAPHIC", view.orthographic != 0 ? "1" : "0"}};
+  source.literals = {{"CLPV_ORTHOGRAPHIC", literal(view.orthographic != 0)}};
   return source;
-}
-
-const char* literal(bool value) {
-  return value ? "1" : "0";
 }
 
 ProgramSource resolve_program(const ClpvView& view, RsmFormat format, const SceneBuffers& scene,
@@ -47,7 +49,7 @@ ProgramSource resolve_program(const ClpvView& view, RsmFormat format, const Scen
   source.literals["CLPV_TEXTURED"] = literal(scene.textured);
   source.literals["CLPV_COLOURED"] = literal(scene.coloured);
   source.literals["CLPV_EMISSIVE"] = literal(emissive);
-  source.literals["CLPV_WHITE_TEXTURE"] = std::to_string(scene.texture_count) + "u";
+  source.literals["CLPV_WHITE_TEXTURE"] = fmt::format("{}u", scene.texture_count);
   return source;
 }
 
@@ -104,7 +106,7 @@ unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   for (;;) {
     const auto capacity = static_cast<cl_uint>(listed_.bytes / sizeof(ClpvRasterTriangle));
-    session_.fill_zero(counts_.buffer, counts_.bytes);
+    session_.write(counts_.buffer, std::vector<cl_uint>(2, 0));
     cl::Kernel all = session_.kernel(source, "set_up");
     set_args(all, pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials,
              projected_.buffer, counts_.buffer, capacity, listed_.buffer, to_clip_.buffer);
@@ -148,7 +150,7 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
   const unsigned listed = set_up(pass, first, count);
   grown(places_, tile_count(view) * sizeof(cl_uint), "tiles");
   grown(binned_, sizeof(cl_uint), "triangles by tile");
-  session_.fill_zero(places_.buffer, tile_count(view) * sizeof(cl_uint));
+  session_.write(places_.buffer, std::vector<cl_uint>(tile_count(view), 0));
   bin(view, listed, false);
   const std::size_t total = lay_out_tiles(view);
   if (total > kMostBinned && count > 1) {
@@ -159,10 +161,10 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
   grown(binned_, total * sizeof(cl_uint), "triangles by tile");
   bin(view, listed, true);
   cl::Kernel tiles = session_.kernel(rasterize_program(view), "draw_tiles");
-  set_args(tiles, view, tiles_along(view.width), tile_count(view), cl_uint{fresh}, listed_.buffer,
-           places_.buffer, binned_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
-           scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
-  session_.launch(tiles, tile_count(view), kTileGroup);
+  set_args(tiles, view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
+           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
+  session_.launch(tiles, cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
+                  cl::NDRange(kTileGroup, 1));
 }
 
 void Rasterizer::clear(Surface& surface) {
