@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/mip_chain.hpp"
 
@@ -33,6 +34,14 @@ glm::vec4 texel(const Texture& texture, std::uint32_t x, std::uint32_t y) {
   return {decoded[rgba[0]], decoded[rgba[1]], decoded[rgba[2]], rgba[3] / 255.0f};
 }
 
+/// log2 of the root of `square`, by straight lines between the powers of two of `square`; at least 0.
+double mip_level(double square) {
+  if (!(square < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::infinity();
+  if (square <= 1) return 0;
+  const int power = std::ilogb(square);
+  return 0.5 * (power + std::ldexp(square, -power) - 1);
+}
+
 }  // namespace
 
 glm::vec4 look_up(const Texture& texture, const glm::vec2& uv) {
@@ -54,9 +63,9 @@ glm::vec4 look_up(const Texture& texture, const glm::vec2& uv) {
 glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const glm::dvec2& step_x,
                   const glm::dvec2& step_y) {
   const glm::dvec2 size(levels[0].width, levels[0].height);
-  const double step = std::max(glm::length(step_x * size), glm::length(step_y * size));  // [texels]
+  const glm::dvec2 x = step_x * size, y = step_y * size;  // [texels]
   const double coarsest = static_cast<double>(levels.size() - 1);
-  const double level = std::isnan(step) ? coarsest : std::clamp(std::log2(step), 0.0, coarsest);
+  const double level = std::min(mip_level(std::max(glm::dot(x, x), glm::dot(y, y))), coarsest);
   const auto fine = static_cast<std::size_t>(level);
   const auto weight = static_cast<float>(level - static_cast<double>(fine));
   const glm::vec4 colour = look_up(levels[fine], uv);

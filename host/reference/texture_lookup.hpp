@@ -14,8 +14,8 @@ namespace clpv::reference {
 glm::vec4 look_up(const Texture& texture, const glm::vec2& uv);
 
 /// The same between the two mip levels (mip_chain) whose texels are about as large as the longer of the two
-/// steps in (u, v) from pixel to pixel, as the rasteriser filters. Steps that are no number take the coarsest
-/// level.
+/// steps in (u, v) from pixel to pixel, as the rasteriser filters (kernels/texture.h: the level is log2 of the
+/// step, drawn as straight lines). Steps that are no number take the coarsest level.
 glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const glm::dvec2& step_x,
                   const glm::dvec2& step_y);
 
