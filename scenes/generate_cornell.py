@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Writes cornell.glb and cornell.json beside itself: the Cornell box, by its published corners.
+
+Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes into FOLDER instead.
+
+Millimetres, as published (Cornell University Program of Computer Graphics, "The Cornell Box: Data"): the open front
+is at z = 0, the red wall at x = 552.8, the green one at x = 0. The reflectances are the published spectra's usual
+linear RGB. The ceiling's lamp is left out: the light comes through the open front, from two sides, because a single
+direction could reach only one of the two coloured walls.
+"""
+import json
+import os
+import sys
+
+from modelling.gltf import Document
+from modelling.mesh import Mesh
+
+WHITE, RED, GREEN = (0.725, 0.71, 0.68), (0.63, 0.065, 0.05), (0.14, 0.45, 0.091)
+
+# Each face counter-clockwise seen from inside the room.
+ROOM = [
+    ("white", [(552.8, 0, 0), (0, 0, 0), (0, 0, 559.2), (549.6, 0, 559.2)]),
+    ("white", [(556, 548.8, 0), (556, 548.8, 559.2), (0, 548.8, 559.2), (0, 548.8, 0)]),
+    ("white", [(549.6, 0, 559.2), (0, 0, 559.2), (0, 548.8, 559.2), (556, 548.8, 559.2)]),
+    ("green", [(0, 0, 559.2), (0, 0, 0), (0, 548.8, 0), (0, 548.8, 559.2)]),
+    ("red", [(552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0)]),
+]
+
+# The blocks' footprints, counter-clockwise seen from above (from +y, x to the right and z down), and heights.
+BLOCKS = {
+    "short block": ([(130, 65), (82, 225), (240, 272), (290, 114)], 165),
+    "tall block": ([(423, 247), (265, 296), (314, 456), (472, 406)], 330),
+}
+
+
+def room():
+    mesh = Mesh()
+    for material, corners in ROOM:
+        mesh.quad(material, corners)
+    return mesh
+
+
+def block(footprint, height):
+    """Four sides and a top; it stands on the floor."""
+    mesh = Mesh()
+    mesh.quad("white", [(x, height, z) for x, z in footprint])
+    for (x0, z0), (x1, z1) in zip(footprint, footprint[1:] + footprint[:1]):
+        mesh.quad("white", [(x0, 0, z0), (x1, 0, z1), (x1, height, z1), (x0, height, z0)])
+    return mesh
+
+
+def scene_file():
+    front = {"eye": [278, 273, -180], "target": [278, 273, 280], "vertical_fov_degrees": 75}
+    return {
+        "model": "cornell.glb",
+        "metres_per_unit": 0.001,
+        "exposure": 0.0,
+        "cameras": [
+            {"name": "front", **front},
+            {"name": "published", "eye": [278, 273, -800], "target": [278, 273, 0], "vertical_fov_degrees": 39.3},
+            {"name": "red", **front, "light": "onto red"},
+            {"name": "green", **front, "light": "onto green"},
+        ],
+        "lights": [
+            {"name": "onto red", "kind": "directional", "direction": [0.5, -0.6, 0.6], "illuminance_lux": 4.0},
+            {"name": "onto green", "kind": "directional", "direction": [-0.5, -0.6, 0.6], "illuminance_lux": 4.0},
+        ],
+        "cascades": {"count": 2, "size_metres": 2.0},
+    }
+
+
+def main(folder):
+    document = Document("clpv scenes/generate_cornell.py")
+    for name, colour in (("white", WHITE), ("red", RED), ("green", GREEN)):
+        document.material(name, colour)
+    document.node("room", document.mesh("room", room()))
+    for name, (footprint, height) in BLOCKS.items():
+        document.node(name, document.mesh(name, block(footprint, height)))
+    document.write(os.path.join(folder, "cornell.glb"))
+    with open(os.path.join(folder, "cornell.json"), "w", encoding="utf-8", newline="\n") as file:
+        json.dump(scene_file(), file, indent=2)
+        file.write("\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__)))

@@ -1,0 +1,190 @@
+// The scenes made for this project: their generators write the files that are there, and light falls in them as
+// their cards say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <glm/glm.hpp>
+#include <iterator>
+#include <limits>
+
+#include "reference/ray_scene.hpp"
+#include "run_program.hpp"
+#include "scene/load.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+using reference::Faces;
+using reference::RayScene;
+
+const fs::path kScenes = fs::path(CLPV_SOURCE_DIR) / "scenes";
+constexpr float kFar = 1000;
+
+std::string camera_names(const Scene& scene) {
+  std::string names;
+  for (const Camera& camera : scene.cameras) names += camera.name + " ";
+  return names;
+}
+
+/// Directions spread evenly over the sphere (a Fibonacci lattice).
+glm::vec3 spread(int i, int count) {
+  const double z = 1 - (2.0 * i + 1) / count, azimuth = i * M_PI * (3 - std::sqrt(5.0));
+  const double r = std::sqrt(1 - z * z);
+  return {r * std::cos(azimuth), r * std::sin(azimuth), z};
+}
+
+/// What is seen from `eye` is seen from its front: no face is turned inside out. Returns how many rays left the scene.
+int check_fronts(const RayScene& rays, const glm::vec3& eye) {
+  constexpr int kRays = 4000;
+  int escaped = 0, turned = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const glm::vec3 direction = spread(i, kRays);
+    const auto seen = rays.intersect(eye, direction, 0, kFar, Faces::as_seen);
+    const auto met = rays.intersect(eye, direction, 0, kFar, Faces::both);
+    escaped += !met;
+    turned += met && (!seen || seen->distance > met->distance * 1.0001f);
+  }
+  EXPECT_EQ(turned, 0) << "from " << eye.x << ", " << eye.y << ", " << eye.z;
+  return escaped;
+}
+
+/// Triangles whose vertices' normals point to the other side than their winding, and degenerate ones.
+int count_bad_triangles(const Scene& scene) {
+  int bad = 0;
+  for (const Triangle& triangle : scene.triangles) {
+    glm::vec3 p[3], n[3];
+    for (int k = 0; k < 3; ++k) {
+      const Vertex& v = scene.vertices[triangle.vertex[k]];
+      p[k] = {v.position[0], v.position[1], v.position[2]};
+      n[k] = {v.normal[0], v.normal[1], v.normal[2]};
+    }
+    const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+    for (const glm::vec3& normal : n) {
+      if (!(glm::dot(across, normal) > 0)) {
+        ++bad;
+        break;
+      }
+    }
+  }
+  return bad;
+}
+
+class Generator : public testing::TestWithParam<const char*> {};
+
+TEST_P(Generator, WritesTheFilesThatAreThere) {
+  if (test::run("python3 -c 'import sys; sys.exit(sys.version_info < (3, 9))'").exit_code != 0) {
+    GTEST_SKIP() << "needs python3, 3.9 or later";
+  }
+  const std::string name = GetParam();
+  const test::TemporaryFolder folder;
+  const test::Outcome outcome =
+      test::run("PYTHONDONTWRITEBYTECODE=1 python3 " + (kScenes / ("generate_" + name + ".py")).string() +
+                " " + folder.path().string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const std::string suffix : {".glb", ".json"}) {
+    const std::string made = test::read_file(folder.path() / (name + suffix));
+    ASSERT_FALSE(made.empty());
+    EXPECT_TRUE(made == test::read_file(kScenes / (name + suffix)))
+        << name << suffix << " differs from the committed one";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
+                         [](const auto& info) { return std::string(info.param); });
+
+class Atrium : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = std::make_unique<Scene>(load_scene(kScenes / "atrium.json"));
+    rays_ = std::make_unique<RayScene>(*scene_);
+  }
+  static void TearDownTestSuite() {
+    rays_.reset();
+    scene_.reset();
+  }
+  /// Whether the sun reaches that point.
+  static bool sunlit(float x, float y, float z) {
+    const float* d = scene_->lights[0].data.direction;
+    return !rays_->occluded({x, y, z}, {-d[0], -d[1], -d[2]}, kFar);
+  }
+  static inline std::unique_ptr<Scene> scene_;
+  static inline std::unique_ptr<RayScene> rays_;
+};
+
+TEST_F(Atrium, IsWhatItsCardSays) {
+  EXPECT_EQ(scene_->triangles.size(), 273512u);
+  EXPECT_LT(fs::file_size(kScenes / "atrium.glb"), 1900000u);
+  EXPECT_EQ(camera_names(*scene_), "nave curtains gallery ");
+  EXPECT_EQ(scene_->lights.size(), 1u);
+  EXPECT_TRUE(scene_->notes.empty()) << scene_->notes[0];
+  const glm::vec3 size = scene_->upper - scene_->lower;
+  EXPECT_NEAR(size.x, 29.6f, 0.01f);
+  EXPECT_NEAR(size.y, 10.2f, 0.01f);
+  EXPECT_NEAR(size.z, 15.7f, 0.01f);
+  EXPECT_EQ(count_bad_triangles(*scene_), 0);
+}
+
+TEST_F(Atrium, SunFallsOnTheFloorAndOneRowOfCurtains) {
+  const float bay = 2.75f;
+  for (int i = 1; i < 8; ++i) {  // the west side shades the first bay
+    const float x = (static_cast<float>(i) - 3.5f) * bay;
+    EXPECT_TRUE(sunlit(x, 0.01f, -2.3f)) << x;
+    EXPECT_FALSE(sunlit(x, 0.01f, 0.5f)) << x;
+    EXPECT_TRUE(sunlit(x, 2.0f, -3.80f)) << x;  // before the lit row
+    EXPECT_FALSE(sunlit(x, 2.0f, 3.80f)) << x;  // before the other one
+  }
+  EXPECT_NEAR(-scene_->lights[0].data.direction[1] * scene_->lights[0].data.intensity[0], 14.1f, 0.05f);
+}
+
+TEST_F(Atrium, NoSunLeaksIntoTheAisles) {
+  for (float x = -14; x <= 14; x += 0.5f) {
+    for (const float side : {-1.0f, 1.0f}) {
+      EXPECT_FALSE(sunlit(x, 0.05f, side * 7.2f)) << x;
+      EXPECT_FALSE(sunlit(x, 4.7f, side * 7.2f)) << x;
+      EXPECT_FALSE(sunlit(x, 9.1f, side * 7.2f)) << x;
+      EXPECT_FALSE(sunlit(side * 14.1f, 1.0f, x / 2)) << x;
+    }
+  }
+}
+
+TEST_F(Atrium, EveryFaceShowsItsFrontAndTheSkyIsOpen) {
+  for (const glm::vec3& eye : {glm::vec3(-9.6f, 1.75f, 1.9f), glm::vec3(0, 3, -1), glm::vec3(2, 1, 3.2f)}) {
+    EXPECT_GT(check_fronts(*rays_, eye), 50);
+  }
+  for (const glm::vec3& eye : {glm::vec3(1, 1.5f, -6.8f), glm::vec3(1, 1.5f, 6.8f), glm::vec3(13.9f, 0.5f, 0),
+                               glm::vec3(0, 6.5f, -6), glm::vec3(-13, 8.5f, 1)}) {
+    check_fronts(*rays_, eye);
+  }
+  for (const Camera& camera : scene_->cameras) check_fronts(*rays_, camera.eye);
+}
+
+TEST(Cornell, HasThePublishedSizeAndItsLightsReachBothWalls) {
+  const Scene scene = load_scene(kScenes / "cornell.json");
+  EXPECT_EQ(scene.triangles.size(), 30u);
+  EXPECT_TRUE(scene.notes.empty()) << scene.notes[0];
+  EXPECT_EQ(camera_names(scene), "front published red green ");
+  const glm::vec3 size = scene.upper - scene.lower;
+  EXPECT_NEAR(size.x, 0.556f, 1e-5f);
+  EXPECT_NEAR(size.y, 0.5488f, 1e-5f);
+  EXPECT_NEAR(size.z, 0.5592f, 1e-5f);
+  EXPECT_EQ(count_bad_triangles(scene), 0);
+
+  const RayScene rays(scene);
+  const auto reaches = [&](int light, const glm::vec3& point) {
+    const float* d = scene.lights[light].data.direction;
+    return !rays.occluded(point, {-d[0], -d[1], -d[2]}, kFar);
+  };
+  ASSERT_EQ(scene.lights.size(), 2u);
+  const glm::vec3 at_red(0.54f, 0.2f, 0.2f), at_green(0.01f, 0.2f, 0.2f), at_back(0.28f, 0.4f, 0.55f);
+  EXPECT_TRUE(reaches(0, at_red) && !reaches(0, at_green) && !reaches(0, at_back));
+  EXPECT_TRUE(reaches(1, at_green) && !reaches(1, at_red) && !reaches(1, at_back));
+  for (const Camera& camera : scene.cameras) check_fronts(rays, camera.eye);
+  // The published camera looks along +z with y up: x grows to its left, where the red wall is.
+  const glm::vec3 right = glm::cross(scene.cameras[1].forward, scene.cameras[1].up);
+  EXPECT_LT(right.x, -0.99f);
+}
+
+}  // namespace
+}  // namespace clpv
