@@ -20,5 +20,6 @@ void add_propagate(CLI::App& app, Shared& shared);
 void add_check(CLI::App& app, Shared& shared);
 void add_compare(CLI::App& app, Shared& shared);
 void add_reference(CLI::App& app, Shared& shared);
+void add_quality(CLI::App& app, Shared& shared);
 
 }  // namespace clpv

@@ -1,0 +1,257 @@
+// Quality runs: the matrix of variants, what is kept of a stopped run, how results are told, and the command.
+#include "pipeline/quality.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/quality_report.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+
+fs::path fresh_folder() {
+  const fs::path folder =
+      fs::path(CLPV_TEST_DIR) / "quality" / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+std::string refusal(const std::string& vary) {
+  try {
+    parse_varied(vary);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    return error.what();
+  }
+  ADD_FAILURE() << vary << " was taken";
+  return {};
+}
+
+TEST(QualityMatrix, EveryCombinationOnceTheLastFastest) {
+  const std::vector<Variant> all =
+      combinations({parse_varied("basis=sh2,srbf8v2"), parse_varied("iterations=4,8,16")});
+  ASSERT_EQ(all.size(), 6u);
+  EXPECT_THAT(all[0], ElementsAre(Pair("basis", "sh2"), Pair("iterations", "4")));
+  EXPECT_THAT(all[1], ElementsAre(Pair("basis", "sh2"), Pair("iterations", "8")));
+  EXPECT_THAT(all[5], ElementsAre(Pair("basis", "srbf8v2"), Pair("iterations", "16")));
+  EXPECT_EQ(combinations({}).size(), 1u);
+  EXPECT_EQ(describe(all[1]), "basis=sh2 iterations=8");
+}
+
+TEST(QualityMatrix, RefusesWhatCannotVary) {
+  EXPECT_THAT(refusal("basis"), HasSubstr("OPTION=a,b,c"));
+  EXPECT_THAT(refusal("fog=1,2"), HasSubstr("fog"));
+  EXPECT_THAT(refusal("basis=sh2,sh99"), HasSubstr("sh99"));
+  EXPECT_THAT(refusal("iterations=4,,8"), HasSubstr("iterations"));
+  EXPECT_THAT(refusal("iterations=4,4"), HasSubstr("twice"));
+  EXPECT_THROW(combinations({parse_varied("basis=sh2"), parse_varied("basis=sh3")}), Error);
+}
+
+QualityCell cell(const std::string& basis, const std::string& camera, double nrmse, double ms) {
+  QualityCell c;
+  c.scene = "room";
+  c.camera = camera;
+  c.variant = {{"basis", basis}};
+  c.nrmse = nrmse;
+  c.best_gain = 0.9;
+  c.nrmse_best_gain = nrmse / 2;
+  c.energy_ratio = 1.5;
+  c.perceptual = 0.25;
+  c.frame_ms = ms;
+  c.stage_ms = {{"propagate", ms / 2}, {"rasterize-rsm", ms / 4}, {"rasterize-camera", ms / 4}};
+  return c;
+}
+
+QualityCell refused(const std::string& basis, const std::string& camera) {
+  QualityCell c = cell(basis, camera, 0, 0);
+  c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(),
+      c.perceptual.reset();
+  c.stage_ms.clear();
+  c.refused = "a \"quoted\" reason, with a comma";
+  return c;
+}
+
+TEST(QualityReport, SummariesAreMeansBestFirst) {
+  const auto sums =
+      summarise({cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), refused("sh4", "a"),
+                 cell("sh4", "b", 0.1, 10), cell("sh3", "a", 0.4, 20), cell("sh3", "b", 0.6, 40)});
+  ASSERT_EQ(sums.size(), 3u);
+  EXPECT_EQ(sums[0].variant[0].second, "sh3");
+  EXPECT_DOUBLE_EQ(sums[0].nrmse, 0.5);
+  EXPECT_DOUBLE_EQ(sums[0].worst_nrmse, 0.6);
+  EXPECT_DOUBLE_EQ(sums[0].frame_ms, 30);
+  EXPECT_DOUBLE_EQ(sums[0].stage_ms.at("propagate"), 15);
+  EXPECT_DOUBLE_EQ(sums[1].nrmse_best_gain, 0.35);
+  EXPECT_EQ(sums[2].refused, 1) << "a low error on one view does not make up for one that is missing";
+}
+
+TEST(QualityReport, CsvHasALineACell) {
+  const std::string csv = quality_csv({cell("sh2", "a", 0.9, 10), refused("sh4", "a")});
+  EXPECT_EQ(csv,
+            "scene,camera,basis,refused,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms,"
+            "propagate_ms,rasterize-camera_ms,rasterize-rsm_ms\n"
+            "room,a,sh2,,0.9,0.9,0.45,1.5,0.25,10,5,2.5,2.5\n"
+            "room,a,sh4,\"a \"\"quoted\"\" reason, with a comma\",,,,,,,,,\n");
+}
+
+TEST(QualityReport, TableHasALineAVariant) {
+  const std::string table = quality_table(
+      {cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), refused("sh4", "a"), refused("sh4", "b")});
+  EXPECT_THAT(table, HasSubstr("room:a"));
+  EXPECT_THAT(table, HasSubstr("90.0"));
+  EXPECT_THAT(table, HasSubstr("70.0"));
+  EXPECT_THAT(table, HasSubstr("refused"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+}
+
+TEST(QualityStore, GivesBackWhatItKept) {
+  const QualityStore store(fresh_folder());
+  EXPECT_FALSE(store.find("k"));
+  for (const QualityCell& kept : {cell("sh2", "a", 0.9, 10), refused("sh4", "a")}) {
+    store.keep("k", kept);
+    const auto found = store.find("k");
+    ASSERT_TRUE(found);
+    EXPECT_EQ(to_json(*found), to_json(kept));
+  }
+}
+
+TEST(QualityStore, DamagedCellsAreMeasuredAnew) {
+  const fs::path folder = fresh_folder();
+  const QualityStore store(folder);
+  for (const char* text : {"", "{\"scene\": \"room\"", "[]", "{\"scene\": 3}"}) {
+    std::ofstream(folder / "k.json") << text;
+    EXPECT_FALSE(store.find("k")) << text;
+  }
+}
+
+/// A floor and a wall, both 4 x 4 m, lit from the front.
+void write_room(const fs::path& folder) {
+  // Positions of both quads, then 16-bit indices.
+  const nlohmann::json gltf = {
+      {"asset", {{"version", "2.0"}}},
+      {"scene", 0},
+      {"scenes", {{{"nodes", {0, 1}}}}},
+      {"nodes",
+       {{{"mesh", 0}},
+        {{"mesh", 0}, {"rotation", {0.70710678, 0, 0, 0.70710678}}, {"translation", {0, 0, -2}}}}},
+      {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
+      {"accessors",
+       {{{"bufferView", 0},
+         {"componentType", 5126},
+         {"count", 4},
+         {"type", "VEC3"},
+         {"min", {-2, 0, -2}},
+         {"max", {2, 0, 2}}},
+        {{"bufferView", 1}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}}},
+      {"bufferViews",
+       {{{"buffer", 0}, {"byteLength", 48}}, {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}}},
+      {"buffers",
+       {{{"byteLength", 60},
+         {"uri",
+          "data:application/octet-stream;base64,"
+          "AAAAwAAAAAAAAADAAAAAwAAAAAAAAABAAAAAQAAAAAAAAABAAAAAQAAAAAAAAADAAAABAAIAAAACAAMA"}}}}};
+  const auto camera = [](const char* name, double x) {
+    return nlohmann::json{
+        {"name", name}, {"eye", {x, 1.5, 3}}, {"target", {0, 0.5, -1}}, {"vertical_fov_degrees", 60}};
+  };
+  const nlohmann::json scene = {
+      {"model", "room.gltf"},
+      {"metres_per_unit", 1},
+      {"cameras", {camera("left", -1), camera("right", 1)}},
+      {"lights",
+       {{{"name", "sun"}, {"kind", "directional"}, {"direction", {0, -1, -0.5}}, {"illuminance_lux", 5}}}},
+      {"cascades", {{"count", 1}, {"size_metres", 20}}}};
+  std::ofstream(folder / "room.gltf") << gltf.dump();
+  std::ofstream(folder / "room.json") << scene.dump();
+}
+
+class QualityCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fresh_folder();
+    write_room(folder_);
+  }
+
+  int run(const std::string& arguments) const {
+    const std::string command =
+        std::string(CLPV_PROGRAM) + " quality " + file("room.json") + " --cache " + file("cache") +
+        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --occlusion off --rsm-size 64 " + arguments +
+        " > " + file("out.txt") + " 2> " + file("err.txt");
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string text(const std::string& name) const {
+    std::ifstream stream(file(name));
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::size_t kept() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_ / "cache" / "cells"), fs::directory_iterator{}));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
+  const std::string matrix =
+      "--transport sampled --vary basis=sh2,srbf4 --format json --csv " + file("a.csv");
+  ASSERT_EQ(run(matrix), 0) << text("err.txt");
+  const std::string first = text("out.txt");
+  const nlohmann::json json = nlohmann::json::parse(first);
+  EXPECT_EQ(json["schema"], 1);
+  ASSERT_EQ(json["cells"].size(), 4u);
+  ASSERT_EQ(json["variants"].size(), 2u);
+  ASSERT_EQ(json["references"].size(), 2u);
+  for (const nlohmann::json& one : json["cells"]) {
+    EXPECT_EQ(one["refused"], "") << one.dump();
+    EXPECT_GT(one["nrmse"], 0.01);
+    EXPECT_LT(one["nrmse"], 5);
+    EXPECT_LE(one["nrmse_best_gain"], one["nrmse"]);
+    EXPECT_GT(one["energy_ratio"], 0.05);
+    EXPECT_GT(one["stage_ms"]["propagate"], 0);
+    EXPECT_GT(one["frame_ms"], one["stage_ms"]["propagate"]);
+  }
+  EXPECT_NE(json["cells"][0]["nrmse"], json["cells"][2]["nrmse"]) << "bases differ";
+  EXPECT_EQ(kept(), 4u);
+
+  // As if stopped before the last cell: three are read back with their times, the fourth is measured.
+  fs::remove(fs::directory_iterator(folder_ / "cache" / "cells")->path());
+  ASSERT_EQ(run(matrix), 0) << text("err.txt");
+  const nlohmann::json again = nlohmann::json::parse(text("out.txt"));
+  int same_times = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(again["cells"][i]["nrmse"], json["cells"][i]["nrmse"]);
+    same_times += again["cells"][i]["frame_ms"] == json["cells"][i]["frame_ms"];
+  }
+  EXPECT_EQ(same_times, 3);
+  EXPECT_EQ(kept(), 4u);
+  EXPECT_THAT(text("a.csv"), HasSubstr("room,left,srbf4,,"));
+}
+
+TEST_F(QualityCommand, RefusesWithItsOwnExitCode) {
+  EXPECT_EQ(run("--vary basis=sh99"), 2);
+  EXPECT_EQ(run("--vary width=32,64"), 2);
+  EXPECT_EQ(run("--view fog"), 2);
+  EXPECT_EQ(run("--camera nobody"), 2);
+  EXPECT_THAT(text("err.txt"), HasSubstr("left, right"));
+  EXPECT_EQ(run("--json " + file("nowhere/a.json")), 1);
+  EXPECT_EQ(run(file("absent.json")), 3);
+  EXPECT_FALSE(fs::exists(folder_ / "cache" / "references")) << "no time was spent on tracing";
+}
+
+}  // namespace
+}  // namespace clpv
