@@ -1,84 +1,25 @@
 // Injection: what a view sees becomes light or blocking in the cells of a volume (MATH section 4).
 //
-// CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W] at p + n s/2, half a cell off its surface
-// so that the surface does not light itself; its cell gains (P/pi) c(n), c(n) the clamped cosine round n.
-// CLPV_GEOMETRY 1, blocking: a texel is a surfel of area A at p; the nearest corner of the cells gains
-// (A/s^2) (c(n) + c(-n)), or (A/s^2) c(n) with CLPV_TWO_SIDED 0. Of all surfaces injected, a corner keeps the one
-// with the larger mean, since they see the same walls.
+// CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W]; its cell gains (P/pi) c(n), c(n) the clamped
+// cosine round n. CLPV_GEOMETRY 1, blocking: a texel is a surfel of area A; the corner nearest to it gains
+// (A/s^2) (c(n) + c(-n)), or (A/s^2) c(n) with CLPV_TWO_SIDED 0. Of all surfaces injected, a corner keeps the one with
+// the larger mean, since they see the same walls.
 //
 // c(n) = A^-1 alpha(n) is linear in alpha: a cell sums its texels' weighted alpha, and the matrix comes once a cell.
-// Three steps: find_cells gives every texel its cell; sort_by_cell.cl sorts them; sum_segments and join_segments add
-// up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
+// Three steps: find_cells.cl gives every texel its cell; sort_by_cell.cl sorts them; sum_segments and join_segments
+// add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_STRIP, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX,
-// CLPV_SURFACE_PAPER; as text what host/pipeline/inject_source.hpp lists.
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
+// what host/pipeline/inject_source.hpp lists.
+#include "cell_keys.h"
 #include "coefficients.h"
-#include "inject_cells.h"
-#include "shared/grid.h"
+#include "deliver.h"
 #include "surface.h"
 
-// A cosine floored here bounds the surfel behind a pixel seen edge-on.
-#define CLPV_LEAST_COSINE 0.1f
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-// Conditions as int, joined by &: no branches. Of scalars: Oclgrind 21.10 trips over comparisons of float3.
-static inline int all_finite(const float x, const float y, const float z) {
-  return (fabs(x) <= MAXFLOAT) & (fabs(y) <= MAXFLOAT) & (fabs(z) <= MAXFLOAT);
-}
-static inline int not_zero(const float x, const float y, const float z) {
-  return (x != 0.0f) | (y != 0.0f) | (z != 0.0f);
-}
-
-static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
-                                  const float depth, const float3 normal) {
-  const float3 ray = clpv_ray(view, px, py);
-  const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
-  return clpv_footprint(view, px, py, depth) / (fmax(cosine, CLPV_LEAST_COSINE) * grid.cell * grid.cell);
-}
-
-// keys[texel]: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
-// details, geometry: the share of a cell's cross-section that the texel's surfel covers, seen along its normal.
-// Trilinear light: where it is between the 8 cells' centres, in [0, 1): all texels' x, all y, all z.
-//
-// One work-item a strip of CLPV_STRIP texels of a row: CPU devices vectorise the loop (which they do not across
-// work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
-__kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* restrict depths,
-                         __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
-                         const float colour_scale, __global uint* restrict keys, __global float* restrict details) {
-  const uint first = get_global_id(0) * CLPV_STRIP, py = get_global_id(1);
-  if (first >= view.width || py >= view.height) return;
-  const uint last = min(first + CLPV_STRIP, view.width);
-  const float per_metre = 1.0f / grid.cell;
-  for (uint px = first; px < last; ++px) {
-    const uint texel = py * view.width + px;
-    const float depth = depths[texel];
-    const float3 normal = clpv_load_normal(normals, texel);
-    const float3 position = clpv_position(view, (float)px, (float)py, depth);
-    float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
-          z = (position.z - grid.origin[2]) * per_metre;
-    int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
-#if CLPV_GEOMETRY
-    details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
-#else
-    x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
-    const float3 flux = clpv_load_colour(colours, texel, colour_scale);
-    counts = counts & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
-#endif
-    x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
-    counts = counts & in_grid(x, y, z);  // no point that is not finite is
-    const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
-    keys[texel] = counts ? cell_key(cx, cy, cz) : CLPV_NO_CELL;
-#if CLPV_TRILINEAR
-    const uint texels = view.width * view.height;
-    details[texel] = x - (float)cx;
-    details[texels + texel] = y - (float)cy;
-    details[2 * texels + texel] = z - (float)cz;
-#endif
-  }
-}
-
-// Everything a texel is weighted by.
+// What texels are summed from; `details`: see find_cells.cl.
 #define CLPV_TEXELS                                                                                     \
   __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale, \
       __global const float *details, const uint texels
@@ -207,13 +148,13 @@ __kernel void sum_segments(__global const uint2* sorted, __global const uint* co
   const uint total = count[0];
   const uint stop = min((block + 1) * length, total);
   if (block * length >= stop) return;
-  if (phase_of(sorted[block * length].x) > phase || phase_of(sorted[stop - 1].x) < phase) return;
+  if (phase_of(CLPV_KEYS(CLPV_GRID), sorted[block * length].x) > phase || phase_of(CLPV_KEYS(CLPV_GRID), sorted[stop - 1].x) < phase) return;
   bool starts_cell;
   uint at = first_segment(sorted, total, length, block, &starts_cell);
   while (at < stop) {
     const uint key = sorted[at].x;
     const uint first = at, end = min(at + length, total);
-    const bool wanted = phase_of(key) == phase;
+    const bool wanted = phase_of(CLPV_KEYS(CLPV_GRID), key) == phase;
     Sums sums = no_sums();
     for (; at < end && sorted[at].x == key; ++at) {
       if (wanted) sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS);

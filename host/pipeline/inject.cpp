@@ -29,6 +29,10 @@ std::size_t block_count(std::size_t texels) {
   return (texels + length - 1) / length;
 }
 
+std::string flag(bool on) {
+  return on ? "1" : "0";
+}
+
 std::size_t texel_count(const Surface& surface) {
   return std::size_t{surface.view.width} * surface.view.height;
 }
@@ -55,16 +59,23 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
   const auto [found, made] = kernels_.try_emplace({kind, format});
   if (made) {
     const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
-    ProgramSource source{"inject.cl", {}, inject_source(basis_, trilinear)};
-    source.literals = {{"CLPV_GRID", std::to_string(options_.grid)},
-                       {"CLPV_STRIP", std::to_string(strip_) + "u"},
-                       {"CLPV_GEOMETRY", light ? "0" : "1"},
-                       {"CLPV_TRILINEAR", trilinear ? "1" : "0"},
-                       {"CLPV_TWO_SIDED", options_.two_sided ? "1" : "0"},
-                       {"CLPV_UNIT_FLUX", options_.unit_flux_lobes ? "1" : "0"},
-                       {"CLPV_SURFACE_PAPER", format == RsmFormat::paper ? "1" : "0"}};
-    found->second = {session_.kernel(source, "find_cells"), session_.kernel(source, "sum_segments"),
-                     session_.kernel(source, "join_segments")};
+    const std::string paper = flag(format == RsmFormat::paper);
+    const ProgramSource find{"find_cells.cl",
+                             {{"CLPV_GEOMETRY", flag(!light)},
+                              {"CLPV_TRILINEAR", flag(trilinear)},
+                              {"CLPV_SURFACE_PAPER", paper},
+                              {"CLPV_STRIP", fmt::format("{}u", strip_)}},
+                             {}};
+    const ProgramSource sum{"inject.cl",
+                            {{"CLPV_GEOMETRY", flag(!light)},
+                             {"CLPV_TRILINEAR", flag(trilinear)},
+                             {"CLPV_SURFACE_PAPER", paper},
+                             {"CLPV_GRID", std::to_string(options_.grid)},
+                             {"CLPV_TWO_SIDED", flag(options_.two_sided)},
+                             {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
+                            inject_source(basis_, trilinear)};
+    found->second = {session_.kernel(find, "find_cells"), session_.kernel(sum, "sum_segments"),
+                     session_.kernel(sum, "join_segments")};
   }
   return found->second;
 }

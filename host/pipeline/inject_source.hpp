@@ -16,7 +16,7 @@ namespace clpv {
 ///   Sum clpv_project_sum(Sum a)                 A^-1 a
 std::string inject_source(const Basis& basis, bool trilinear);
 
-/// How many keys of cells there are: each key is below (kernels/inject_cells.h).
+/// How many keys of cells there are: each key is below (kernels/cell_keys.h).
 std::size_t inject_keys(int grid, bool trilinear, bool geometry);
 
 }  // namespace clpv
