@@ -15,19 +15,19 @@ from modelling.gltf import Document
 from modelling.mesh import Mesh
 
 BAYS_LONG, BAYS_SHORT = 8, 3
-BAY_LONG, BAY_SHORT = 2.75, 2.7           # distance of columns along and across the court
+BAY_LONG, BAY_SHORT = 2.75, 2.05          # distance of columns along and across the court
 HALF_X = BAYS_LONG * BAY_LONG / 2         # the arcade's centre lines
 HALF_Z = BAYS_SHORT * BAY_SHORT / 2
 AISLE = 3.2                               # from the arcade's centre line to the outer wall
-WALL = 0.6                                # of the outer walls and slabs' edges: more than a cell of the finest cascade
-ARCADE = 0.56                             # thickness of the arcade's walls
-GROUND, FIRST = 0.0, 5.2                  # floor levels
-SPRINGING = (3.3, 2.6)                    # of the arches, above their storey's floor
-WALL_TOP = (4.75, 4.0)                    # where the slab above begins, above the storey's floor
+WALL = 0.8                                # of the outer walls and slabs' edges: more than a cell of the finest cascade
+ARCADE = 0.60                             # thickness of the arcade's walls
+GROUND, FIRST = 0.0, 5.1                  # floor levels
+SPRINGING = (3.1, 2.3)                    # of the arches, above their storey's floor
+WALL_TOP = (4.5, 3.7)                     # where the slab above begins, above the storey's floor
 RADIUS = (0.30, 0.24)                     # of the columns, at their foot
-OPENING = (1.02, 1.02)                    # of the arches
+PILLAR = 0.71                              # width of the wall between two arches' openings
 ROOF = FIRST + WALL_TOP[1]
-ROOF_TOP = ROOF + 0.5
+ROOF_TOP = ROOF + 0.6
 OUT_X, OUT_Z = HALF_X + AISLE, HALF_Z + AISLE  # inner faces of the outer walls
 
 
@@ -55,7 +55,7 @@ def shell():
     """Floor, outer walls, slabs and roof: everything that keeps light in."""
     mesh = Mesh()
     x0, z0, x1, z1 = OUT_X, OUT_Z, OUT_X + WALL, OUT_Z + WALL
-    mesh.box("floor", (-x1, -0.5, -z1), (x1, GROUND, z1))
+    mesh.box("floor", (-x1, -0.6, -z1), (x1, GROUND, z1))
     for side in (-1, 1):
         lo, hi = sorted((side * z0, side * z1))
         mesh.box("plaster", (-x1, GROUND, lo), (x1, ROOF, hi), "-y +y")
@@ -106,7 +106,7 @@ def place_arcades(document):
         bays = {}
         for width in (BAY_LONG, BAY_SHORT):
             bays[width] = document.mesh(f"{name} arch {width}", shapes.arch_bay(
-                width, SPRINGING[storey], OPENING[storey], WALL_TOP[storey], ARCADE, 24, "stone", "carved"))
+                width, SPRINGING[storey], (width - PILLAR) / 2, WALL_TOP[storey], ARCADE, 24, "stone", "carved"))
         pier = Mesh()
         half = 0.5 * ARCADE + 0.06
         pier.box("stone", (-half, 0, -half), (half, WALL_TOP[storey], half), "-y +y")
@@ -141,7 +141,7 @@ def place_balustrades(document):
         for bay in range(count):
             offset = (bay - (count - 1) / 2) * width
             document.node(f"{side} rails {bay}", rails[width], along_side(outward, distance, offset, FIRST), turns)
-            number = 9
+            number = 9 if width == BAY_LONG else 6
             for i in range(number):
                 place = along_side(outward, distance, offset + (i - (number - 1) / 2) * 0.23, FIRST + 0.16)
                 document.node(f"{side} baluster {bay}.{i}", baluster, place)
@@ -153,8 +153,8 @@ def trim():
     slab = FIRST - GROUND - WALL_TOP[0]
     string_course = [(0, -0.10), (0.06, -0.06), (0.06, 0.0), (0.14, 0.06), (0.16, 0.12), (0.16, slab - 0.04), (0.10, slab),
                      (0, slab)]
-    cornice = [(0, -0.22), (0.05, -0.18), (0.05, -0.06), (0.12, 0.0), (0.26, 0.08), (0.32, 0.18), (0.32, 0.34), (0.38, 0.40),
-               (0.38, 0.5), (0, 0.5)]
+    cornice = [(0, -0.22), (0.05, -0.18), (0.05, -0.06), (0.12, 0.0), (0.26, 0.08), (0.32, 0.18), (0.32, 0.34), (0.38, 0.48),
+               (0.38, 0.6), (0, 0.6)]
     for profile, level in ((string_course, GROUND + WALL_TOP[0]), (cornice, ROOF)):
         for _, _, outward, distance, count, width in sides():
             inner = distance - ARCADE / 2
@@ -223,8 +223,8 @@ def place_curtains(document):
 def curtain(pattern, seed):
     width = BAY_LONG - 1.75 * RADIUS[0]
     if pattern == "drawn":
-        return shapes.drawn_curtain(width, 3.05, 7.0 + 0.7 * seed, 0.07, seed, "cloth")
-    return shapes.tied_curtain(width / 2, 3.02, 4.0, 0.055, seed, "cloth")
+        return shapes.drawn_curtain(width, 2.85, 7.0 + 0.7 * seed, 0.07, seed, "cloth")
+    return shapes.tied_curtain(width / 2, 2.83, 4.0, 0.055, seed, "cloth")
 
 
 def place_banners(document):
@@ -252,27 +252,30 @@ def place_furniture(document):
     shapes.lathe(basin, "water", [(1.27, 0.40), (1.27, 0.52)], 8)
     shapes.lathe(basin, "carved", [(0.26, 0.3), (0.22, 0.6), (0.12, 0.8), (0.11, 1.15), (0.2, 1.3), (0.52, 1.42), (0.60, 1.5),
                                    (0.56, 1.52), (0.2, 1.42), (0.06, 1.48), (0.05, 1.62), (0.1, 1.7), (0.06, 1.8)], 20, 0.5)
-    document.node("basin", document.mesh("basin", basin), (3.4, 0, 0))
+    document.node("basin", document.mesh("basin", basin), (4.1, 0, 0), 0, (0.85, 0.9, 0.85))
     vase = [(0.16, 0), (0.17, 0.04), (0.13, 0.08), (0.24, 0.28), (0.31, 0.5), (0.30, 0.66), (0.22, 0.82), (0.14, 0.90),
             (0.13, 0.97), (0.20, 1.04), (0.20, 1.07), (0.15, 1.06)]
     vase = document.mesh("vase", shapes.turned(vase, 20, "clay"))
-    for i, (x, z) in enumerate(((-8.25, -3.1), (-2.75, -3.1), (2.75, -3.1), (8.25, -3.1), (-5.5, 3.1), (0, 3.1), (5.5, 3.1))):
-        document.node(f"vase {i}", vase, (x, 0, z), 0, (1, 1, 1) if i % 2 else (0.85, 0.8, 0.85))
+    z = HALF_Z - 0.9
+    for i, x in enumerate((-3, -1, 1, 3)):
+        document.node(f"lit vase {i}", vase, (x * BAY_LONG, 0, -z), 0, (0.85, 0.8, 0.85) if i % 2 else (1, 1, 1))
+    for i, x in enumerate((-2, 0, 2)):
+        document.node(f"shaded vase {i}", vase, (x * BAY_LONG, 0, z), 0, (1, 1, 1) if i % 2 else (0.85, 0.8, 0.85))
 
 
 def scene_file():
     return {
         "model": "atrium.glb",
         "metres_per_unit": 1.0,
-        "exposure": -0.7,
+        "exposure": -0.4,
         "cameras": [
-            {"name": "nave", "eye": [-10.2, 2.1, 2.6], "target": [4.0, 1.75, -2.2], "vertical_fov_degrees": 50},
-            {"name": "curtains", "eye": [-5.2, 1.5, 2.9], "target": [0.2, 1.65, -3.6], "vertical_fov_degrees": 55},
-            {"name": "gallery", "eye": [-10.6, 6.9, -5.6], "target": [2.0, 6.3, -5.3], "vertical_fov_degrees": 60},
+            {"name": "nave", "eye": [-10.3, 1.9, 0.9], "target": [4.0, 1.95, -0.75], "vertical_fov_degrees": 55},
+            {"name": "curtains", "eye": [-5.6, 1.5, 1.9], "target": [0.2, 1.6, -2.6], "vertical_fov_degrees": 60},
+            {"name": "gallery", "eye": [-10.6, 6.75, -4.6], "target": [2.0, 6.15, -4.3], "vertical_fov_degrees": 60},
         ],
-        "lights": [{"name": "sun", "kind": "directional", "direction": [0.22, -0.88, -0.42], "illuminance_lux": 16.0,
+        "lights": [{"name": "sun", "kind": "directional", "direction": [0.06, -0.98, -0.18], "illuminance_lux": 16.0,
                     "colour": [1.0, 0.95, 0.86]}],
-        "cascades": {"count": 3, "size_metres": 12.5},
+        "cascades": {"count": 3, "size_metres": 25.0},
     }
 
 

@@ -57,7 +57,7 @@ def shade(value):
 
 def floor_tiles(size=512):
     """Two by two tiles, light and dark, with joints: repeats every two tiles."""
-    pale, dark = ramp((0.34, 0.31, 0.26), (0.82, 0.77, 0.69)), ramp((0.22, 0.15, 0.11), (0.66, 0.47, 0.36))
+    pale, dark = ramp((0.32, 0.29, 0.24), (0.78, 0.73, 0.64)), ramp((0.18, 0.11, 0.08), (0.56, 0.38, 0.28))
     half, pixels = size // 2, []
     stain, grain = clouds(size, 8, 4, 11), noise(size, 128, 21)
     for i in range(size * size):
