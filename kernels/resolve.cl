@@ -23,9 +23,14 @@ static inline uint in_tiles(const uint px, const uint py, const uint tiles_x) {
   return tile * (CLPV_TILE * CLPV_TILE) + py % CLPV_TILE * CLPV_TILE + px % CLPV_TILE;
 }
 
-// 0 where there is no surface.
-static inline float depth_of(const ClpvView view, const float key) {
-  const float depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+// The depth of the surface hit, which may lie before the near depth; unset where there is none.
+static inline float hit_depth(const float key) {
+  return CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+}
+
+// The depth to store; 0 where there is no surface.
+static inline float seen_depth(const ClpvView view, const float key) {
+  const float depth = hit_depth(key);
   return key == INFINITY ? 0.0f : depth > view.near_depth ? depth : view.near_depth;
 }
 
@@ -33,7 +38,7 @@ __kernel void resolve_depth(const ClpvView view, const uint tiles_x, __global co
                             __global float* depths) {
   const uint px = get_global_id(0), py = get_global_id(1);
   if (px >= view.width || py >= view.height) return;
-  depths[py * view.width + px] = depth_of(view, keys[in_tiles(px, py, tiles_x)]);
+  depths[py * view.width + px] = seen_depth(view, keys[in_tiles(px, py, tiles_x)]);
 }
 
 typedef struct {
@@ -126,9 +131,10 @@ __kernel void resolve_camera(const ClpvView view, const uint tiles_x, __global c
   const uint px = get_global_id(0), py = get_global_id(1);
   if (px >= view.width || py >= view.height) return;
   const uint at = in_tiles(px, py, tiles_x), pixel = py * view.width + px;
-  const float depth = depth_of(view, keys[at]);
+  const float depth = seen_depth(view, keys[at]);
   const bool hit = triangles_seen[at] != UINT_MAX;
-  const Seen seen = look(view, (float)px, (float)py, depth, hit ? triangles_seen[at] : 0, CLPV_PASS_SCENE);
+  const Seen seen =
+      look(view, (float)px, (float)py, hit_depth(keys[at]), hit ? triangles_seen[at] : 0, CLPV_PASS_SCENE);
   depths[pixel] = depth;
   const Vec normal = vec_if(hit, seen.normal);
   clpv_store_normal(normals, pixel, normal.x, normal.y, normal.z);
@@ -151,9 +157,10 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, const uint
   const uint px = get_global_id(0), py = get_global_id(1);
   if (px >= view.width || py >= view.height) return;
   const uint at = in_tiles(px, py, tiles_x), pixel = py * view.width + px;
-  const float depth = depth_of(view, keys[at]);
+  const float depth = seen_depth(view, keys[at]);
   const bool hit = triangles_seen[at] != UINT_MAX;
-  const Seen seen = look(view, (float)px, (float)py, depth, hit ? triangles_seen[at] : 0, CLPV_PASS_SCENE);
+  const Seen seen =
+      look(view, (float)px, (float)py, hit_depth(keys[at]), hit ? triangles_seen[at] : 0, CLPV_PASS_SCENE);
   float3 towards;
   const float3 irradiance =
       clpv_light_irradiance(light, clpv_position(view, (float)px, (float)py, depth), &towards);

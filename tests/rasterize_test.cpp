@@ -9,6 +9,7 @@
 #include <random>
 
 #include "pipeline/view.hpp"
+#include "reference/check.hpp"
 #include "scene_builder.hpp"
 
 namespace clpv {
@@ -81,7 +82,8 @@ TEST(Rasterize, WallFillsEveryPixel) {
   const SurfaceImage image = camera_image(wall(), small_camera(45, 31));
   for (const float depth : image.depth) EXPECT_FLOAT_EQ(depth, 4);
   for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
-  for (const glm::vec4& colour : image.colour) for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(colour[c], 0.25f * static_cast<float>(c + 1));
+  for (const glm::vec4& colour : image.colour)
+    for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(colour[c], 0.25f * static_cast<float>(c + 1));
 }
 
 TEST(Rasterize, BackFacesAreCulledUnlessDoubleSided) {
@@ -318,6 +320,15 @@ TEST(Rasterize, TwoRunsGiveTheSameBytes) {
   EXPECT_EQ(once.depth, again.depth);
   EXPECT_EQ(once.normal, again.normal);
   EXPECT_EQ(once.colour, again.colour);
+}
+
+TEST(Rasterize, MatchesItsTwin) {
+  const reference::CheckResults results = reference::check_rasterize(test_session());
+  ASSERT_FALSE(results.empty());
+  for (const reference::CheckResult& result : results) {
+    EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << result.worst
+                                 << ", allowed " << result.allowed << "; " << result.place;
+  }
 }
 
 }  // namespace

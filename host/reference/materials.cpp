@@ -72,15 +72,17 @@ glm::vec3 Materials::emissive(const SurfacePoint& point, const Footprint& footpr
   return radiance * textured(material.emissive_texture, point, footprint);
 }
 
-bool Materials::hole(const SurfacePoint& point) const {
+float Materials::alpha(const SurfacePoint& point) const {
   const Triangle& triangle = scene_->triangles[point.triangle];
   const Material& material = scene_->materials[triangle.material];
-  float alpha = untextured(*scene_, point).a;
-  if (material.texture != CLPV_NO_TEXTURE) {
-    const glm::vec2 uv = interpolate(*scene_, triangle, point.weights, coordinates);
-    alpha *= look_up(scene_->textures[material.texture], uv).a;
-  }
-  return alpha < material.alpha_cutoff;
+  const float alpha = untextured(*scene_, point).a;
+  if (material.texture == CLPV_NO_TEXTURE) return alpha;
+  const glm::vec2 uv = interpolate(*scene_, triangle, point.weights, coordinates);
+  return alpha * look_up(scene_->textures[material.texture], uv).a;
+}
+
+bool Materials::hole(const SurfacePoint& point) const {
+  return alpha(point) < scene_->materials[scene_->triangles[point.triangle].material].alpha_cutoff;
 }
 
 /// What a texture multiplies the colour with.

@@ -32,6 +32,8 @@ class Materials {
   glm::vec3 albedo(const SurfacePoint& point, const Footprint& footprint = {}) const;
   /// Emitted radiance [W/m^2/sr].
   glm::vec3 emissive(const SurfacePoint& point, const Footprint& footprint = {}) const;
+  /// Base colour's alpha x vertex's x texture's, from the texture's finest level.
+  float alpha(const SurfacePoint& point) const;
   /// Whether a masked material has a hole here.
   bool hole(const SurfacePoint& point) const;
 

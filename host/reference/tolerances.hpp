@@ -14,6 +14,14 @@ struct Tolerance {
 
 inline constexpr Tolerance kTolerances[] = {
     {"sizes", 0, "bytes: host and device read the same buffers"},
+    {"rasterize", 2e-5,
+     "of the field's largest value, away from edges: float32 positions on a triangle, worst where it is seen "
+     "at a "
+     "slant, through a texture's steps; measured 2.1e-6"},
+    {"rasterize-edges", 5e-3,
+     "share of pixels that differ where a hair's breadth decides (reference/rasterize.hpp): a float32 corner "
+     "may "
+     "snap to the next 1/256 pixel; measured 7e-4, one pixel"},
     {"inject", 2e-5,
      "of the functions' values in 26 directions: float32 rounding times the square root of the Gram matrix's "
      "condition number; measured 2e-7 (sh2) to 5e-6 (srbf14)"},

@@ -1,5 +1,7 @@
 #include "reference/view.hpp"
 
+#include <cmath>
+
 namespace clpv::reference {
 namespace {
 
@@ -27,6 +29,15 @@ Projected project(const ClpvView& view, const glm::dvec3& point) {
 
 double pixel_edge(const ClpvView& view, double depth) {
   return 2.0 * view.half_width / view.width * (view.orthographic != 0 ? 1.0 : depth);
+}
+
+double footprint(const ClpvView& view, double px, double py, double depth) {
+  const double pixel =
+      4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
+  if (view.orthographic != 0) return pixel;
+  const double sx = (2 * (px + 0.5) / view.width - 1) * view.half_width;
+  const double sy = (1 - 2 * (py + 0.5) / view.height) * view.half_height;
+  return depth * depth * pixel / std::sqrt(1 + sx * sx + sy * sy);
 }
 
 }  // namespace clpv::reference

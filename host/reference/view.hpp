@@ -21,4 +21,7 @@ Projected project(const ClpvView& view, const glm::dvec3& point);
 /// Distance between neighbouring pixels' surface points [m], on a plane across `forward` at that depth [m].
 double pixel_edge(const ClpvView& view, double depth);
 
+/// Area [m^2] of a pixel's footprint across its ray; perspective: distance^2 times the pixel's solid angle.
+double footprint(const ClpvView& view, double px, double py, double depth);
+
 }  // namespace clpv::reference

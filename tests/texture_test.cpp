@@ -1,0 +1,175 @@
+// Textures as the rasteriser sees them: mip chains, wrap modes, filters, holes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipeline/mip_chain.hpp"
+#include "pipeline/rasterize.hpp"
+#include "pipeline/view.hpp"
+#include "scene_builder.hpp"
+
+namespace clpv {
+namespace {
+
+using testing::add_material;
+using testing::add_quad;
+using testing::test_session;
+
+Texture texture(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) {
+  Texture made;
+  made.width = width;
+  made.height = height;
+  made.rgba = std::move(rgba);
+  return made;
+}
+
+TEST(MipChain, EndsAtOneTexelWithTheMeanInLinearLight) {
+  Texture checkered = texture(6, 5, {});
+  for (int i = 0; i < 30; ++i) {
+    const std::uint8_t v = i % 2 == 0 ? 0 : 255;
+    checkered.rgba.insert(checkered.rgba.end(), {v, v, v, 255});
+  }
+  const std::vector<Texture> levels = mip_chain(checkered, false);
+  ASSERT_EQ(levels.size(), 3u);  // 6 x 5, 3 x 2, 1 x 1
+  EXPECT_EQ(levels[1].width, 3u);
+  EXPECT_EQ(levels[1].height, 2u);
+  EXPECT_EQ(levels[2].rgba,
+            (std::vector<std::uint8_t>{188, 188, 188, 255}));  // of 0.5; not 128, of the bytes
+}
+
+TEST(MipChain, OddSizesLoseNothing) {
+  // One bright texel of 5: each level down must keep a fifth of the light, wherever it is.
+  for (std::size_t bright = 0; bright < 5; ++bright) {
+    Texture line = texture(5, 1, std::vector<std::uint8_t>(20, 0));
+    line.rgba[4 * bright] = 255;
+    const std::vector<Texture> levels = mip_chain(line, false);
+    EXPECT_NEAR(linear_from_srgb(levels.back().rgba[0]), 0.2, 0.004) << bright;
+  }
+}
+
+TEST(MipChain, HolesDoNotTintWhatStays) {
+  const Texture leaf = texture(2, 1, {200, 100, 50, 255, 0, 0, 255, 0});
+  EXPECT_EQ(mip_chain(leaf, true)[1].rgba, (std::vector<std::uint8_t>{200, 100, 50, 128}));
+  EXPECT_NE(mip_chain(leaf, false)[1].rgba[2], 50);
+}
+
+TEST(MipChain, EverySrgbByteComesBack) {
+  for (unsigned byte = 0; byte < 256; ++byte) EXPECT_EQ(srgb_from_linear(linear_from_srgb(byte)), byte);
+}
+
+/// An orthographic camera looking down -z at the square (0..1)^2 at z = -1, whose uv runs from `from` to `to`.
+SurfaceImage image_of(Scene scene, int size, const glm::vec2& from, const glm::vec2& to) {
+  add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 0);
+  for (Vertex& v : scene.vertices) {
+    for (int i = 0; i < 2; ++i) v.uv[i] = from[i] + v.uv[i] * (to[i] - from[i]);
+  }
+  ClpvView view = camera_view(Camera{}, size, size);
+  view.eye[0] = view.eye[1] = 0.5f;
+  view.orthographic = 1;
+  view.half_width = view.half_height = 0.5f;
+  Session& session = test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, false);
+  rasterizer.rasterize_camera(surface);
+  return read_surface(session, surface);
+}
+
+/// A scene with a textured white material and no triangles yet.
+Scene textured(Texture used, unsigned flags = 0) {
+  Scene scene;
+  add_material(scene, glm::vec3(1), flags);
+  scene.materials[0].texture = 0;
+  scene.materials[0].alpha_cutoff = 0.5f;
+  scene.textures.push_back(std::move(used));
+  return scene;
+}
+
+/// Red 0, 255, 0, 255 along u.
+Texture stripes(std::uint32_t wrap) {
+  Texture made = texture(4, 1, {0, 0, 0, 255, 255, 0, 0, 255, 0, 0, 0, 255, 255, 0, 0, 255});
+  made.wrap_u = made.wrap_v = wrap;
+  return made;
+}
+
+std::vector<float> reds(const SurfaceImage& image) {  // of the top row
+  std::vector<float> values;
+  for (unsigned x = 0; x < image.view.width; ++x) values.push_back(image.colour[x].x);
+  return values;
+}
+
+TEST(Texture, TexelsSitWhereTheyShould) {
+  const auto close = [](std::vector<float> values) {
+    return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
+  };
+  EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0, 0}, {1, 1})), close({0, 1, 0, 1}));
+  // Halfway between texel centres: the mean of both.
+  EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0.0625f, 0}, {1.0625f, 1})),
+              close({0.25f, 0.75f, 0.25f, 1}));
+}
+
+TEST(Texture, WrapModesRepeatMirrorAndClamp) {
+  const auto close = [](std::vector<float> values) {
+    return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
+  };
+  const auto from_minus_half = [&](std::uint32_t wrap) {  // texels -2 .. 5
+    return reds(image_of(textured(stripes(wrap)), 8, {-0.5f, 0}, {1.5f, 1}));
+  };
+  EXPECT_THAT(from_minus_half(CLPV_WRAP_REPEAT), close({0, 1, 0, 1, 0, 1, 0, 1}));
+  EXPECT_THAT(from_minus_half(CLPV_WRAP_MIRROR), close({1, 0, 0, 1, 0, 1, 1, 0}));
+  EXPECT_THAT(from_minus_half(CLPV_WRAP_CLAMP), close({0, 0, 0, 1, 0, 1, 1, 1}));
+}
+
+TEST(Texture, ColoursAreDecodedFromSrgb) {
+  const SurfaceImage image = image_of(textured(texture(1, 1, {188, 64, 7, 255})), 2, {0, 0}, {1, 1});
+  for (const glm::vec4& colour : image.colour) {
+    EXPECT_NEAR(colour.x, linear_from_srgb(188), 1e-6);
+    EXPECT_NEAR(colour.y, linear_from_srgb(64), 1e-6);
+    EXPECT_NEAR(colour.z, linear_from_srgb(7), 1e-6);
+  }
+}
+
+TEST(Texture, SmallTexelsAreAveragedByMipLevels) {
+  Texture fine = texture(64, 64, {});
+  for (unsigned i = 0; i < 64 * 64; ++i) {
+    const std::uint8_t v = (i + i / 64) % 2 == 0 ? 0 : 255;
+    fine.rgba.insert(fine.rgba.end(), {v, v, v, 255});
+  }
+  for (const glm::vec4& colour : image_of(textured(fine), 8, {0, 0}, {1, 1}).colour)
+    EXPECT_NEAR(colour.x, 0.5, 0.003);
+  // A level and a half down a pixel takes the mean of both levels; here they are the same grey.
+  for (const glm::vec4& colour : image_of(textured(fine), 23, {0, 0}, {1, 1}).colour)
+    EXPECT_NEAR(colour.x, 0.5, 0.003);
+}
+
+TEST(Texture, HolesLetThroughWhatIsBehind) {
+  Scene scene = textured(texture(2, 1, {255, 0, 0, 255, 255, 0, 0, 0}), CLPV_MATERIAL_MASKED);
+  scene.textures[0].wrap_u = CLPV_WRAP_CLAMP;
+  const unsigned green = add_material(scene, {0, 1, 0});
+  add_quad(scene, {0, 0, -2}, {1, 0, 0}, {0, 1, 0}, green);
+  const SurfaceImage image = image_of(scene, 8, {0, 0}, {1, 1});
+  for (unsigned at = 0; at < 64; ++at) {  // alpha crosses 0.5 in the middle
+    EXPECT_EQ(image.depth[at], at % 8 < 4 ? 1 : 2) << at;
+    EXPECT_FLOAT_EQ(image.colour[at].y, at % 8 < 4 ? 0 : 1) << at;
+  }
+}
+
+TEST(Texture, EmissionIsSeen) {
+  Scene scene = textured(texture(1, 1, {255, 255, 255, 255}));
+  scene.materials[0].emissive[0] = 3;
+  scene.materials[0].emissive[1] = 2;
+  add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 0);
+  const ClpvView view = camera_view(Camera{}, 9, 7);
+  Session& session = test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, true);
+  rasterizer.rasterize_camera(surface);
+  const SurfaceImage image = read_surface(session, surface);
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    EXPECT_EQ(glm::vec3(image.emissive[i]), image.depth[i] > 0 ? glm::vec3(3, 2, 0) : glm::vec3(0));
+  }
+  EXPECT_GT(*std::max_element(image.depth.begin(), image.depth.end()), 0);
+}
+
+}  // namespace
+}  // namespace clpv

@@ -1,0 +1,185 @@
+// The views a frame is rasterised from: what they cover, and that a moving cascade moves by whole texels.
+#include "pipeline/view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "pipeline/cascade.hpp"
+#include "reference/view.hpp"
+#include "scene_builder.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using reference::project;
+using testing::directional_light;
+using testing::point_light;
+using testing::spot_light;
+
+constexpr int kSize = 64;
+const Bounds kBounds{glm::vec3(-20, -1, -12), glm::vec3(18, 15, 11)};
+
+glm::dvec3 vector(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+std::vector<glm::vec3> directions(int count) {
+  std::mt19937 random(2);
+  std::normal_distribution<float> normal;
+  std::vector<glm::vec3> all{{0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {1, 1, 1}};
+  while (all.size() < static_cast<std::size_t>(count)) {
+    all.push_back(glm::normalize(glm::vec3(normal(random), normal(random), normal(random))));
+  }
+  return all;
+}
+
+std::vector<glm::dvec3> corners(const glm::dvec3& lower, const glm::dvec3& upper) {
+  std::vector<glm::dvec3> all;
+  for (int i = 0; i < 8; ++i) {
+    all.emplace_back(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z);
+  }
+  return all;
+}
+
+/// Whether a point falls on the view, `spare` pixels inside its border.
+bool on_screen(const ClpvView& view, const glm::dvec3& point, double spare = 0) {
+  const reference::Projected p = project(view, point);
+  return p.pixel.x >= spare - 0.5 && p.pixel.y >= spare - 0.5 && p.pixel.x <= view.width - 0.5 - spare &&
+         p.pixel.y <= view.height - 0.5 - spare && (view.orthographic != 0 || p.depth > 0);
+}
+
+void expect_orthonormal(const ClpvView& view) {
+  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
+  EXPECT_LT(glm::length(glm::cross(right, up) + forward), 1e-6);
+  EXPECT_NEAR(glm::length(right), 1, 1e-6);
+  EXPECT_NEAR(glm::length(up), 1, 1e-6);
+}
+
+TEST(View, CameraSeesItsFieldOfView) {
+  Camera camera;
+  camera.eye = {1, 2, 3};
+  camera.forward = glm::normalize(glm::vec3(1, -0.2f, -2));
+  const ClpvView view = camera_view(camera, 960, 540);
+  expect_orthonormal(view);
+  EXPECT_FLOAT_EQ(view.half_height, std::tan(camera.vertical_fov / 2));
+  EXPECT_FLOAT_EQ(view.half_width / view.half_height, 960.0f / 540.0f);
+  EXPECT_GT(vector(view.up).y, 0.9);
+}
+
+TEST(View, DirectionalRsmCoversTheCascadeAndStartsBeforeTheScene) {
+  for (const glm::vec3& direction : directions(60)) {
+    for (const ClpvGrid& grid : cascade_grids({-9.5f, 1.6f, -1.1f}, 3, 12.5, 32)) {
+      const ClpvView view = directional_rsm_view(directional_light(direction), grid, kBounds, kSize);
+      expect_orthonormal(view);
+      const glm::dvec3 lower = vector(grid.origin) - 0.5 * grid.cell;
+      const glm::dvec3 upper = lower + (grid.n + 1.0) * grid.cell;
+      for (const glm::dvec3& corner : corners(lower, upper)) EXPECT_TRUE(on_screen(view, corner, -1e-3));
+      for (const glm::dvec3& corner : corners(glm::dvec3(kBounds.lower), glm::dvec3(kBounds.upper))) {
+        const double depth = project(view, corner).depth;
+        EXPECT_GT(depth, view.near_depth);
+        EXPECT_LT(depth, view.far_depth);
+      }
+    }
+  }
+}
+
+TEST(View, DirectionalRsmStaysWhileTheCameraMovesInsideACell) {
+  const ClpvLight light = directional_light({0.24f, -0.96f, 0.17f});
+  const double cell = 12.5 / 32;
+  const auto view_at = [&](double part) {
+    const auto x = static_cast<float>(cell * (3 + part));
+    return directional_rsm_view(light, cascade_grids({x, x, x}, 1, 12.5, 32)[0], kBounds, kSize);
+  };
+  const ClpvView first = view_at(0.1);
+  for (const double part : {0.2, 0.5, 0.9}) {
+    const ClpvView view = view_at(part);
+    EXPECT_EQ(std::memcmp(&view, &first, sizeof(view)), 0) << part;
+  }
+}
+
+TEST(View, DirectionalRsmMovesByWholeTexels) {
+  for (const glm::vec3& direction : directions(20)) {
+    const ClpvLight light = directional_light(direction);
+    const ClpvView first = directional_rsm_view(light, {{0, 0, 0}, 0.25f, 32, {}}, kBounds, kSize);
+    for (int step = 1; step < 40; ++step) {
+      const float by = 0.25f * static_cast<float>(step);
+      const ClpvView moved = directional_rsm_view(light, {{by, -by, 2 * by}, 0.25f, 32, {}}, kBounds, kSize);
+      ASSERT_EQ(moved.half_width, first.half_width);
+      ASSERT_EQ(moved.half_height, first.half_height);
+      const glm::dvec2 texels =
+          project(first, vector(moved.eye)).pixel - project(first, vector(first.eye)).pixel;
+      EXPECT_NEAR(texels.x, std::round(texels.x), 1e-4);
+      EXPECT_NEAR(texels.y, std::round(texels.y), 1e-4);
+      EXPECT_NEAR(project(first, vector(moved.eye)).depth, 0, 1e-5);  // in the same plane across the light
+    }
+  }
+}
+
+TEST(View, RsmOfOneTexelIsRefused) {
+  EXPECT_THROW(directional_rsm_view(directional_light({0, -1, 0}), {{0, 0, 0}, 1, 4, {}}, kBounds, 1), Error);
+}
+
+TEST(View, SpotSeesItsConeAndNotMuchMore) {
+  const float outer = 0.7f;
+  for (const glm::vec3& direction : directions(12)) {
+    const ClpvLight light = spot_light({1, 2, 3}, direction, 0.3f, outer);
+    const ClpvView view = spot_view(light, kSize, kBounds);
+    expect_orthonormal(view);
+    EXPECT_NEAR(view.half_width, std::tan(outer), 1e-5);
+    const glm::dvec3 along = vector(light.direction), across = vector(view.right);
+    for (int turn = 0; turn < 12; ++turn) {
+      const double angle = turn * glm::two_pi<double>() / 12;
+      const glm::dvec3 side = std::cos(angle) * across + std::sin(angle) * vector(view.up);
+      EXPECT_TRUE(on_screen(view, vector(view.eye) + along + 0.999 * std::tan(double{outer}) * side));
+    }
+  }
+}
+
+TEST(View, WideSpotsTakeSixViews) {
+  const ClpvLight narrow = spot_light({0, 5, 0}, {0, -1, 0}, 0.2f, 1.0f);
+  const ClpvLight wide = spot_light({0, 5, 0}, {0, -1, 0}, 0.2f, 1.5f);
+  const ClpvGrid grid{{0, 0, 0}, 0.5f, 8, {}};
+  EXPECT_EQ(rsm_views(narrow, grid, kBounds, kSize).size(), 1u);
+  EXPECT_EQ(rsm_views(wide, grid, kBounds, kSize).size(), 6u);
+  EXPECT_EQ(shadow_views(wide, kBounds, kSize).size(), 6u);
+  EXPECT_THROW(spot_view(wide, kSize, kBounds), Error);
+}
+
+TEST(View, PointViewsSeeEveryDirectionOnce) {
+  const ClpvLight light = point_light({1, 2, 3});
+  const auto views = point_views(light, kSize, kBounds);
+  for (const ClpvView& view : views) expect_orthonormal(view);
+  for (const glm::vec3& direction : directions(500)) {
+    if (direction == glm::vec3(1, 1, 1)) continue;  // on a border
+    int seen = 0;
+    for (const ClpvView& view : views)
+      seen += on_screen(view, vector(view.eye) + glm::dvec3(direction)) ? 1 : 0;
+    EXPECT_EQ(seen, 1) << direction.x << " " << direction.y << " " << direction.z;
+  }
+}
+
+TEST(View, RangeLimitsHowFarALightLooks) {
+  ClpvLight light = point_light({1, 2, 3});
+  EXPECT_GT(point_views(light, kSize, kBounds)[0].far_depth, 20);  // the farthest corner of the scene
+  light.range = 5;
+  EXPECT_NEAR(point_views(light, kSize, kBounds)[0].far_depth, 5, 0.01);
+}
+
+TEST(View, ShadowViewOfADirectionalLightHoldsTheScene) {
+  for (const glm::vec3& direction : directions(40)) {
+    const auto views = shadow_views(directional_light(direction), kBounds, kSize);
+    ASSERT_EQ(views.size(), 1u);
+    expect_orthonormal(views[0]);
+    for (const glm::dvec3& corner : corners(glm::dvec3(kBounds.lower), glm::dvec3(kBounds.upper))) {
+      EXPECT_TRUE(on_screen(views[0], corner, 0.5));
+      const double depth = project(views[0], corner).depth;
+      EXPECT_TRUE(depth > views[0].near_depth && depth < views[0].far_depth);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clpv
