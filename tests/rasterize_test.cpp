@@ -11,6 +11,7 @@
 #include "pipeline/view.hpp"
 #include "reference/check.hpp"
 #include "scene_builder.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 namespace {
@@ -320,6 +321,36 @@ TEST(Rasterize, TwoRunsGiveTheSameBytes) {
   EXPECT_EQ(once.depth, again.depth);
   EXPECT_EQ(once.normal, again.normal);
   EXPECT_EQ(once.colour, again.colour);
+}
+
+TEST(Rasterize, DrawnInSeveralGoesItIsTheSame) {
+  const Scene scene = jittered_plane(20, 5, 4, 0);
+  const ClpvView view = small_camera(160, 90);
+  const SurfaceImage whole = camera_image(scene, view);
+  Session& session = test_session();
+  for (const std::size_t most_listed : {1, 100, 700}) {  // of some 2000
+    Rasterizer rasterizer(session, upload_scene(session, scene), most_listed);
+    Surface surface = make_surface(session, view, RsmFormat::float32, false);
+    rasterizer.rasterize_camera(surface);
+    const SurfaceImage parts = read_surface(session, surface);
+    EXPECT_EQ(whole.depth, parts.depth);
+    EXPECT_EQ(whole.normal, parts.normal);
+  }
+}
+
+TEST(Rasterize, ScenesThatDoNotHoldTogetherAreRefused) {
+  Session& session = test_session();
+  Scene scene = wall();
+  scene.triangles[1].vertex[2] = 4;
+  EXPECT_THROW(upload_scene(session, scene), Error);
+  scene = wall();
+  scene.triangles[0].material = 1;
+  EXPECT_THROW(upload_scene(session, scene), Error);
+  scene = wall();
+  scene.materials[0].texture = 0;
+  EXPECT_THROW(upload_scene(session, scene), Error);
+  scene.textures.resize(1);
+  EXPECT_THROW(upload_scene(session, scene), Error);  // no texels
 }
 
 TEST(Rasterize, MatchesItsTwin) {

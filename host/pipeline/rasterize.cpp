@@ -16,10 +16,6 @@ static_assert(sizeof(ClpvProjected) == CLPV_SIZEOF_PROJECTED &&
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kTileGroup = 8;  // tiles differ in work: small groups even it out between cores
 
-/// Entries of the tiles' lists held at a time: beyond it (hundreds of screen-filling layers) triangles are
-/// drawn in several goes, so that memory stays bounded.
-constexpr std::size_t kMostBinned = std::size_t{1} << 25;
-
 unsigned tiles_along(unsigned pixels) {
   return (pixels + CLPV_TILE - 1) / CLPV_TILE;
 }
@@ -70,7 +66,8 @@ float largest_flux(const ClpvLight& light, const ClpvView& view) {
 
 }  // namespace
 
-Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene) : session_(session), scene_(scene) {
+Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed)
+    : session_(session), scene_(scene), most_listed_(most_listed) {
   grown(counts_, 2 * sizeof(cl_uint), "counters of the rasteriser");
   grown(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
   grown(projected_, scene.vertex_count * sizeof(ClpvProjected), "projected vertices");
@@ -132,19 +129,8 @@ void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
   session_.launch(kernel, listed, kGroup);
 }
 
-/// Turns the counts of triangles over each tile into the places where the tiles' lists start, one after
-/// another. Returns the entries of all lists; beyond kMostBinned nothing is laid out.
-std::size_t Rasterizer::lay_out_tiles(const ClpvView& view) {
-  std::vector<cl_uint> places = session_.read<cl_uint>(places_.buffer, tile_count(view));
-  const std::size_t total = std::accumulate(places.begin(), places.end(), std::size_t{0});
-  if (total > kMostBinned) return total;
-  std::exclusive_scan(places.begin(), places.end(), places.begin(), cl_uint{0});
-  session_.write(places_.buffer, places);
-  return total;
-}
-
-/// Draws a range of triangles; `fresh`: onto nothing, else onto what is there. Halves the range where the
-/// tiles' lists would grow too long.
+/// Draws a range of triangles; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
+/// lists would grow too long.
 void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
   const ClpvView& view = pass.view;
   const unsigned listed = set_up(pass, first, count);
@@ -152,18 +138,26 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
   grown(binned_, sizeof(cl_uint), "triangles by tile");
   session_.write(places_.buffer, std::vector<cl_uint>(tile_count(view), 0));
   bin(view, listed, false);
-  const std::size_t total = lay_out_tiles(view);
-  if (total > kMostBinned && count > 1) {
+  std::vector<cl_uint> places = session_.read<cl_uint>(places_.buffer, tile_count(view));
+  const std::size_t total = std::accumulate(places.begin(), places.end(), std::size_t{0});
+  if (total > most_listed_ && count > 1) {
     draw(pass, first, count / 2, fresh);
     draw(pass, first + count / 2, count - count / 2, false);
     return;
   }
+  // Where each tile's list starts, one after another.
+  std::exclusive_scan(places.begin(), places.end(), places.begin(), cl_uint{0});
+  session_.write(places_.buffer, places);
   grown(binned_, total * sizeof(cl_uint), "triangles by tile");
   bin(view, listed, true);
-  cl::Kernel tiles = session_.kernel(rasterize_program(view), "draw_tiles");
-  set_args(tiles, view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
+  draw_tiles(view, fresh);
+}
+
+void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
+  cl::Kernel kernel = session_.kernel(rasterize_program(view), "draw_tiles");
+  set_args(kernel, view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
            scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
-  session_.launch(tiles, cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
+  session_.launch(kernel, cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
                   cl::NDRange(kTileGroup, 1));
 }
 

@@ -13,8 +13,12 @@ namespace clpv {
 
 class Rasterizer {
  public:
+  /// Entries of all tiles' lists of triangles held at a time, 4 bytes each. A scene that needs more (hundreds of
+  /// screen-filling layers) is drawn in several goes; the result is the same.
+  static constexpr std::size_t kMostListed = std::size_t{1} << 25;
+
   /// `scene` must stay as it is while the rasteriser lives (its handles are copied, not its contents).
-  Rasterizer(Session& session, const SceneBuffers& scene);
+  Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed = kMostListed);
 
   /// The camera's G-buffer, as `surface.view` sees the scene: depth, normal, albedo and, where the surface
   /// has it, emission. Back faces are culled unless their material is double-sided. Textures are filtered
@@ -46,12 +50,13 @@ class Rasterizer {
   void find_visible(const Pass& pass);
   void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
   unsigned set_up(const Pass& pass, unsigned first, unsigned count);
-  std::size_t lay_out_tiles(const ClpvView& view);
+  void draw_tiles(const ClpvView& view, bool fresh);
   void bin(const ClpvView& view, unsigned listed, bool fill);
   cl::Buffer& grown(Scratch& scratch, std::size_t bytes, const char* what);
 
   Session& session_;
   SceneBuffers scene_;
+  std::size_t most_listed_;
   Scratch projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
 };
 
