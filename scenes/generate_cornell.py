@@ -6,7 +6,8 @@ Python's standard library only; the same bytes every time. `generate_cornell.py 
 Millimetres, as published (Cornell University Program of Computer Graphics, "The Cornell Box: Data"): the open front
 is at z = 0, the red wall at x = 552.8, the green one at x = 0. The reflectances are the published spectra's usual
 linear RGB. The ceiling's lamp is left out: the light comes through the open front, from two sides, because a single
-direction could reach only one of the two coloured walls.
+direction could reach only one of the two coloured walls. Its walls get a thickness (not published: they have none
+there), since light falls on them from outside too.
 """
 import json
 import os
@@ -26,6 +27,8 @@ ROOM = [
     ("red", [(552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0)]),
 ]
 
+WALL = 80  # thickness: over a cell of the finest cascade
+
 # The blocks' footprints, counter-clockwise seen from above (from +y, x to the right and z down), and heights.
 BLOCKS = {
     "short block": ([(130, 65), (82, 225), (240, 272), (290, 114)], 165),
@@ -37,6 +40,18 @@ def room():
     mesh = Mesh()
     for material, corners in ROOM:
         mesh.quad(material, corners)
+    return mesh
+
+
+def outside():
+    """The walls' outer faces, and the rim of the opening; the red wall leans a little, and the rim follows it."""
+    mesh = Mesh()
+    x0, x1, y0, y1, z1 = -WALL, 556 + WALL, -WALL, 548.8 + WALL, 559.2 + WALL
+    mesh.box("white", (x0, y0, 0), (x1, y1, z1), "-z")
+    outer = [(x0, y0, 0), (x1, y0, 0), (x1, y1, 0), (x0, y1, 0)]
+    inner = [(0, 0, 0), (552.8, 0, 0), (556, 548.8, 0), (0, 548.8, 0)]
+    for k in range(4):
+        mesh.quad("white", [outer[k], inner[k], inner[(k + 1) % 4], outer[(k + 1) % 4]])
     return mesh
 
 
@@ -74,6 +89,7 @@ def main(folder):
     for name, colour in (("white", WHITE), ("red", RED), ("green", GREEN)):
         document.material(name, colour)
     document.node("room", document.mesh("room", room()))
+    document.node("outside", document.mesh("outside", outside()))
     for name, (footprint, height) in BLOCKS.items():
         document.node(name, document.mesh(name, block(footprint, height)))
     document.write(os.path.join(folder, "cornell.glb"))

@@ -163,16 +163,23 @@ TEST_F(Atrium, EveryFaceShowsItsFrontAndTheSkyIsOpen) {
 
 TEST(Cornell, HasThePublishedSizeAndItsLightsReachBothWalls) {
   const Scene scene = load_scene(kScenes / "cornell.json");
-  EXPECT_EQ(scene.triangles.size(), 30u);
+  EXPECT_EQ(scene.triangles.size(), 48u);
   EXPECT_TRUE(scene.notes.empty()) << scene.notes[0];
   EXPECT_EQ(camera_names(scene), "front published red green ");
-  const glm::vec3 size = scene.upper - scene.lower;
-  EXPECT_NEAR(size.x, 0.556f, 1e-5f);
-  EXPECT_NEAR(size.y, 0.5488f, 1e-5f);
-  EXPECT_NEAR(size.z, 0.5592f, 1e-5f);
   EXPECT_EQ(count_bad_triangles(scene), 0);
 
   const RayScene rays(scene);
+  const glm::vec3 middle(0.15f, 0.45f, 0.5f);
+  const auto distance = [&](const glm::vec3& direction) {
+    const auto hit = rays.intersect(middle, direction, 0, kFar, Faces::as_seen);
+    return hit ? hit->distance : kFar;
+  };
+  EXPECT_NEAR(distance({0, -1, 0}), 0.45f, 1e-5f);
+  EXPECT_NEAR(distance({0, 1, 0}), 0.5488f - 0.45f, 1e-5f);
+  EXPECT_NEAR(distance({0, 0, 1}), 0.5592f - 0.5f, 1e-5f);
+  EXPECT_NEAR(distance({-1, 0, 0}), 0.15f, 1e-5f);
+  EXPECT_NEAR(distance({1, 0, 0}), 0.554f - 0.15f, 0.004f);
+  EXPECT_EQ(distance({0, 0, -1}), kFar);
   const auto reaches = [&](int light, const glm::vec3& point) {
     const float* d = scene.lights[light].data.direction;
     return !rays.occluded(point, {-d[0], -d[1], -d[2]}, kFar);
