@@ -19,13 +19,19 @@ namespace {
 
 struct Stage {
   std::string name;
-  std::function<reference::CheckResults(Session&)> check;
+  std::function<reference::CheckResults(Session&, bool thorough)> check;
 };
 
 const std::vector<Stage>& stages() {
+  // Stages that have no more to compare than they do at once ignore `thorough`.
+  const auto plain = [](reference::CheckResults (*check)(Session&)) {
+    return [check](Session& session, bool) { return check(session); };
+  };
   static const std::vector<Stage> all = {
-      {"inject", reference::check_inject}, {"propagate", reference::check_propagate},
-      {"gather", reference::check_gather}, {"shade", reference::check_shade},
+      {"sizes", plain(reference::check_sizes)},         {"rasterize", plain(reference::check_rasterize)},
+      {"rasterize", plain(reference::check_rasterize)}, {"inject", plain(reference::check_inject)},
+      {"propagate", reference::check_propagate},        {"gather", plain(reference::check_gather)},
+      {"shade", plain(reference::check_shade)},
   };
   return all;
 }
@@ -38,7 +44,7 @@ std::vector<std::string> stage_names() {
 
 struct Options {
   std::vector<std::string> only;
-  bool json = false;
+  bool json = false, thorough = false;
 };
 
 /// The result nearest to its tolerance, or beyond it.
@@ -88,7 +94,7 @@ void run(const Options& options, const Shared& shared) {
     progress.advance();
     if (!options.only.empty() && std::count(options.only.begin(), options.only.end(), stage.name) == 0)
       continue;
-    const reference::CheckResults results = stage.check(session);
+    const reference::CheckResults results = stage.check(session, options.thorough);
     if (results.empty()) throw Error(ExitCode::validation, "stage {} was not compared at all", stage.name);
     if (!options.json) print(stage.name, results);
     all.insert(all.end(), results.begin(), results.end());
@@ -117,6 +123,8 @@ void add_check(CLI::App& app, Shared& shared) {
   command->add_option("--stage", options->only, "only these stages; default: all")
       ->delimiter(',')
       ->check(CLI::IsMember(stage_names()));
+  command->add_flag("--thorough", options->thorough,
+                    "every basis with every transport and state; takes minutes");
   command->add_flag("--json", options->json, "JSON on stdout");
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -4,25 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "device/session.hpp"
 
 namespace clpv {
 namespace {
 
-constexpr double kZero = 1e-12;         // relative to the largest entry: rounding of double sums of order 1
-constexpr double kSameFunction = 1e-9;  // two functions that differ by less everywhere are one
-
-std::vector<glm::dvec3> scattered_directions(int count) {
-  std::mt19937 random(1);  // any fixed set that no mirror maps to itself
-  std::normal_distribution<double> normal;
-  std::vector<glm::dvec3> directions;
-  for (int i = 0; i < count; ++i) {
-    directions.push_back(glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))));
-  }
-  return directions;
-}
+constexpr double kZero = 1e-12;  // relative to the largest entry: rounding of double sums of order 1
 
 /// Sums and differences of inputs, one row each with entries -1, 0, 1; rows are orthogonal.
 Matrix mirrored_coordinates(int inputs, const std::vector<SignedPermutation>& mirrors) {
@@ -80,36 +68,6 @@ int parity_class(std::span<const double> coordinate, const std::vector<SignedPer
 }
 
 }  // namespace
-
-SignedPermutation mirror(const Basis& basis, int axis) {
-  const int n = basis.size();
-  const auto directions = scattered_directions(64 * n);
-  Matrix plain(static_cast<int>(directions.size()), n), mirrored = plain;
-  for (int q = 0; q < plain.rows(); ++q) {
-    glm::dvec3 w = directions[static_cast<std::size_t>(q)];
-    basis.evaluate(w, plain.row(q));
-    w[axis] = -w[axis];
-    basis.evaluate(w, mirrored.row(q));
-  }
-  SignedPermutation result;
-  for (int i = 0; i < n; ++i) {
-    int found = -1, found_sign = 0;
-    for (int j = 0; j < n && found < 0; ++j) {
-      for (const int sign : {1, -1}) {
-        bool same = true;
-        for (int q = 0; q < plain.rows() && same; ++q) {
-          same = std::abs(mirrored(q, i) - sign * plain(q, j)) < kSameFunction;
-        }
-        if (same) found = j, found_sign = sign;
-        if (same) break;
-      }
-    }
-    if (found < 0) return {};
-    result.target.push_back(found);
-    result.sign.push_back(found_sign);
-  }
-  return result;
-}
 
 std::string LinearCode::name(const std::string& expression, const OperationCount& cost) {
   const auto [entry, fresh] = names_.emplace(expression, fmt::format("v{}", names_.size()));
@@ -217,6 +175,18 @@ std::vector<std::string> LinearCode::product(const Matrix& rows, const std::vect
     outputs.push_back(row.empty() ? "0.0f" : row);
   }
   return outputs;
+}
+
+std::vector<std::string> fields(const std::string& name, int count) {
+  std::vector<std::string> result;
+  for (int i = 0; i < count; ++i) result.push_back(fmt::format("{}.c{}", name, i));
+  return result;
+}
+
+std::string macro_text(const std::string& name, const std::string& statements) {
+  std::string text = "#define " + name;
+  for (const char c : statements) text += c == '\n' ? std::string(" \\\n") : std::string(1, c);
+  return text + "\n\n";
 }
 
 }  // namespace clpv

@@ -10,22 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "basis/basis.hpp"
 #include "basis/matrix.hpp"
+#include "pipeline/mirrors.hpp"
 
 namespace clpv {
-
-/// Input i turns into sign[i] times input target[i]; its own inverse.
-struct SignedPermutation {
-  std::vector<int> target;
-  std::vector<int> sign;
-  bool exists() const { return !target.empty(); }
-};
-
-/// What the mirror of `axis` (0 x, 1 y, 2 z) does to the functions of a basis: b_i(mirrored w) = sign[i]
-/// b_target[i](w). Found numerically; does not exist() where the basis is not closed under it (srbf4 in y,
-/// say).
-SignedPermutation mirror(const Basis& basis, int axis);
 
 /// Floating-point operations a piece of generated code executes.
 struct OperationCount {
@@ -61,5 +49,12 @@ class LinearCode {
   std::map<std::string, std::string> names_;
   OperationCount operations_;
 };
+
+/// "name.c0", "name.c1", ... : the scalars of a struct cell_macros() declares.
+std::vector<std::string> fields(const std::string& name, int count);
+
+/// `statements` as a macro. Not a function: compilers that pass structs in vector registers would keep work-items from
+/// being vectorised.
+std::string macro_text(const std::string& name, const std::string& statements);
 
 }  // namespace clpv

@@ -7,6 +7,10 @@
 namespace clpv {
 namespace {
 
+// Operations of a step up to which a work-item serves all three channels, to read a cell's transmittance once. Beyond,
+// it is the code that counts: compilers take long over it, and registers run out.
+constexpr int kLargestShared = 400;
+
 constexpr std::size_t kWidestGroup =
     64;  // enough to fill 16-wide vectors; wider groups gain nothing on a CPU
 
@@ -30,9 +34,12 @@ Propagator::Form& Propagator::form(bool first, bool blocking) {
     slot.emplace();
     const State source = first ? State::coefficients : options_.state;
     slot->source = transport_source(basis_, transport_, {source, options_.state, blocking});
+    slot->channels = blocking && slot->source.arrive.flops() <= kLargestShared ? 3 : 1;
     ProgramSource program{"propagate.cl", {}, slot->source.text};
+    if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
     program.literals = {{"CLPV_GRID", std::to_string(options_.grid)},
                         {"CLPV_BLOCKING", blocking ? "1" : "0"},
+                        {"CLPV_CHANNELS", std::to_string(slot->channels)},
                         {"CLPV_LOCAL_X", std::to_string(options_.local[0])},
                         {"CLPV_LOCAL_Y", std::to_string(options_.local[1])}};
     slot->step = session_.kernel(program, "propagate_step");
@@ -41,20 +48,27 @@ Propagator::Form& Propagator::form(bool first, bool blocking) {
   return *slot;
 }
 
+void Propagator::transmit(const Volume& geometry) {
+  if (!transmitter_) {
+    transmitter_ = std::make_unique<Transmitter>(session_, basis_, transport_, options_.grid, options_.local);
+  }
+  transmitter_->transmit(geometry);
+}
+
 cl::NDRange Propagator::per_channel() const {
   const auto n = static_cast<std::size_t>(options_.grid);
   return {n, n, 3 * n};
 }
 
 void Propagator::run_step(Form& form, bool blocking, const cl::Buffer& source, const cl::Buffer& target,
-                          const cl::Buffer& sum_so_far, const cl::Buffer& sum, const Volume* geometry) {
+                          const cl::Buffer& sum_so_far, const cl::Buffer& sum) {
   form.step.setArg(0, source);
   form.step.setArg(1, target);
   form.step.setArg(2, sum_so_far);
   form.step.setArg(3, sum);
-  if (blocking) form.step.setArg(4, geometry->buffer());
+  if (blocking) form.step.setArg(4, transmitter_->transmittance().buffer());
   const auto n = static_cast<std::size_t>(options_.grid);
-  session_.launch(form.step, blocking ? cl::NDRange(n, n, n) : per_channel(),
+  session_.launch(form.step, form.channels == 3 ? cl::NDRange(n, n, n) : per_channel(),
                   {options_.local[0], options_.local[1], 1});
 }
 
@@ -68,6 +82,7 @@ void Propagator::run_expand(Form& form, const cl::Buffer& base, const cl::Buffer
 
 void Propagator::propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step) {
   const bool fluxes = options_.state == State::fluxes;
+  if (volumes.geometry != nullptr && iterations > 1) transmit(*volumes.geometry);
   if (fluxes) sum_->clear(session_);
   if (iterations == 0)
     session_.copy(volumes.injected.buffer(), volumes.accumulated.buffer(), volumes.accumulated.bytes());
@@ -90,7 +105,7 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
     const cl::Buffer& sum = !is_late ? total : fluxes ? late_sum_->buffer() : volumes.late->buffer();
     const cl::Buffer& sum_so_far = step == 1 && !fluxes ? volumes.injected.buffer() : sum;
     Form& current = form(step == 1, blocking);
-    run_step(current, blocking, *source, target.buffer(), sum_so_far, sum, volumes.geometry);
+    run_step(current, blocking, *source, target.buffer(), sum_so_far, sum);
     source = &target.buffer();
     last = &current;
     if (after_step) after_step(step, target);

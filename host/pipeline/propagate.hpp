@@ -10,6 +10,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
+#include "pipeline/transmit.hpp"
 #include "pipeline/transport_source.hpp"
 #include "pipeline/volume.hpp"
 
@@ -44,17 +45,21 @@ class Propagator {
   /// Light does not block in the first step, in which it leaves the surfaces it was injected at.
   void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
 
-  /// Operations a cell and channel, and a cell's transmittance, of a later step: what the kernel executes.
+  /// What a later step's kernel executes.
   const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
+  /// Null until something has blocked.
+  const Transmitter* transmitter() const { return transmitter_.get(); }
 
  private:
   struct Form {
     TransportSource source;
     cl::Kernel step, expand;
+    int channels = 1;  ///< a work-item of `step` serves
   };
   Form& form(bool first, bool blocking);
+  void transmit(const Volume& geometry);
   void run_step(Form& form, bool blocking, const cl::Buffer& source, const cl::Buffer& target,
-                const cl::Buffer& sum_so_far, const cl::Buffer& sum, const Volume* geometry);
+                const cl::Buffer& sum_so_far, const cl::Buffer& sum);
   void run_expand(Form& form, const cl::Buffer& base, const cl::Buffer& sum, const cl::Buffer& accumulated);
   cl::NDRange per_channel() const;
 
@@ -62,8 +67,9 @@ class Propagator {
   const Basis& basis_;
   const Transport& transport_;
   PropagateOptions options_;
-  std::optional<Form> forms_[2][2];         ///< [first step][blocking]
-  std::unique_ptr<Volume> travelling_[2];   ///< ping-pong
+  std::optional<Form> forms_[2][2];        ///< [first step][blocking]
+  std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
+  std::unique_ptr<Transmitter> transmitter_;
   std::unique_ptr<Volume> sum_, late_sum_;  ///< of the six fluxes, or of late coefficients
 };
 

@@ -24,13 +24,12 @@ struct StepForm {
 /// Generated text and its cost. The text defines, for kernels/propagate.cl, the structs Source, Target and Coefficients
 /// with their counts and CLPV_EACH_ macros (cell_macros), and
 ///   CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz): light arrives from the cell at (x + dx, y + dy, z + dz)
-///   CLPV_TRANSMITTANCE        with blocking: declares t0, t1, ... = 1 - B of each way, from corners g0 .. g7
-///   CLPV_ARRIVE               declares `gained`, what the cell gains from its neighbours a0, a1, ... (and t0, t1, ...)
+///   CLPV_ARRIVE               declares `gained`, what the cell gains from its neighbours a0, a1, ... ; with blocking
+///                             through what lets light pass, t.c0, t.c1, ... (transmit.hpp)
 ///   clpv_expand(sum)          the coefficients of a sum of gains
 struct TransportSource {
   std::string text;
-  OperationCount arrive;         ///< a cell and channel
-  OperationCount transmittance;  ///< a cell
+  OperationCount arrive;  ///< a cell and channel
   int source_count = 0, target_count = 0, neighbours = 0;
 };
 

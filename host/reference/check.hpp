@@ -25,7 +25,8 @@ using CheckResults = std::vector<CheckResult>;
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
 CheckResults check_inject(Session& session);
-CheckResults check_propagate(Session& session);
+/// `thorough`: every basis with every transport and state; minutes, for the kernels there are to build.
+CheckResults check_propagate(Session& session, bool thorough = false);
 CheckResults check_gather(Session& session);
 CheckResults check_shade(Session& session);
 

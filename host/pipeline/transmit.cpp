@@ -1,0 +1,131 @@
+#include "pipeline/transmit.hpp"
+
+#include <fmt/format.h>
+
+namespace clpv {
+namespace {
+
+constexpr int kCorners = 8;
+
+struct Generated {
+  LinearCode code;
+  std::string assignments;  // to ways.c0, ways.c1, ...
+};
+
+/// Which of the cell's 8 corners (bit 0 x, 1 y, 2 z) lie on the side `normal` points to.
+std::vector<int> corners_towards(const glm::ivec3& normal) {
+  std::vector<int> result;
+  for (int c = 0; c < kCorners; ++c) {
+    bool on = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (normal[axis] != 0) on = on && ((c >> axis) & 1) == (normal[axis] > 0 ? 1 : 0);
+    }
+    if (on) result.push_back(c);
+  }
+  return result;
+}
+
+/// Names of the mean blocker over the corners towards `normal`, one a coefficient.
+std::vector<std::string> mean_blocker(LinearCode& code, const glm::ivec3& normal, int n) {
+  const std::vector<int> corners = corners_towards(normal);
+  std::vector<std::string> means;
+  for (int i = 0; i < n; ++i) {
+    std::vector<std::string> parts;
+    for (const int c : corners) parts.push_back(fmt::format("g{}.c{}", c, i));
+    while (parts.size() > 1) {
+      std::vector<std::string> halved;
+      for (std::size_t p = 0; p < parts.size(); p += 2) halved.push_back(code.add(parts[p], parts[p + 1]));
+      parts = halved;
+    }
+    means.push_back(parts.front());  // the sum; the rows carry 1 / number of corners
+  }
+  return means;
+}
+
+/// Gives ways.c<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker looked up in its direction
+/// in the mean over the corners towards `normal`.
+void add_ways(Generated& out, const Basis& basis, const Mirrors& mirrors, const glm::ivec3& normal,
+              const std::vector<glm::dvec3>& directions, const std::vector<int>& ways) {
+  LinearCode& code = out.code;
+  const auto corners = static_cast<double>(corners_towards(normal).size());
+  Matrix rows(static_cast<int>(directions.size()), basis.size());
+  for (int r = 0; r < rows.rows(); ++r) {
+    basis.evaluate(directions[static_cast<std::size_t>(r)], rows.row(r));
+    for (double& value : rows.row(r)) value *= 0.5 / corners;
+  }
+  const int moving = (normal.x != 0) + (normal.y != 0) + (normal.z != 0);
+  const auto symmetries = moving == 1 ? mirrors.across(axis_of(normal)) : std::vector<SignedPermutation>{};
+  const auto halves = code.product(rows, mean_blocker(code, normal, basis.size()), symmetries);
+  for (std::size_t r = 0; r < ways.size(); ++r) {
+    const std::string through =
+        code.name(fmt::format("0.5f + (fabs(0.5f - {0}) - fabs({0}))", halves[r]), {.additions = 3});
+    out.assignments += fmt::format("  ways.c{} = {};\n", ways[r], through);
+  }
+}
+
+/// The 30 ways to faces: five lead to each face, whose corners they share.
+int add_faces(Generated& out, const Basis& basis, const FaceTransport& scheme) {
+  const Mirrors mirrors = mirrors_of(basis);
+  for (const glm::ivec3& normal : kAxes) {
+    std::vector<glm::dvec3> directions;
+    std::vector<int> ways;
+    for (std::size_t f = 0; f < scheme.faces.size(); ++f) {
+      if (scheme.faces[f].normal != normal) continue;
+      directions.push_back(-scheme.faces[f].direction);
+      ways.push_back(static_cast<int>(f));
+    }
+    add_ways(out, basis, mirrors, normal, directions, ways);
+  }
+  return static_cast<int>(scheme.faces.size());
+}
+
+/// One way a neighbour, through the face, edge or corner that the two cells share.
+int add_neighbours(Generated& out, const Basis& basis, const OperatorTransport& scheme) {
+  const Mirrors mirrors = mirrors_of(basis);
+  int way = 0;
+  for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
+    if (neighbour.offset == glm::ivec3(0)) continue;
+    add_ways(out, basis, mirrors, -neighbour.offset, {-neighbour.direction}, {way++});
+  }
+  return way;
+}
+
+}  // namespace
+
+TransmitSource transmit_source(const Basis& basis, const Transport& transport) {
+  Generated out;
+  TransmitSource result;
+  const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
+  result.ways = faces != nullptr ? add_faces(out, basis, *faces)
+                                 : add_neighbours(out, basis, std::get<OperatorTransport>(transport.scheme));
+  result.operations = out.code.operations();
+  result.text = coefficient_macros(basis.size()) + way_macros(result.ways) +
+                macro_text("CLPV_TRANSMITTANCE", "\n" + out.code.text() + "  Ways ways;\n" + out.assignments);
+  return result;
+}
+
+std::string way_macros(int ways) {
+  return fmt::format("#define CLPV_WAYS {}\n", ways) + cell_macros("Ways", "WAY", ways);
+}
+
+Transmitter::Transmitter(Session& session, const Basis& basis, const Transport& transport, int grid,
+                         const std::array<std::size_t, 2>& local)
+    : session_(session), grid_(grid), local_(local) {
+  const TransmitSource source = transmit_source(basis, transport);
+  operations_ = source.operations;
+  transmittance_ = std::make_unique<Volume>(session, VolumeShape{grid, source.ways, 1}, "transmittance");
+  ProgramSource program{"transmit.cl", {}, source.text};
+  program.literals = {{"CLPV_GRID", std::to_string(grid)},
+                      {"CLPV_LOCAL_X", std::to_string(local[0])},
+                      {"CLPV_LOCAL_Y", std::to_string(local[1])}};
+  kernel_ = session.kernel(program, "transmit");
+}
+
+void Transmitter::transmit(const Volume& geometry) {
+  kernel_.setArg(0, geometry.buffer());
+  kernel_.setArg(1, transmittance_->buffer());
+  const auto n = static_cast<std::size_t>(grid_);
+  session_.launch(kernel_, {n, n, n}, {local_[0], local_[1], 1});
+}
+
+}  // namespace clpv
