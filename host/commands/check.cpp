@@ -28,10 +28,9 @@ const std::vector<Stage>& stages() {
     return [check](Session& session, bool) { return check(session); };
   };
   static const std::vector<Stage> all = {
-      {"sizes", plain(reference::check_sizes)},         {"rasterize", plain(reference::check_rasterize)},
-      {"rasterize", plain(reference::check_rasterize)}, {"inject", plain(reference::check_inject)},
-      {"propagate", reference::check_propagate},        {"gather", plain(reference::check_gather)},
-      {"shade", plain(reference::check_shade)},
+      {"sizes", plain(reference::check_sizes)},   {"rasterize", plain(reference::check_rasterize)},
+      {"inject", plain(reference::check_inject)}, {"propagate", reference::check_propagate},
+      {"gather", plain(reference::check_gather)}, {"shade", plain(reference::check_shade)},
   };
   return all;
 }
