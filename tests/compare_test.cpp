@@ -2,23 +2,18 @@
 #include "image/compare.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
+#include "run_program.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Every pixel (r, g, b, 1).
 Image plain(int width, int height, float r, float g, float b) {
@@ -163,26 +158,17 @@ TEST(Compare, DifferenceImage) {
 
 class CompareCommand : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(CLPV_TEST_DIR) /
-              ("compare_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  /// Runs `clpv compare` and returns its exit code.
+  int run(const std::string& arguments) {
+    outcome_ = test::run(std::string(CLPV_PROGRAM) + " compare " + arguments);
+    return outcome_.exit_code;
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  nlohmann::json output() const { return nlohmann::json::parse(outcome_.out); }
 
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-
-  /// Exit code; stdout goes to out.json.
-  int run(const std::string& arguments) const {
-    const std::string command = std::string(CLPV_PROGRAM) + " compare " + arguments + " > " +
-                                file("out.json") + " 2> " + file("err.txt");
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  nlohmann::json output() const { return nlohmann::json::parse(std::ifstream(file("out.json"))); }
-
-  fs::path folder_;
+  test::TemporaryFolder folder_;
+  test::Outcome outcome_;
 };
 
 TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {

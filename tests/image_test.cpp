@@ -4,11 +4,10 @@
 
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "image/image_io.hpp"
+#include "run_program.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
 
@@ -19,14 +18,6 @@ namespace fs = std::filesystem;
 
 class ImageFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(CLPV_TEST_DIR) /
-              ("image_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// What read_image says about `bytes` under `name`.
   std::string refusal(const std::string& name, const std::string& bytes) {
     write_file(folder_ / name, bytes);
@@ -44,13 +35,11 @@ class ImageFiles : public testing::Test {
     return {};
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
-std::string content(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using test::read_file;
 
 /// Values of many magnitudes, none equal.
 Image sample(int width, int height, std::vector<std::string> channels) {
@@ -113,16 +102,16 @@ TEST_F(ImageFiles, SameImageSameBytes) {
   Image image = sample(16, 16, {"R", "G", "B", "A"});
   image.metadata = {{"basis", "sh2"}};
   write_exr(folder_ / "a.exr", image);
-  const std::string first = content(folder_ / "a.exr");
+  const std::string first = read_file(folder_ / "a.exr");
   // Two writes within one second would not show a time stamp: the stamp must be the fixed one.
   EXPECT_NE(first.find("1970:01:01 00:00:00"), std::string::npos);
   write_exr(folder_ / "b.exr", image);
-  EXPECT_EQ(first, content(folder_ / "b.exr"));
+  EXPECT_EQ(first, read_file(folder_ / "b.exr"));
   image.encoding = Encoding::srgb;
   write_png(folder_ / "a.png", image);
   write_png(folder_ / "b.png", image);
-  EXPECT_EQ(content(folder_ / "a.png"), content(folder_ / "b.png"));
-  EXPECT_EQ(content(folder_ / "a.png").find("tIME"), std::string::npos);
+  EXPECT_EQ(read_file(folder_ / "a.png"), read_file(folder_ / "b.png"));
+  EXPECT_EQ(read_file(folder_ / "a.png").find("tIME"), std::string::npos);
 }
 
 TEST_F(ImageFiles, PngRoundsToBytesAndKeepsAlphaApart) {
@@ -161,7 +150,8 @@ TEST_F(ImageFiles, RefusesWhatIsNoImageOrAnotherThanItsName) {
   EXPECT_NE(refusal("a.txt", "x").find(".exr, .png and .hdr"), std::string::npos);
   Image image = sample(4, 4, {"R", "G", "B"});
   write_exr(folder_ / "good.exr", image);
-  EXPECT_NE(refusal("exr.png", content(folder_ / "good.exr")).find("content is openexr"), std::string::npos);
+  EXPECT_NE(refusal("exr.png", read_file(folder_ / "good.exr")).find("content is openexr"),
+            std::string::npos);
 }
 
 TEST_F(ImageFiles, RefusesTruncatedFiles) {
@@ -171,7 +161,7 @@ TEST_F(ImageFiles, RefusesTruncatedFiles) {
   for (float& value : image.pixels) value /= 400;
   write_png(folder_ / "good.png", image);
   for (const std::string name : {"good.exr", "good.png"}) {
-    const std::string bytes = content(folder_ / name);
+    const std::string bytes = read_file(folder_ / name);
     for (const double share : {0.02, 0.1, 0.5, 0.9, 0.98}) {
       refusal("cut." + name, bytes.substr(0, static_cast<std::size_t>(share * bytes.size())));
     }
@@ -185,7 +175,7 @@ TEST_F(ImageFiles, RefusesHugeDimensionsBeforeTakingMemory) {
   Image image = sample(4, 4, {"R", "G", "B"});
   image.encoding = Encoding::srgb;
   write_png(folder_ / "small.png", image);
-  std::string png = content(folder_ / "small.png");
+  std::string png = read_file(folder_ / "small.png");
   set_big_endian(png, 16, 60000);
   set_big_endian(png, 20, 60000);
   set_big_endian(png, 29, crc(std::string_view(png).substr(12, 17)));

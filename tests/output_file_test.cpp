@@ -7,9 +7,9 @@
 
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 
+#include "run_program.hpp"
 #include "support/error.hpp"
 #include "support/npy.hpp"
 #include "support/progress.hpp"
@@ -22,25 +22,15 @@ namespace fs = std::filesystem;
 
 class OutputFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(CLPV_TEST_DIR) /
-              ("output_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::size_t entries() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
-std::string content(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using test::read_file;
 
 template <typename Action>
 std::string message_of(ExitCode code, Action&& action) {
@@ -58,7 +48,7 @@ TEST_F(OutputFile, ReplacesWholeFilesAndLeavesNothingBeside) {
   const fs::path path = folder_ / "out.txt";
   write_file(path, std::string_view("a longer first content"));
   write_file(path, std::string_view("second"));
-  EXPECT_EQ(content(path), "second");
+  EXPECT_EQ(read_file(path), "second");
   EXPECT_EQ(entries(), 1u);
 }
 
@@ -67,7 +57,7 @@ TEST_F(OutputFile, CheckLeavesNothingAndKeepsWhatIsThere) {
   EXPECT_EQ(entries(), 0u);
   write_file(folder_ / "old.txt", std::string_view("old"));
   check_writable(folder_ / "old.txt");
-  EXPECT_EQ(content(folder_ / "old.txt"), "old");
+  EXPECT_EQ(read_file(folder_ / "old.txt"), "old");
   EXPECT_EQ(entries(), 1u);
 }
 
@@ -91,7 +81,7 @@ TEST_F(OutputFile, ANameWithoutFolderGoesIntoTheCurrentOne) {
   check_writable("plain.txt");
   write_file("plain.txt", std::string_view("x"));
   fs::current_path(before);
-  EXPECT_EQ(content(folder_ / "plain.txt"), "x");
+  EXPECT_EQ(read_file(folder_ / "plain.txt"), "x");
 }
 
 TEST_F(OutputFile, FollowsASymbolicLink) {
@@ -99,7 +89,7 @@ TEST_F(OutputFile, FollowsASymbolicLink) {
   fs::create_symlink("target", folder_ / "link");
   write_file(folder_ / "link", std::string_view("new"));
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
-  EXPECT_EQ(content(folder_ / "target"), "new");
+  EXPECT_EQ(read_file(folder_ / "target"), "new");
 }
 
 TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
@@ -116,7 +106,7 @@ TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(message.find(path.string()), std::string::npos);
-  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(entries(), 1u);
 }
 
@@ -127,19 +117,19 @@ TEST_F(OutputFile, NpyComesBackAndHasNumPysHeader) {
   const NpyArray array = read_npy(folder_ / "a.npy");
   EXPECT_EQ(array.values, values);
   EXPECT_EQ(array.shape, std::vector<std::size_t>({3, 1, 2}));
-  const std::string file = content(folder_ / "a.npy");
+  const std::string file = read_file(folder_ / "a.npy");
   EXPECT_EQ((file.size() - values.size() * 4) % 64, 0u);
   EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
   EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
   write_npy(folder_ / "b.npy", values, line);
-  EXPECT_NE(content(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
+  EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
   EXPECT_EQ(read_npy(folder_ / "b.npy").shape, std::vector<std::size_t>({6}));
 }
 
 TEST_F(OutputFile, NpyRefusesWhatItCannotHold) {
   const std::size_t shape[] = {4};
   write_npy(folder_ / "a.npy", std::vector<float>(4), shape);
-  const std::string good = content(folder_ / "a.npy");
+  const std::string good = read_file(folder_ / "a.npy");
   const auto refused = [&](std::string bytes) {
     write_file(folder_ / "bad.npy", bytes);
     message_of(ExitCode::bad_input, [&] { read_npy(folder_ / "bad.npy"); });
@@ -161,7 +151,7 @@ TEST_F(OutputFile, VtiDescribesTheGridAndItsBytes) {
   for (std::size_t i = 0; i < second.size(); ++i) second[i] = -static_cast<float>(i);
   const VtiArray arrays[] = {{"a<b", 1, first}, {"rgb", 3, second}};
   write_vti(folder_ / "v.vti", {{2, 3, 4}, {-1.5, 0, 2}, {0.25, 0.25, 0.5}}, arrays);
-  const std::string file = content(folder_ / "v.vti");
+  const std::string file = read_file(folder_ / "v.vti");
   EXPECT_NE(file.find("WholeExtent=\"0 2 0 3 0 4\" Origin=\"-1.5 0 2\" Spacing=\"0.25 0.25 0.5\""),
             std::string::npos);
   EXPECT_NE(file.find("Name=\"a&lt;b\" NumberOfComponents=\"1\" format=\"appended\" offset=\"0\""),

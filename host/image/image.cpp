@@ -53,7 +53,7 @@ Image extract_layer(const Image& image, const std::string& layer, const std::str
   }
   if (chosen.empty()) {
     std::vector<std::string> there;
-    for (const std::string& name : layers(image)) there.push_back("'" + name + "'");
+    for (const std::string& name : layers(image)) there.push_back(fmt::format("'{}'", name));
     throw Error(ExitCode::bad_input, "{}: no layer '{}'; there are: {}", source, layer,
                 fmt::join(there, ", "));
   }

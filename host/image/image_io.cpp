@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 
 #include "support/error.hpp"
@@ -63,7 +64,8 @@ std::string format_of_name(const fs::path& path) {
 }
 
 std::string checked_format(const fs::path& path, const std::vector<unsigned char>& bytes) {
-  const std::string named = format_of_name(path), found = format_of_content(bytes);
+  std::string named = format_of_name(path);
+  const std::string found = format_of_content(bytes);
   if (named.empty()) {
     refuse(path, fmt::format("extension '{}'; allowed are .exr, .png and .hdr", path.extension().string()));
   }
@@ -162,7 +164,7 @@ void write_png(const fs::path& path, const Image& image) {
   std::vector<std::uint8_t> pixels(image.pixels.size());
   std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(), [](float value) {
     const float shown = value > 0 ? std::min(value, 1.0f) : 0.0f;  // a NaN, which no byte can hold, is black
-    return static_cast<std::uint8_t>(shown * 255.0f + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(shown * 255.0f));
   });
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels), OIIO::TypeUInt8);
   spec.channelnames = image.channels;

@@ -67,7 +67,7 @@ fs::path resolve(const fs::path& path) {
   if (path.filename().empty()) refuse(path, "that names no file");
   std::error_code error;
   // Absolute first: of a relative path that does not exist yet, weakly_canonical would leave the folder out.
-  const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+  fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
   if (error) refuse(path, error.message());
   if (!fs::is_directory(target.parent_path(), error)) {
     refuse(path, fmt::format("there is no folder {}", target.parent_path().string()));
