@@ -23,8 +23,10 @@ inline constexpr std::uint32_t kImageSide = 16384;
 inline constexpr std::uint64_t kTexelBytes = 1ull << 30;
 inline constexpr std::size_t kTextures = 4096;
 
-// Entries of any one array of the JSON (nodes, meshes, accessors, ...), and depth of the node tree.
-inline constexpr std::size_t kListEntries = 1u << 20;
+// Entries of any one array of the JSON (nodes, meshes, accessors, ...), materials, and depth of the node tree. A
+// material takes tinygltf some 3 kB.
+inline constexpr std::size_t kListEntries = 1u << 18;
+inline constexpr std::size_t kMaterials = 1u << 14;
 inline constexpr int kNodeDepth = 1024;
 
 // Geometry after instancing: 16 Mi vertices of 48 bytes are 768 MiB, 16 Mi triangles of 16 bytes are 256 MiB.

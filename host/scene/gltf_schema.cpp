@@ -39,12 +39,13 @@ Rules document_rules() {
   using namespace rule;
   Rules rules = {object("").must(), object("/asset").must(), text("/asset/version").must(),
                  object("/extensions")};
-  for (const char* name : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "materials",
-                           "textures", "images", "samplers", "animations", "skins"}) {
+  for (const char* name : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "textures",
+                           "images", "samplers", "animations", "skins"}) {
     rules.push_back(list(std::string("/") + name, 0, bounds::kListEntries));
     rules.push_back(object(std::string("/") + name + "/*"));
   }
-  append(rules, {list("/cameras", 0, bounds::kCameras), object("/cameras/*"), object(kPunctual),
+  append(rules, {list("/materials", 0, bounds::kMaterials), object("/materials/*"),
+                 list("/cameras", 0, bounds::kCameras), object("/cameras/*"), object(kPunctual),
                  list(kPunctual + "/lights", 0, bounds::kLights), object(kPunctual + "/lights/*")});
   for (const char* name : {"extensionsUsed", "extensionsRequired"}) {
     rules.push_back(list(std::string("/") + name, 0, 1024));

@@ -64,7 +64,7 @@ std::size_t list_size(const json& document, const std::string& place) {
   return document.contains(pointer) && document.at(pointer).is_array() ? document.at(pointer).size() : 0;
 }
 
-std::string allowed_values(const Rule& rule, const json& document) {
+std::string allowed_values(const Rule& rule, std::size_t into_size) {
   switch (rule.shape) {
     case Shape::object:
       return "an object";
@@ -82,11 +82,9 @@ std::string allowed_values(const Rule& rule, const json& document) {
       return fmt::format("a number from {} to {}", rule.least, rule.most);
     case Shape::vector:
       return fmt::format("an array of {} numbers from {} to {}", rule.size, rule.least, rule.most);
-    case Shape::index: {
-      const std::size_t size = list_size(document, rule.into);
-      return size == 0 ? fmt::format("none, since {} is empty", rule.into)
-                       : fmt::format("an index into {}, 0 to {}", rule.into, size - 1);
-    }
+    case Shape::index:
+      return into_size == 0 ? fmt::format("none, since {} is empty", rule.into)
+                            : fmt::format("an index into {}, 0 to {}", rule.into, into_size - 1);
   }
   return {};
 }
@@ -95,7 +93,7 @@ bool in_range(const Rule& rule, const json& value) {
   return value.is_number() && value.get<double>() >= rule.least && value.get<double>() <= rule.most;
 }
 
-bool obeys(const Rule& rule, const json& value, const json& document) {
+bool obeys(const Rule& rule, const json& value, std::size_t into_size) {
   const auto one_of = [](const auto& values, const auto& wanted) {
     return values.empty() || std::find(values.begin(), values.end(), wanted) != values.end();
   };
@@ -117,7 +115,7 @@ bool obeys(const Rule& rule, const json& value, const json& document) {
       return value.is_array() && value.size() == rule.size &&
              std::all_of(value.begin(), value.end(), [&](const json& each) { return in_range(rule, each); });
     case Shape::index:
-      return value.is_number_unsigned() && value.get<std::uint64_t>() < list_size(document, rule.into);
+      return value.is_number_unsigned() && value.get<std::uint64_t>() < into_size;
   }
   return false;
 }
@@ -136,45 +134,67 @@ std::vector<std::string> segments_of(const std::string& place) {
 class Checker {
  public:
   Checker(const json& document, const Rule& rule, const std::string& file)
-      : document_(document), rule_(rule), file_(file), segments_(segments_of(rule.place)) {}
+      : document_(document),
+        rule_(rule),
+        file_(file),
+        segments_(segments_of(rule.place)),
+        into_size_(rule.shape == Shape::index ? list_size(document, rule.into) : 0) {}
 
-  void run() { follow(document_, 0, ""); }
+  void run() { follow(document_, 0); }
 
  private:
-  void follow(const json& value, std::size_t level, const std::string& place) const {
-    if (level == segments_.size()) return check(value, place);
+  void follow(const json& value, std::size_t level) {
+    if (level == segments_.size()) return check(value);
     const std::string& segment = segments_[level];
-    if (segment == "*") {
-      if (value.is_array()) {
-        for (std::size_t i = 0; i < value.size(); ++i)
-          follow(value[i], level + 1, place + "/" + std::to_string(i));
-      } else if (value.is_object()) {
-        for (const auto& [key, member] : value.items()) follow(member, level + 1, pointer_to(place, key));
-      }
+    if (segment == "*" && value.is_array()) {
+      for (std::size_t i = 0; i < value.size(); ++i) step(value[i], level, {nullptr, i});
+    } else if (segment == "*" && value.is_object()) {
+      for (const auto& [key, member] : value.items()) step(member, level, {&key, 0});
     } else if (value.is_object()) {
       if (const auto member = value.find(segment); member != value.end()) {
-        follow(*member, level + 1, pointer_to(place, segment));
+        step(*member, level, {&segment, 0});
       } else if (rule_.required && level + 1 == segments_.size()) {
-        refuse(file_, pointer_to(place, segment), "nothing", allowed_values(rule_, document_));
+        refuse(file_, pointer_to(place(), segment), "nothing", allowed_values(rule_, into_size_));
       }
     }
   }
 
-  void check(const json& value, const std::string& place) const {
-    if (obeys(rule_, value, document_)) return;
+  /// One step down: a key, or an index where there is none. Spelt out only in a refusal; documents are large.
+  struct Step {
+    const std::string* key;
+    std::size_t index;
+  };
+
+  void step(const json& value, std::size_t level, Step taken) {
+    steps_.push_back(taken);
+    follow(value, level + 1);
+    steps_.pop_back();
+  }
+
+  std::string place() const {
+    std::string out;
+    for (const Step& taken : steps_)
+      out = pointer_to(out, taken.key ? *taken.key : std::to_string(taken.index));
+    return out;
+  }
+
+  void check(const json& value) const {
+    if (obeys(rule_, value, into_size_)) return;
     std::string found = found_value(value);
     if (rule_.shape == Shape::vector && value.is_array() && value.size() == rule_.size) {
       const auto wrong =
           std::find_if_not(value.begin(), value.end(), [&](const json& v) { return in_range(rule_, v); });
       found += " with " + found_value(*wrong);
     }
-    refuse(file_, place, found, allowed_values(rule_, document_));
+    refuse(file_, place(), found, allowed_values(rule_, into_size_));
   }
 
   const json& document_;
   const Rule& rule_;
   const std::string& file_;
   std::vector<std::string> segments_;
+  std::size_t into_size_;  ///< of the list that an index points into
+  std::vector<Step> steps_;
 };
 
 /// `pattern` is the rule place that led to `value`, `place` its pointer.
