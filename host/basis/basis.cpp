@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "basis/direction_bins.hpp"
 #include "basis/spherical_harmonics.hpp"
 #include "basis/srbf.hpp"
 #include "support/error.hpp"
@@ -11,6 +12,7 @@ namespace clpv {
 namespace {
 
 constexpr int kLeastBands = 2, kMostBands = 5;
+constexpr int kBinSides[] = {2, 4};  // bins along each edge of a cube's face
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -64,6 +66,9 @@ std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
   for (const SrbfSet& set : srbf_sets()) {
     if (name == set.name) return std::make_unique<Srbf>(name, set.centres, lambda);
   }
+  for (const int side : kBinSides) {
+    if (name == fmt::format("bins{}", 6 * side * side)) return std::make_unique<DirectionBins>(side);
+  }
   throw Error(ExitCode::usage, "there is no basis '{}'; there are {}", name, fmt::join(basis_names(), ", "));
 }
 
@@ -76,6 +81,7 @@ std::vector<std::string> basis_names() {
   std::vector<std::string> names;
   for (int bands = kLeastBands; bands <= kMostBands; ++bands) names.push_back(fmt::format("sh{}", bands));
   for (const SrbfSet& set : srbf_sets()) names.push_back(set.name);
+  for (const int side : kBinSides) names.push_back(fmt::format("bins{}", 6 * side * side));
   return names;
 }
 

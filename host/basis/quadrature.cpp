@@ -165,6 +165,15 @@ std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
   return polygons;
 }
 
+std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon) {
+  std::vector<QuadratureNode> nodes;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    const std::vector<QuadratureNode> part = nodes_of(Triangle{polygon[0], polygon[i], polygon[i + 1]});
+    nodes.insert(nodes.end(), part.begin(), part.end());
+  }
+  return nodes;
+}
+
 double solid_angle(const SphericalPolygon& polygon) {
   // Van Oosterom and Strackee, triangle by triangle of a fan.
   double sum = 0;

@@ -28,6 +28,9 @@ std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
 /// Solid angle of a polygon [sr].
 double solid_angle(const SphericalPolygon& polygon);
 
+/// 144 nodes a triangle of the polygon's fan: integrates a smooth function over a small polygon to rounding.
+std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon);
+
 /// Nodes over the polygons, fine enough that products of two basis functions and of powers of |w_x|, |w_y|,
 /// |w_z| and |w|_1 integrate to 1e-14 of their size: none crosses a coordinate plane or a crease of the
 /// basis. Throws Error(run_time) where the basis is too peaked (lambda very near 1).
