@@ -32,7 +32,6 @@ class Basis {
   /// OpenCL C that defines, for the struct `Coefficients` of N floats c0 .. c{N-1}:
   ///   static Coefficients clpv_basis(float x, float y, float z)             b_i(w), w unit
   ///   static Coefficients clpv_cosine_integrals(float x, float y, float z)  alpha_i(d), d unit
-  ///   static Coefficients clpv_project(Coefficients a)                      A^-1 a
   virtual std::string kernel_source() const = 0;
 
   /// Unit normals of the planes through the origin across which the functions jump: quadrature splits there.

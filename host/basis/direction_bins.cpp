@@ -215,9 +215,7 @@ std::string DirectionBins::kernel_cosine() const {
 }
 
 std::string DirectionBins::kernel_source() const {
-  return kernel_basis() + kernel_cosine() +
-         "static inline Coefficients clpv_project(const Coefficients a) {\n  Coefficients r;\n" +
-         product_statements(gram_inverse(), "r", "a") + "  return r;\n}\n";
+  return kernel_basis() + kernel_cosine();
 }
 
 }  // namespace clpv

@@ -55,7 +55,7 @@ double side_solid_angle() {
   return (4 * kPi / 6 - far_solid_angle()) / 4;
 }
 
-FaceTransport make_face_transport(const Basis& basis, FaceFlux flux) {
+FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeOptions& lobes) {
   FaceTransport transport;
   for (const glm::ivec3& travel : kAxes) {
     transport.faces.push_back(face_of(travel, travel));
@@ -66,9 +66,10 @@ FaceTransport make_face_transport(const Basis& basis, FaceFlux flux) {
   for (Face& face : transport.faces) {
     face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face)) : sample_of(basis, face);
   }
+  const Lobes lobe_round(basis, lobes);
   transport.lobes = Matrix(basis.size(), static_cast<int>(kAxes.size()));
   for (std::size_t a = 0; a < kAxes.size(); ++a) {
-    const std::vector<double> lobe = basis.clamped_cosine(glm::dvec3(kAxes[a]));
+    const std::vector<double> lobe = lobe_round(glm::dvec3(kAxes[a]));
     const double carried = flux == FaceFlux::exact ? basis.energy(lobe) : kPi;
     for (int i = 0; i < basis.size(); ++i) {
       transport.lobes(i, static_cast<int>(a)) = lobe[static_cast<std::size_t>(i)] / carried;

@@ -11,7 +11,7 @@ enum class FaceFlux {
   exact,    ///< integrals of b over the face's cone; lobes of unit flux
 };
 
-FaceTransport make_face_transport(const Basis& basis, FaceFlux flux);
+FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeOptions& lobes);
 
 /// Solid angles of the far face and of each of the four side faces of a neighbour, seen from the source's
 /// centre [sr].

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "basis/matrix.hpp"
 #include "support/literal.hpp"
 
 namespace clpv {
@@ -28,16 +27,6 @@ std::string horner(std::span<const double> coefficients, const std::string& x) {
   for (std::size_t i = coefficients.size() - 1; i-- > 0;) {
     text = coefficients[i] == 0 ? fmt::format("{} * {}", x, text)
                                 : fmt::format("fma({}, {}, {})", x, text, float_literal(coefficients[i]));
-  }
-  return text;
-}
-
-std::string product_statements(const Matrix& matrix, const std::string& out, const std::string& in) {
-  std::vector<std::string> names;
-  for (int j = 0; j < matrix.columns(); ++j) names.push_back(fmt::format("{}.c{}", in, j));
-  std::string text;
-  for (int i = 0; i < matrix.rows(); ++i) {
-    text += fmt::format("  {}.c{} = {};\n", out, i, sum_of_products(matrix.row(i), names));
   }
   return text;
 }

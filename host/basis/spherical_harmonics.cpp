@@ -114,8 +114,7 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
 }
 
 std::string SphericalHarmonics::kernel_source() const {
-  return kernel_function("clpv_basis", false) + kernel_function("clpv_cosine_integrals", true) +
-         "static inline Coefficients clpv_project(const Coefficients a) { return a; }\n";
+  return kernel_function("clpv_basis", false) + kernel_function("clpv_cosine_integrals", true);
 }
 
 }  // namespace clpv

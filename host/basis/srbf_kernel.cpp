@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "basis/kernel_text.hpp"
@@ -118,44 +117,11 @@ std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
   return text + "  return r;\n}\n";
 }
 
-// A^-1 of a set that is its own mirror image in the origin maps sums of opposite coefficients to sums and
-// differences to differences: half the products.
-std::string project_paired(const Basis& basis, const std::vector<Pair>& pairs) {
-  const Matrix& inverse = basis.gram_inverse();
-  std::string text;
-  std::vector<std::string> sums, differences;
-  for (const Pair& p : pairs) {
-    text +=
-        fmt::format("  const float p{0} = a.c{0} + a.c{1}, m{0} = a.c{0} - a.c{1};\n", p.centre, p.opposite);
-    sums.push_back(fmt::format("p{}", p.centre));
-    differences.push_back(fmt::format("m{}", p.centre));
-  }
-  for (const Pair& p : pairs) {
-    std::vector<double> even, odd;
-    for (const Pair& q : pairs) {
-      even.push_back((inverse(p.centre, q.centre) + inverse(p.centre, q.opposite)) / 2);
-      odd.push_back((inverse(p.centre, q.centre) - inverse(p.centre, q.opposite)) / 2);
-    }
-    text += fmt::format("  const float even{0} = {1};\n  const float odd{0} = {2};\n", p.centre,
-                        sum_of_products(even, sums), sum_of_products(odd, differences));
-    text += fmt::format("  r.c{0} = even{0} + odd{0};\n  r.c{1} = even{0} - odd{0};\n", p.centre, p.opposite);
-  }
-  return text;
-}
-
-std::string project_function(const Basis& basis, const std::vector<Pair>& pairs) {
-  const bool paired = std::ranges::all_of(pairs, [](const Pair& p) { return p.opposite >= 0; });
-  return "static inline Coefficients clpv_project(const Coefficients a) {\n  Coefficients r;\n" +
-         (paired ? project_paired(basis, pairs) : product_statements(basis.gram_inverse(), "r", "a")) +
-         "  return r;\n}\n";
-}
-
 }  // namespace
 
 std::string srbf_kernel_source(const Basis& basis, const CosineOfPoisson& cosine) {
   const std::vector<Pair> pairs = antipodal_pairs(basis);
-  return evaluate_function(basis, pairs) + cosine_function(basis, pairs, cosine) +
-         project_function(basis, pairs);
+  return evaluate_function(basis, pairs) + cosine_function(basis, pairs, cosine);
 }
 
 }  // namespace clpv

@@ -15,14 +15,14 @@ std::vector<std::string> transport_names() {
   return {"sampled", "exact", "upwind", "semi-lagrangian"};
 }
 
-Transport make_transport(const std::string& name, const Basis& basis) {
+Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes) {
   Transport transport;
   transport.name = name;
   transport.gather = Matrix::identity(basis.size());
   if (name == "sampled") {
-    transport.scheme = make_face_transport(basis, FaceFlux::sampled);
+    transport.scheme = make_face_transport(basis, FaceFlux::sampled, lobes);
   } else if (name == "exact") {
-    transport.scheme = make_face_transport(basis, FaceFlux::exact);
+    transport.scheme = make_face_transport(basis, FaceFlux::exact, lobes);
     transport.unit_flux_lobes = true;
   } else if (name == "upwind") {
     transport.scheme = make_upwind(basis, transport.gather);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "basis/rotated_lobe.hpp"
 
 namespace clpv {
 
@@ -53,8 +54,9 @@ struct Transport {
   bool unit_flux_lobes = false;
 };
 
-/// "sampled", "exact", "upwind", "semi-lagrangian". Throws Error(usage) for another name.
-Transport make_transport(const std::string& name, const Basis& basis);
+/// "sampled", "exact", "upwind", "semi-lagrangian". Operators have no lobes: `lobes` does not matter to them.
+/// Throws Error(usage) for another name.
+Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes = {});
 std::vector<std::string> transport_names();
 
 /// The six axes in the order used everywhere: +x -x +y -y +z -z.

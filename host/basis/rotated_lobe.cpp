@@ -1,0 +1,89 @@
+#include "basis/rotated_lobe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "basis/srbf.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr int kLargestTable = 1 << 20;
+
+double gram_function(const Basis& basis, double t) {
+  return 4 * std::numbers::pi * abel_poisson(t, basis.lambda() * basis.lambda());
+}
+
+}  // namespace
+
+LobeKind lobe_kind(const std::string& name) {
+  if (name == "exact") return LobeKind::exact;
+  if (name == "rotate") return LobeKind::rotate;
+  throw Error(ExitCode::usage, "there is no lobe '{}'; there are exact, rotate", name);
+}
+
+ZonalTable::ZonalTable(int size, const std::function<double(double)>& function) {
+  if (size < 2 || size > kLargestTable) {
+    throw Error(ExitCode::usage, "table size is {}; allowed: 2..{}", size, kLargestTable);
+  }
+  for (int i = 0; i < size; ++i) values_.push_back(function(-1 + 2.0 * i / (size - 1)));
+}
+
+double ZonalTable::operator()(double t) const {
+  const double place = std::floor((t + 1) / 2 * (size() - 1) + kIndexBias);
+  return values_[static_cast<std::size_t>(std::clamp(place, 0.0, size() - 1.0))];
+}
+
+ZonalTable gram_table(const Basis& basis, int size) {
+  return {size, [&](double t) { return gram_function(basis, t); }};
+}
+
+ZonalTable function_table(const Basis& basis, int size) {
+  return {size, [&](double t) { return abel_poisson(t, basis.lambda()); }};
+}
+
+std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const glm::dvec3& w) {
+  if (basis.centres().empty()) return basis.evaluate(w);
+  std::vector<double> b;
+  for (const glm::dvec3& centre : basis.centres()) b.push_back(table(glm::dot(centre, w)));
+  return b;
+}
+
+glm::dmat3 rotation_to(const glm::dvec3& axis) {
+  const double c = axis.z;
+  constexpr double kOpposite = 1e-12;
+  if (1 + c < kOpposite) return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  // Rodrigues about +z x axis = (-y, x, 0): R = c + [v]x + v v^T / (1 + c); glm's matrices are columns.
+  const glm::dvec3 v(-axis.y, axis.x, 0);
+  const double k = 1 / (1 + c);
+  return {{c + k * v.x * v.x, k * v.x * v.y, -v.y}, {k * v.x * v.y, c + k * v.y * v.y, v.x}, axis};
+}
+
+Lobes::Lobes(const Basis& basis, const LobeOptions& options)
+    : basis_(basis),
+      rotate_(options.kind == LobeKind::rotate && !basis.centres().empty()),
+      upwards_(basis.clamped_cosine({0, 0, 1})) {
+  if (!rotate_) return;
+  if (options.table_size == 0) {
+    gram_ = [&basis](double t) { return gram_function(basis, t); };
+  } else {
+    gram_ = gram_table(basis, options.table_size);
+  }
+}
+
+std::vector<double> Lobes::operator()(const glm::dvec3& axis) const {
+  if (!rotate_) return basis_.clamped_cosine(axis);
+  const glm::dmat3 rotation = rotation_to(axis);
+  const std::vector<glm::dvec3>& centres = basis_.centres();
+  std::vector<double> turned(centres.size(), 0.0);  // R c: integrals of the turned lobe times b_i
+  for (std::size_t j = 0; j < centres.size(); ++j) {
+    const glm::dvec3 moved = rotation * centres[j];
+    for (std::size_t i = 0; i < centres.size(); ++i)
+      turned[i] += gram_(glm::dot(centres[i], moved)) * upwards_[j];
+  }
+  return basis_.gram_inverse() * turned;
+}
+
+}  // namespace clpv
