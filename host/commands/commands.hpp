@@ -21,5 +21,6 @@ void add_check(CLI::App& app, Shared& shared);
 void add_compare(CLI::App& app, Shared& shared);
 void add_reference(CLI::App& app, Shared& shared);
 void add_quality(CLI::App& app, Shared& shared);
+void add_basis(CLI::App& app, Shared& shared);
 
 }  // namespace clpv

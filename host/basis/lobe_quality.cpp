@@ -1,0 +1,76 @@
+#include "basis/lobe_quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace clpv {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSpacing = kPi / 90;  // between starting points: finer than any lobe's bumps
+constexpr double kResolution = 1e-7;   // rad: where the search stops
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+// Unit direction of the largest f: the best of a grid of directions, then steps across it, ever smaller.
+glm::dvec3 highest(const std::function<double(const glm::dvec3&)>& f) {
+  glm::dvec3 best(0, 0, 1);
+  double value = f(best);
+  const auto improve = [&](const glm::dvec3& w) {
+    const double candidate = f(w);
+    if (!(candidate > value)) return false;
+    value = candidate;
+    best = w;
+    return true;
+  };
+  for (double theta = kSpacing / 2; theta < kPi; theta += kSpacing) {
+    for (double phi = 0; phi < 2 * kPi; phi += kSpacing) {
+      improve({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+    }
+  }
+  for (double step = kSpacing; step > kResolution;) {
+    bool moved = false;
+    for (const glm::ivec3& axis : kAxes) moved |= improve(glm::normalize(best + step * glm::dvec3(axis)));
+    if (!moved) step /= 2;
+  }
+  return best;
+}
+
+}  // namespace
+
+LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
+  std::vector<double> alpha(c.size()), b(c.size());
+  basis.cosine_integrals(d, alpha);
+  const double norm = 2 * kPi / 3;  // Int max(0, w . d)^2 dw
+  const double squared = norm + dot(c, basis.gram() * c) - 2 * dot(c, alpha);
+  const auto value = [&](const glm::dvec3& w) {
+    basis.evaluate(w, b);
+    return dot(c, b);
+  };
+  const glm::dvec3 peak = highest(value), pit = highest([&](const glm::dvec3&w) { return -value(w); });
+  return {std::sqrt(std::max(0.0, squared) / norm), value(pit), basis.energy(c),
+          std::atan2(glm::length(glm::cross(peak, d)), glm::dot(peak, d)) * 180 / kPi};
+}
+
+double energy_after(const Basis& basis, const FaceTransport& transport, int steps) {
+  std::vector<double> c = basis.constant();
+  const double before = basis.energy(c);
+  for (int step = 0; step < steps; ++step) {
+    std::vector<double> through(kAxes.size(), 0.0);
+    for (const Face& face : transport.faces) {
+      const auto axis = std::find(kAxes.begin(), kAxes.end(), face.normal) - kAxes.begin();
+      through[static_cast<std::size_t>(axis)] += dot(face.flux, c);
+    }
+    c = transport.lobes * through;
+  }
+  return basis.energy(c) / before;
+}
+
+}  // namespace clpv
