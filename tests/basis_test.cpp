@@ -30,7 +30,9 @@ class EveryBasis : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Basis> basis_ = make_basis(GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(Names, EveryBasis, ::testing::ValuesIn(basis_names()),
+INSTANTIATE_TEST_SUITE_P(Names, EveryBasis,
+                         ::testing::Values("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2",
+                                           "srbf8v3", "srbf14"),
                          [](const auto& info) { return info.param; });
 
 TEST_P(EveryBasis, GramMatrixAndIntegralsAreThoseOfItsFunctions) {

@@ -18,7 +18,7 @@ namespace {
 struct Options {
   std::string name, lobe = "exact", axis = "0,0,1";
   double lambda = kDefaultLambda;
-  int table_size = kDefaultTableSize;
+  int table_size = LobeOptions{}.table_size;
   bool json = false;
 };
 
@@ -31,10 +31,11 @@ glm::dvec3 unit_axis(const std::string& text) {
 }
 
 nlohmann::json describe(const Basis& basis, const Options& options, const glm::dvec3& axis) {
-  const RotatedLobe rotated(basis, options.table_size);
-  const std::vector<double> c = options.lobe == "rotate" ? rotated(axis) : basis.clamped_cosine(axis);
+  const LobeOptions lobes{lobe_kind(options.lobe), options.table_size};
+  const std::vector<double> c = Lobes(basis, lobes)(axis);
   const LobeQuality quality = lobe_quality(basis, c, axis);
-  const Transport sampled = make_transport("sampled", basis), exact = make_transport("exact", basis);
+  const Transport sampled = make_transport("sampled", basis, lobes),
+                  exact = make_transport("exact", basis, lobes);
   const auto energy = [&](const Transport& transport, int steps) {
     return energy_after(basis, std::get<FaceTransport>(transport.scheme), steps);
   };
