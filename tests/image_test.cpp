@@ -196,6 +196,17 @@ TEST_F(ImageFiles, RefusesHugeDimensionsBeforeTakingMemory) {
   EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
 }
 
+TEST_F(ImageFiles, RefusesTilesFarLargerThanTheImage) {
+  write_exr(folder_ / "small.exr", sample(4, 4, {"R"}));
+  std::string exr = read_file(folder_ / "small.exr");
+  // A scan-line file made to claim tiles: the attribute "tiles" (two sides and a level mode), and the flag in the version.
+  std::string tiles("tiles\0tiledesc\0\x09\0\0\0\x10\0\0\0\0\0\xbb\0\0", 28);
+  exr.insert(8, tiles);
+  exr[5] = static_cast<char>(exr[5] | 2);
+  const std::string message = refusal("tiles.exr", exr);
+  EXPECT_NE(message.find("tiles of 16 x 12255232"), std::string::npos) << message;
+}
+
 TEST_F(ImageFiles, UnwritablePlacesAreRunTimeErrors) {
   try {
     write_exr(folder_ / "none" / "a.exr", sample(2, 2, {"R"}));

@@ -21,6 +21,9 @@ constexpr std::string_view kMetadataPrefix = "clpv:";
 // bytes.
 constexpr const char* kFixedDate = "1970:01:01 00:00:00";
 
+// A tile may be larger than its image, but is decoded whole: one of 65535 a side would take 20 s and its memory.
+constexpr int kLargestTile = 1024;
+
 [[noreturn]] void refuse(const fs::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
 }
@@ -83,6 +86,11 @@ void check_size(const fs::path& path, const OIIO::ImageSpec& spec, const ImageLi
   }
   if (spec.nchannels < 1 || spec.nchannels > limits.channels) {
     refuse(path, fmt::format("{} channels; allowed are 1 to {}", spec.nchannels, limits.channels));
+  }
+  const int tile_side = std::max({spec.width, spec.height, kLargestTile});
+  if (spec.tile_width > tile_side || spec.tile_height > tile_side) {
+    refuse(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed are {} a side",
+                             spec.tile_width, spec.tile_height, spec.width, spec.height, tile_side));
   }
   if (spec.depth > 1 || spec.deep) refuse(path, "a volume or deep image; allowed are flat ones");
   const std::size_t bytes = sizeof(float) * spec.width * spec.height * spec.nchannels;
