@@ -15,10 +15,12 @@ enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal
 
 enum class ToneMap { none, reinhard, aces };
 
+/// The defaults are what comes closest to path tracing at about the published scheme's cost (docs/method.md,
+/// 'Two ways to use clpv').
 struct RenderOptions {
-  std::string basis = "sh2";
+  std::string basis = "srbf8v2";
   double lambda = 0.25;
-  std::string transport = "sampled";
+  std::string transport = "upwind";
   std::string state = "coefficients";
   int iterations = 8;
   int grid = 32;
@@ -29,10 +31,10 @@ struct RenderOptions {
   int shadow_size = 1024;
   bool occlusion = true;
   std::string blocking = "two-sided";
-  std::string injection = "nearest";
+  std::string injection = "trilinear";
   double gather_offset = 0.5;
-  double gather_floor = 0;
-  bool late_light = false;
+  double gather_floor = 0.15;
+  bool late_light = true;
   int width = 960, height = 540;
 
   RsmFormat rsm() const { return rsm_format == "paper" ? RsmFormat::paper : RsmFormat::float32; }

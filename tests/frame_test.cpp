@@ -1,0 +1,166 @@
+// Whole frames: the scenes of this project against what they must show, whatever the numbers inside.
+#include "pipeline/frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "image/compare.hpp"
+#include "image/image_io.hpp"
+#include "scene/load.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth = 96, kHeight = 54;
+// Another device rounds otherwise, which moves single pixels across edges of shadows and triangles.
+constexpr double kGoldenTolerance = 0.03;
+
+fs::path scene_path(const std::string& name) {
+  return fs::path(CLPV_SOURCE_DIR) / "scenes" / name;
+}
+
+fs::path sponza_model() {
+  const char* given = std::getenv("CLPV_SPONZA");
+  return given != nullptr ? fs::path(given)
+                          : fs::path(CLPV_SOURCE_DIR) / "../shared/scenes/sponza/Sponza.gltf";
+}
+
+RenderOptions small_options(const Scene& scene) {
+  RenderOptions options;
+  options.width = kWidth;
+  options.height = kHeight;
+  if (scene.cascade_size) options.cascade_size = *scene.cascade_size;
+  if (scene.cascades) options.cascades = *scene.cascades;
+  return options;
+}
+
+Image image_of(Frame& frame, Show view) {
+  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
+  image.pixels = frame.read(view);
+  return image;
+}
+
+Image render(const Scene& scene, const RenderOptions& options, Show view, const std::string& camera = {}) {
+  Session session(choose_device());
+  Frame frame(session, scene, options);
+  frame.render(scene.camera(camera));
+  return image_of(frame, view);
+}
+
+/// Mean of a channel over a box of pixels.
+double mean(const Image& image, int x0, int y0, int x1, int y1, std::size_t channel) {
+  double sum = 0;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) sum += image.at(x, y, channel);
+  }
+  return sum / ((x1 - x0) * (y1 - y0));
+}
+
+/// Holds a frame against tests/golden/NAME.exr; with CLPV_WRITE_GOLDEN set, writes it instead.
+void expect_golden(const Image& image, const std::string& name) {
+  const fs::path path = fs::path(CLPV_SOURCE_DIR) / "tests/golden" / (name + ".exr");
+  if (std::getenv("CLPV_WRITE_GOLDEN") != nullptr) return write_exr(path, image);
+  const Comparison result = compare(image, "this run", read_image(path), path.string());
+  EXPECT_LT(result.nrmse, kGoldenTolerance) << path;
+}
+
+TEST(Frame, AtriumLooksAsItDid) {
+  const Scene scene = load_scene(scene_path("atrium.json"));
+  expect_golden(render(scene, small_options(scene), Show::full), "atrium");
+}
+
+TEST(Frame, CornellBoxLooksAsItDid) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  expect_golden(render(scene, small_options(scene), Show::full), "cornell");
+}
+
+TEST(Frame, SponzaLooksAsItDid) {
+  if (!fs::exists(sponza_model())) GTEST_SKIP() << "the Crytek Sponza is not at " << sponza_model();
+  const Scene scene = load_scene(scene_path("sponza.json"), {sponza_model()});
+  expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
+}
+
+TEST(Frame, RedLightFallsNearTheRedWallAndGreenNearTheGreenOne) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  for (const char* transport : {"sampled", "upwind"}) {
+    RenderOptions options = small_options(scene);
+    options.transport = transport;
+    const Image light = render(scene, options, Show::irradiance);
+    // The ceiling, seen along the top edge: red wall on the left, green wall on the right.
+    const int left = kWidth / 4, right = kWidth - left, top = 2, low = 8;
+    const double red_side =
+        mean(light, left, top, left + 8, low, 0) / mean(light, left, top, left + 8, low, 1);
+    const double green_side =
+        mean(light, right - 8, top, right, low, 0) / mean(light, right - 8, top, right, low, 1);
+    EXPECT_GT(red_side, 1.1 * green_side) << transport;
+  }
+}
+
+TEST(Frame, TwoRunsAreTheSameToTheBit) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  const RenderOptions options = small_options(scene);
+  EXPECT_EQ(render(scene, options, Show::full).pixels, render(scene, options, Show::full).pixels);
+}
+
+TEST(Frame, SceneWithoutLightIsBlack) {
+  Scene scene = load_scene(scene_path("cornell.json"));
+  scene.lights.clear();
+  const Image image = render(scene, small_options(scene), Show::full);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(image.at(x, y, c), 0.0f);
+    }
+  }
+}
+
+/// Accumulated light of the finest cascade, seen from `eye`.
+std::vector<float> finest_light(const Scene& scene, const RenderOptions& options, const glm::vec3& eye) {
+  Session session(choose_device());
+  Frame frame(session, scene, options);
+  Camera camera = scene.camera("");
+  camera.eye = eye;
+  std::vector<float> light;
+  frame.render(camera, [&](const CascadeVolumes& volumes) {
+    if (volumes.cascade == 0) light = volumes.accumulated.read(session);
+  });
+  return light;
+}
+
+TEST(Frame, MovingInsideACellMovesNoLight) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  RenderOptions options = small_options(scene);
+  options.occlusion = false;
+  const auto cell = static_cast<float>(options.cascade_size / options.grid);
+  const glm::vec3 eye = (glm::floor(scene.camera("").eye / cell) + 0.25f) * cell;
+  EXPECT_EQ(finest_light(scene, options, eye), finest_light(scene, options, eye + 0.5f * cell));
+}
+
+TEST(Frame, MovingByACellShiftsLightByOne) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  RenderOptions options = small_options(scene);
+  options.occlusion = false;
+  options.iterations = 0;  // what stands inside both grids is then the same; light from outside has no way in
+  const auto cell = static_cast<float>(options.cascade_size / options.grid);
+  const glm::vec3 eye = (glm::floor(scene.camera("").eye / cell) + 0.25f) * cell;
+  const auto here = finest_light(scene, options, eye),
+             there = finest_light(scene, options, eye + glm::vec3(cell, 0, 0));
+  const auto n = static_cast<std::size_t>(options.grid);
+  double largest = 0;
+  for (const float value : here) largest = std::max(largest, static_cast<double>(std::abs(value)));
+  ASSERT_GT(largest, 0);
+  for (std::size_t row = 0; row < here.size() / n; ++row) {
+    // A cell in from the border: trilinear injection there spreads into what is outside one grid and inside the other.
+    for (std::size_t x = 2; x + 1 < n; ++x) {
+      // Positions are float32 metres from a light's view, 1e-6 m: some 1e-4 of these cells of 2 cm.
+      ASSERT_NEAR(here[row * n + x], there[row * n + x - 1], 1e-3 * largest) << row << " " << x;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clpv
