@@ -1,117 +1,157 @@
-// Filtered look-ups in the scene's textures (kernels/shared/mesh.h): sRGB decoded before filtering, linear result.
-// Selections instead of branches, and no floor() or log2(), which are calls on PoCL.
+// Filtered look-ups in the scene's textures (kernels/shared/mesh.h), eight at a time: sRGB decoded before filtering,
+// linear result. No floor() or log2(), which are calls on PoCL.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
 
+#include "lanes.h"
 #include "shared/mesh.h"
 #include "srgb.h"
 #include "vec.h"
 
-// PoCL leaves functions of this size out of line, at a tenth of the cost of resolve.cl.
+// PoCL leaves functions of this size out of line.
 #define CLPV_INLINE static inline __attribute__((always_inline))
+
+// Texture coordinates.
+typedef struct {
+  float8 u, v;
+} Uv;
+
+// Entries of the texture table, one a lane.
+typedef struct {
+  uint8 offset, width, height, wrap;
+} Level;
+
+CLPV_INLINE void clpv_level(__global const float4* table, const uint8 entry, Level* level) {
+  Rows rows;
+  gather_rows(table, entry, &rows);
+  level->offset = as_uint8(CLPV_COLUMN(rows, x));
+  level->width = as_uint8(CLPV_COLUMN(rows, y));
+  level->height = as_uint8(CLPV_COLUMN(rows, z));
+  level->wrap = as_uint8(CLPV_COLUMN(rows, w));
+}
 
 // A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two ends
 // then clamp. A coordinate that is no number, or beyond the integers, reads 0.
-static inline float clpv_fold(const float u, const uint wrap) {
-  const float whole = (float)(int)u;
-  const float repeated = u - (whole > u ? whole - 1.0f : whole);
-  const float half_turns = (float)(int)(0.5f * u + (u < 0.0f ? -0.5f : 0.5f));
-  const float mirrored = fabs(u - 2.0f * half_turns);
-  const float clamped = u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
-  float folded = wrap & CLPV_WRAP_MIRROR ? mirrored : repeated;
-  folded = wrap & CLPV_WRAP_CLAMP ? clamped : folded;
-  return folded >= 0.0f && folded <= 1.0f ? folded : 0.0f;
+static inline float8 clpv_fold(const float8 u, const uint8 wrap) {
+  const float8 none = (float8)(0.0f), all = (float8)(1.0f);
+  const float8 whole = convert_float8(convert_int8(u));
+  const float8 repeated = u - (whole > u ? whole - all : whole);
+  const float8 turns = convert_float8(convert_int8(0.5f * u + (u < none ? (float8)(-0.5f) : (float8)(0.5f))));
+  const float8 mirrored = fabs(u - 2.0f * turns);
+  const float8 clamped = u < none ? none : (u > all ? all : u);
+  float8 folded = (wrap & CLPV_WRAP_MIRROR) != 0u ? mirrored : repeated;
+  folded = (wrap & CLPV_WRAP_CLAMP) != 0u ? clamped : folded;
+  return ((folded >= none) & (folded <= all)) ? folded : none;
 }
 
 // The two texels a coordinate lies between, and the weight of the second.
 typedef struct {
-  int first, second;
-  float weight;
+  uint8 first, second;
+  float8 weight;
 } Between;
 
-static inline Between clpv_between(const float u, const int size, const uint wrap) {
-  const float at = clpv_fold(u, wrap) * (float)size - 0.5f;
-  const int i = (int)(at + 1.0f) - 1;  // its floor: at is -1/2 or more
-  const bool repeat = wrap == CLPV_WRAP_REPEAT;
+static inline Between clpv_between(const float8 u, const uint8 size, const uint8 wrap) {
+  const float8 at = clpv_fold(u, wrap) * convert_float8(as_int8(size)) - 0.5f;
+  const int8 i = convert_int8(at + 1.0f) - 1;  // its floor: at is -1/2 or more
+  const int8 last = as_int8(size) - 1, next = i + 1;
+  const int8 repeat = wrap == (uint8)(CLPV_WRAP_REPEAT);
   Between between;
-  between.weight = at - (float)i;
-  between.first = i >= 0 ? i : repeat ? size - 1 : 0;
-  between.second = i + 1 < size ? i + 1 : repeat ? 0 : size - 1;
+  between.weight = at - convert_float8(i);
+  between.first = as_uint8(i >= 0 ? i : repeat & last);
+  between.second = as_uint8(next <= last ? next : ~repeat & last);
   return between;
 }
 
-static inline float clpv_mix(const float a, const float b, const float weight) {
+static inline float8 clpv_mix(const float8 a, const float8 b, const float8 weight) {
   return a + weight * (b - a);
 }
 
-// The four texels round a point, and their weights: rows y, columns x.
+// The four texels round a point, and their weights.
 typedef struct {
-  uint texel[4];
-  float x, y;
+  uint8 texel00, texel01, texel10, texel11;  // row, column
+  float8 x, y;
 } Four;
 
-CLPV_INLINE Four clpv_four(__global const ClpvTexture* texture, __global const uint* texels, const float u,
-                           const float v) {
-  const uint width = texture->width, wrap = texture->wrap, offset = texture->offset;
-  const Between x = clpv_between(u, (int)width, wrap & 15u);
-  const Between y = clpv_between(v, (int)texture->height, wrap >> 4);
-  const uint upper = offset + (uint)y.first * width, lower = offset + (uint)y.second * width;
-  Four four;
-  four.texel[0] = texels[upper + (uint)x.first];
-  four.texel[1] = texels[upper + (uint)x.second];
-  four.texel[2] = texels[lower + (uint)x.first];
-  four.texel[3] = texels[lower + (uint)x.second];
-  four.x = x.weight;
-  four.y = y.weight;
-  return four;
+CLPV_INLINE void clpv_four(const Level level, __global const uint* texels, const Uv uv, Four* four) {
+  const Between x = clpv_between(uv.u, level.width, level.wrap & 15u);
+  const Between y = clpv_between(uv.v, level.height, level.wrap >> 4);
+  const uint8 upper = level.offset + y.first * level.width, lower = level.offset + y.second * level.width;
+  const uint8 at00 = upper + x.first, at01 = upper + x.second, at10 = lower + x.first,
+              at11 = lower + x.second;
+  four->texel00 = (uint8)CLPV_GATHER(texels, at00);
+  four->texel01 = (uint8)CLPV_GATHER(texels, at01);
+  four->texel10 = (uint8)CLPV_GATHER(texels, at10);
+  four->texel11 = (uint8)CLPV_GATHER(texels, at11);
+  four->x = x.weight;
+  four->y = y.weight;
 }
 
-static inline float clpv_filter(const Four f, const float a, const float b, const float c, const float d) {
+static inline float8 clpv_filter(const Four f, const float8 a, const float8 b, const float8 c,
+                                 const float8 d) {
   return clpv_mix(clpv_mix(a, b, f.x), clpv_mix(c, d, f.x), f.y);
 }
 
-// Bilinear, in one mip level: linear colour.
-CLPV_INLINE Vec clpv_bilinear(__global const ClpvTexture* texture, __global const uint* texels, const float u,
-                              const float v) {
-  const Four f = clpv_four(texture, texels, u, v);
-#define CLPV_CHANNEL(shift)                                                                        \
-  clpv_filter(f, clpv_srgb[(f.texel[0] >> shift) & 255u], clpv_srgb[(f.texel[1] >> shift) & 255u], \
-              clpv_srgb[(f.texel[2] >> shift) & 255u], clpv_srgb[(f.texel[3] >> shift) & 255u])
-  return vec(CLPV_CHANNEL(0), CLPV_CHANNEL(8), CLPV_CHANNEL(16));
+static inline float8 clpv_decode(const uint8 byte) {
+  return (float8)CLPV_GATHER(clpv_srgb, byte);
+}
+
+// Bilinear, in one entry of the table: linear colour.
+CLPV_INLINE void clpv_bilinear(__global const float4* table, __global const uint* texels, const uint8 entry,
+                               const Uv uv, Vec* colour) {
+  Level level;
+  clpv_level(table, entry, &level);
+  Four f;
+  clpv_four(level, texels, uv, &f);
+#define CLPV_CHANNEL(shift)                                                                          \
+  clpv_filter(f, clpv_decode((f.texel00 >> shift) & 255u), clpv_decode((f.texel01 >> shift) & 255u), \
+              clpv_decode((f.texel10 >> shift) & 255u), clpv_decode((f.texel11 >> shift) & 255u))
+  colour->x = CLPV_CHANNEL(0);
+  colour->y = CLPV_CHANNEL(8);
+  colour->z = CLPV_CHANNEL(16);
 #undef CLPV_CHANNEL
 }
 
 // The same, of alpha: 0..1.
-static inline float clpv_bilinear_alpha(__global const ClpvTexture* texture, __global const uint* texels,
-                                        const float u, const float v) {
-  const Four f = clpv_four(texture, texels, u, v);
-#define CLPV_ALPHA(i) ((float)(int)(f.texel[i] >> 24) * (1.0f / 255.0f))
-  return clpv_filter(f, CLPV_ALPHA(0), CLPV_ALPHA(1), CLPV_ALPHA(2), CLPV_ALPHA(3));
+CLPV_INLINE float8 clpv_bilinear_alpha(__global const float4* table, __global const uint* texels,
+                                       const uint8 entry, const Uv uv) {
+  Level level;
+  clpv_level(table, entry, &level);
+  Four f;
+  clpv_four(level, texels, uv, &f);
+#define CLPV_ALPHA(texel) (convert_float8(as_int8((texel) >> 24)) * (1.0f / 255.0f))
+  return clpv_filter(f, CLPV_ALPHA(f.texel00), CLPV_ALPHA(f.texel01), CLPV_ALPHA(f.texel10),
+                     CLPV_ALPHA(f.texel11));
 #undef CLPV_ALPHA
 }
 
 // The mip level, 0 being the texture itself, for steps of `square` squared texels from pixel to pixel: log2 of the
 // step, by straight lines between the powers of two of its square (off by less than 1/20 of a level).
-static inline float clpv_mip_level(const float square) {
-  const float level = 0.5f * ((float)as_int(square) * (1.0f / 8388608.0f) - 127.0f);
-  const float most = (float)(CLPV_TEXTURE_LEVELS - 1);
-  return level > 0.0f ? (level < most ? level : most) : 0.0f;
+static inline float8 clpv_mip_level(const float8 square) {
+  const float8 none = (float8)(0.0f), most = (float8)(CLPV_TEXTURE_LEVELS - 1.0f);
+  const float8 level = 0.5f * (convert_float8(as_int8(square)) * (1.0f / 8388608.0f) - 127.0f);
+  return level > none ? (level < most ? level : most) : none;
 }
 
-// Trilinear: the mip levels chosen by the longer of the two steps (du, dv) that a pixel makes.
-CLPV_INLINE Vec clpv_trilinear(__global const ClpvTexture* textures, __global const uint* texels,
-                               const uint texture, const float u, const float v, const Uv step_x,
-                               const Uv step_y) {
-  __global const ClpvTexture* levels = textures + texture * CLPV_TEXTURE_LEVELS;
-  const float width = (float)(int)levels->width, height = (float)(int)levels->height;
-  const float xx = step_x.u * width, xy = step_x.v * height, yx = step_y.u * width, yy = step_y.v * height;
-  const float x2 = xx * xx + xy * xy, y2 = yx * yx + yy * yy;
-  const float level = clpv_mip_level(x2 > y2 ? x2 : y2);
-  const int fine = (int)level;
-  const int coarse = fine + 1 < CLPV_TEXTURE_LEVELS ? fine + 1 : fine;
-  const float weight = level - (float)fine;
-  const Vec a = clpv_bilinear(levels + fine, texels, u, v), b = clpv_bilinear(levels + coarse, texels, u, v);
-  return vec(clpv_mix(a.x, b.x, weight), clpv_mix(a.y, b.y, weight), clpv_mix(a.z, b.z, weight));
+// Trilinear: the mip levels chosen by the longer of the two steps that a pixel makes.
+CLPV_INLINE void clpv_trilinear(__global const float4* table, __global const uint* texels,
+                                const uint8 texture, const Uv uv, const Uv step_x, const Uv step_y,
+                                Vec* colour) {
+  const uint8 finest = texture * CLPV_TEXTURE_LEVELS;
+  Level whole;
+  clpv_level(table, finest, &whole);
+  const float8 width = convert_float8(as_int8(whole.width)), height = convert_float8(as_int8(whole.height));
+  const float8 xu = step_x.u * width, xv = step_x.v * height, yu = step_y.u * width, yv = step_y.v * height;
+  const float8 x2 = xu * xu + xv * xv, y2 = yu * yu + yv * yv;
+  const float8 level = clpv_mip_level(x2 > y2 ? x2 : y2);
+  const int8 fine = convert_int8(level);
+  const int8 coarse = fine + 1 < CLPV_TEXTURE_LEVELS ? fine + 1 : fine;
+  const float8 weight = level - convert_float8(fine);
+  Vec a, b;
+  clpv_bilinear(table, texels, finest + as_uint8(fine), uv, &a);
+  clpv_bilinear(table, texels, finest + as_uint8(coarse), uv, &b);
+  colour->x = clpv_mix(a.x, b.x, weight);
+  colour->y = clpv_mix(a.y, b.y, weight);
+  colour->z = clpv_mix(a.z, b.z, weight);
 }
 
 #endif

@@ -1,6 +1,6 @@
 // A triangle of the scene as a view sees it: its plane, and what a pixel's ray hits on it.
 //
-// Everything is relative to the eye and built from edges, so that small triangles far from the origin lose no
+// Of one triangle, or of eight side by side (vec.h). Everything is relative to the eye and built from edges, so that small triangles far from the origin lose no
 // digits. CLPV_ORTHOGRAPHIC 1: parallel rays; 0: rays through the eye.
 #ifndef CLPV_TRIANGLE_H
 #define CLPV_TRIANGLE_H
@@ -19,13 +19,12 @@ typedef struct {
   Vec normal;        // edge1 x edge2; towards whom the triangle's front faces
 } Face;
 
-static inline Face clpv_face(const ClpvView view, __global const ClpvVertex* a, __global const ClpvVertex* b,
-                             __global const ClpvVertex* c) {
-  const Vec p = vec_load(a->position);
+// Of the triangle with corners a, b, c [m].
+static inline Face clpv_face(const ClpvView view, const Vec a, const Vec b, const Vec c) {
   Face face;
-  face.corner = vec_minus(p, vec_of(view.eye));
-  face.edge1 = vec_minus(vec_load(b->position), p);
-  face.edge2 = vec_minus(vec_load(c->position), p);
+  face.corner = vec_minus(a, vec_of(view.eye));
+  face.edge1 = vec_minus(b, a);
+  face.edge2 = vec_minus(c, a);
   face.normal = vec_cross(face.edge1, face.edge2);
   return face;
 }
@@ -39,23 +38,23 @@ static inline float clpv_step_y(const ClpvView view) {
 }
 
 // From the middle of the screen to a pixel, across the view.
-static inline Vec clpv_across(const ClpvView view, const float px, const float py) {
-  const float x = (2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width;
-  const float y = (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height;
+static inline Vec clpv_across(const ClpvView view, const Real px, const Real py) {
+  const Real x = (2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width;
+  const Real y = (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height;
   return vec_add_scaled(vec_times(vec_of(view.right), x), y, vec_of(view.up));
 }
 
 // Along a pixel's ray, one metre deeper.
-static inline Vec clpv_along(const ClpvView view, const float px, const float py) {
+static inline Vec clpv_along(const ClpvView view, const Real px, const Real py) {
 #if CLPV_ORTHOGRAPHIC
   return vec_of(view.forward);
 #else
-  return vec_add_scaled(clpv_across(view, px, py), 1.0f, vec_of(view.forward));
+  return vec_add_scaled(clpv_across(view, px, py), (Real)(1.0f), vec_of(view.forward));
 #endif
 }
 
 // From the eye to the point at `depth` behind a pixel.
-static inline Vec clpv_to_point(const ClpvView view, const float px, const float py, const float depth) {
+static inline Vec clpv_to_point(const ClpvView view, const Real px, const Real py, const Real depth) {
 #if CLPV_ORTHOGRAPHIC
   return vec_add_scaled(clpv_across(view, px, py), depth, vec_of(view.forward));
 #else
@@ -65,15 +64,15 @@ static inline Vec clpv_to_point(const ClpvView view, const float px, const float
 
 // The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite
 // where the plane is seen edge-on.
-static inline Vec clpv_key_plane(const ClpvView view, const Face face, const float px, const float py) {
-  const float right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);
-  const float down = vec_dot(face.normal, vec_of(view.up)) * clpv_step_y(view);
+static inline Vec clpv_key_plane(const ClpvView view, const Face face, const Real px, const Real py) {
+  const Real right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);
+  const Real down = vec_dot(face.normal, vec_of(view.up)) * clpv_step_y(view);
 #if CLPV_ORTHOGRAPHIC
-  const float scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
+  const Real scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
   const Vec beside = vec_minus(face.corner, clpv_across(view, px, py));
   return vec(vec_dot(face.normal, beside) * scale, -right * scale, -down * scale);
 #else
-  const float scale = -1.0f / vec_dot(face.normal, face.corner);
+  const Real scale = -1.0f / vec_dot(face.normal, face.corner);
   return vec(vec_dot(face.normal, clpv_along(view, px, py)) * scale, right * scale, down * scale);
 #endif
 }
@@ -84,8 +83,8 @@ typedef struct {
 } Weights;
 
 static inline Weights clpv_weights(const Face face) {
-  const float area2 = vec_dot(face.normal, face.normal);
-  const float scale = area2 > 0.0f ? 1.0f / area2 : 0.0f;
+  const Real area2 = vec_dot(face.normal, face.normal);
+  const Real scale = area2 > (Real)(0.0f) ? 1.0f / area2 : (Real)(0.0f);
   Weights weights;
   weights.gradient1 = vec_times(vec_cross(face.edge2, face.normal), scale);
   weights.gradient2 = vec_times(vec_cross(face.normal, face.edge1), scale);
@@ -94,15 +93,16 @@ static inline Weights clpv_weights(const Face face) {
 
 // The weights of all three vertices at `depth` behind a pixel. Kept inside the triangle: snapped to the sub-pixel
 // grid it may cover the centre of a pixel that it misses by a hair.
-static inline Vec clpv_weights_at(const ClpvView view, const Face face, const Weights weights, const float px,
-                                  const float py, const float depth) {
+static inline Vec clpv_weights_at(const ClpvView view, const Face face, const Weights weights, const Real px,
+                                  const Real py, const Real depth) {
   const Vec offset = vec_minus(clpv_to_point(view, px, py, depth), face.corner);
-  float w1 = vec_dot(offset, weights.gradient1), w2 = vec_dot(offset, weights.gradient2);
-  w1 = w1 > 0.0f ? w1 : 0.0f;
-  w1 = w1 < 1.0f ? w1 : 1.0f;
-  w2 = w2 > 0.0f ? w2 : 0.0f;
-  w2 = w2 < 1.0f - w1 ? w2 : 1.0f - w1;
-  return vec(1.0f - w1 - w2, w1, w2);
+  const Real none = (Real)(0.0f), all = (Real)(1.0f);
+  Real w1 = vec_dot(offset, weights.gradient1), w2 = vec_dot(offset, weights.gradient2);
+  w1 = w1 > none ? w1 : none;
+  w1 = w1 < all ? w1 : all;
+  w2 = w2 > none ? w2 : none;
+  w2 = w2 < all - w1 ? w2 : all - w1;
+  return vec(all - w1 - w2, w1, w2);
 }
 
 #endif

@@ -1,51 +1,49 @@
-// Vectors of named scalars. Cheaper on PoCL than float3, whose fourth component is computed too.
+// Vectors of three named components. CLPV_REAL, the type of a component, is float, or float8 after lanes.h: then a
+// Vec is eight of them side by side.
 #ifndef CLPV_VEC_H
 #define CLPV_VEC_H
 
+#ifndef CLPV_REAL
+#define CLPV_REAL float
+#endif
+
+typedef CLPV_REAL Real;
+
 typedef struct {
-  float x, y, z;
+  Real x, y, z;
 } Vec;
 
-// Texture coordinates.
-typedef struct {
-  float u, v;
-} Uv;
-
-static inline Vec vec(const float x, const float y, const float z) {
+static inline Vec vec(const Real x, const Real y, const Real z) {
   const Vec v = {x, y, z};
   return v;
 }
 
 static inline Vec vec_of(const float v[3]) {
-  return vec(v[0], v[1], v[2]);
+  return vec((Real)(v[0]), (Real)(v[1]), (Real)(v[2]));
 }
 static inline Vec vec_load(__global const float* v) {
-  return vec(v[0], v[1], v[2]);
+  return vec((Real)(v[0]), (Real)(v[1]), (Real)(v[2]));
 }
 static inline Vec vec_minus(const Vec a, const Vec b) {
   return vec(a.x - b.x, a.y - b.y, a.z - b.z);
 }
-static inline Vec vec_times(const Vec a, const float s) {
+static inline Vec vec_times(const Vec a, const Real s) {
   return vec(a.x * s, a.y * s, a.z * s);
 }
-static inline float vec_dot(const Vec a, const Vec b) {
+static inline Vec vec_product(const Vec a, const Vec b) {
+  return vec(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+static inline Real vec_dot(const Vec a, const Vec b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 // a + s b
-static inline Vec vec_add_scaled(const Vec a, const float s, const Vec b) {
+static inline Vec vec_add_scaled(const Vec a, const Real s, const Vec b) {
   return vec(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
 
 static inline Vec vec_cross(const Vec a, const Vec b) {
   return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
-static inline Vec vec_product(const Vec a, const Vec b) {
-  return vec(a.x * b.x, a.y * b.y, a.z * b.z);
-}
-static inline Vec vec_if(const bool holds, const Vec v) {
-  return vec(holds ? v.x : 0.0f, holds ? v.y : 0.0f, holds ? v.z : 0.0f);
 }
 
 // w.x a + w.y b + w.z c

@@ -1,7 +1,5 @@
 #include "pipeline/rasterize.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 
@@ -30,22 +28,21 @@ std::string literal(bool value) {
   return value ? "1" : "0";
 }
 
-ProgramSource rasterize_program(const ClpvView& view) {
+ProgramSource rasterize_program(const ClpvView& view, const char* file = "rasterize.cl") {
   ProgramSource source;
-  source.file = "rasterize.cl";
+  source.file = file;
   source.literals = {{"CLPV_ORTHOGRAPHIC", literal(view.orthographic != 0)}};
   return source;
 }
 
-ProgramSource resolve_program(const ClpvView& view, RsmFormat format, const SceneBuffers& scene,
+ProgramSource resolve_program(const Surface& surface, const SceneBuffers& scene, bool from_light,
                               bool emissive) {
-  ProgramSource source = rasterize_program(view);
-  source.file = "resolve.cl";
-  source.literals["CLPV_SURFACE_PAPER"] = literal(format == RsmFormat::paper);
+  ProgramSource source = rasterize_program(surface.view, "resolve.cl");
+  source.literals["CLPV_SURFACE_PAPER"] = literal(surface.format == RsmFormat::paper);
+  source.literals["CLPV_FROM_LIGHT"] = literal(from_light);
   source.literals["CLPV_TEXTURED"] = literal(scene.textured);
   source.literals["CLPV_COLOURED"] = literal(scene.coloured);
   source.literals["CLPV_EMISSIVE"] = literal(emissive);
-  source.literals["CLPV_WHITE_TEXTURE"] = fmt::format("{}u", scene.texture_count);
   return source;
 }
 
@@ -154,7 +151,7 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
 }
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
-  cl::Kernel kernel = session_.kernel(rasterize_program(view), "draw_tiles");
+  cl::Kernel kernel = session_.kernel(rasterize_program(view, "draw_tiles.cl"), "draw_tiles");
   set_args(kernel, view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
            scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
   session_.launch(kernel, cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
@@ -178,13 +175,11 @@ void Rasterizer::rasterize_camera(Surface& surface) {
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, true});
   const bool emissive = has_emissive && scene_.emissive;
-  cl::Kernel resolve =
-      session_.kernel(resolve_program(view, surface.format, scene_, emissive), "resolve_camera");
-  set_args(resolve, view, tiles_along(view.width), keys_.buffer, seen_.buffer, scene_.vertices,
-           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth, surface.normal,
-           surface.colour);
-  if (emissive) resolve.setArg(12, surface.emissive);
-  session_.launch(resolve, cl::NDRange(view.width, view.height), cl::NDRange(kGroup, 1));
+  cl::Kernel resolve = session_.kernel(resolve_program(surface, scene_, false, emissive), "resolve_camera");
+  set_args(resolve, view, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
+           scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
+  if (emissive) resolve.setArg(11, surface.emissive);
+  session_.launch(resolve, cl::NDRange(tiles_along(view.width), view.height), cl::NDRange(kTileGroup, 1));
 }
 
 void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
@@ -192,19 +187,18 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
   if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, false});
-  cl::Kernel resolve = session_.kernel(resolve_program(view, surface.format, scene_, false), "resolve_rsm");
-  set_args(resolve, view, light, tiles_along(view.width), keys_.buffer, seen_.buffer, scene_.vertices,
-           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, surface.depth, surface.normal,
-           surface.colour, surface.colour_scale);
-  session_.launch(resolve, cl::NDRange(view.width, view.height), cl::NDRange(kGroup, 1));
+  cl::Kernel resolve = session_.kernel(resolve_program(surface, scene_, true, false), "resolve_rsm");
+  set_args(resolve, view, light, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles,
+           scene_.materials, scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
+           surface.colour_scale);
+  session_.launch(resolve, cl::NDRange(tiles_along(view.width), view.height), cl::NDRange(kTileGroup, 1));
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, cl::Buffer& depth) {
   find_visible({view, false});
-  cl::Kernel resolve =
-      session_.kernel(resolve_program(view, RsmFormat::float32, scene_, false), "resolve_depth");
-  set_args(resolve, view, tiles_along(view.width), keys_.buffer, depth);
-  session_.launch(resolve, cl::NDRange(view.width, view.height), cl::NDRange(kGroup, 1));
+  cl::Kernel resolve = session_.kernel(rasterize_program(view, "draw_tiles.cl"), "resolve_depth");
+  set_args(resolve, view, keys_.buffer, depth);
+  session_.launch(resolve, cl::NDRange(tiles_along(view.width), view.height), cl::NDRange(kTileGroup, 1));
 }
 
 }  // namespace clpv

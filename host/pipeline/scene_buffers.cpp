@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "kernels/shared/raster.h"
 #include "pipeline/mip_chain.hpp"
 #include "support/error.hpp"
 
@@ -16,8 +17,8 @@ void require(bool holds, const std::string& message) {
 
 /// Kernels trust every index: what does not fit is refused here, whoever made the scene.
 void check_indices(const Scene& scene) {
-  require(scene.triangles.size() < (1u << 31) && scene.vertices.size() < (1u << 31),
-          fmt::format("{}: {} triangles and {} vertices; allowed: below 2^31 each", scene.path,
+  require(scene.triangles.size() <= CLPV_TRIANGLE_INDEX && scene.vertices.size() <= CLPV_TRIANGLE_INDEX,
+          fmt::format("{}: {} triangles and {} vertices; allowed: below 2^30 each", scene.path,
                       scene.triangles.size(), scene.vertices.size()));
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     const Triangle& t = scene.triangles[i];
@@ -102,6 +103,15 @@ bool is_emissive(const Material& material) {
   return std::any_of(material.emissive, material.emissive + 3, [](float e) { return e != 0; });
 }
 
+/// Materials that lack a texture get the white one: kernels then look up without asking.
+std::vector<Material> with_textures(std::vector<Material> materials, unsigned white) {
+  for (Material& material : materials) {
+    if (material.texture == CLPV_NO_TEXTURE) material.texture = white;
+    if (material.emissive_texture == CLPV_NO_TEXTURE) material.emissive_texture = white;
+  }
+  return materials;
+}
+
 Bounds bounds_of(const std::vector<Vertex>& vertices) {
   if (vertices.empty()) return {};
   glm::vec3 lower(std::numeric_limits<float>::max()), upper(std::numeric_limits<float>::lowest());
@@ -121,13 +131,12 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   SceneBuffers buffers;
   buffers.vertices = session.upload(scene.vertices, "vertices");
   buffers.triangles = session.upload(scene.triangles, "triangles");
-  buffers.materials = session.upload(scene.materials, "materials");
+  buffers.materials = session.upload(
+      with_textures(scene.materials, static_cast<unsigned>(scene.textures.size())), "materials");
   buffers.textures = session.upload(table.levels, "texture table");
   buffers.texels = session.upload(table.texels, "textures");
   buffers.vertex_count = static_cast<unsigned>(scene.vertices.size());
   buffers.triangle_count = static_cast<unsigned>(scene.triangles.size());
-  buffers.material_count = static_cast<unsigned>(scene.materials.size());
-  buffers.texture_count = static_cast<unsigned>(scene.textures.size());
   buffers.textured = std::any_of(scene.materials.begin(), scene.materials.end(), is_textured);
   buffers.coloured = is_coloured(scene.vertices);
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);

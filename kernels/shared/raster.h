@@ -22,6 +22,9 @@
 #define CLPV_OUT_OF_SIGHT (CLPV_LEFT | CLPV_RIGHT | CLPV_ABOVE | CLPV_BELOW | CLPV_BEYOND | CLPV_BEHIND)
 #define CLPV_NEEDS_CLIPPING (CLPV_BEHIND | CLPV_OUT_OF_GUARD)
 
+// Up to this size the edge functions of a triangle fit 32 bits, as far as a tile beside it.
+#define CLPV_SMALL_PIXELS 64
+
 typedef struct {
   int x, y;            // 1/CLPV_SUBPIXELS pixel, from the left and top border; unset where it needs clipping
   float key;           // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
@@ -30,14 +33,17 @@ typedef struct {
 
 #define CLPV_SIZEOF_PROJECTED 16
 
+// In `triangle`, beside its index in the scene:
+#define CLPV_TRIANGLE_MASKED 0x80000000u  // its material has holes
+#define CLPV_TRIANGLE_SMALL 0x40000000u   // no side longer than CLPV_SMALL_PIXELS along x or y
+#define CLPV_TRIANGLE_INDEX 0x3fffffffu
+
 typedef struct {
-  int x[3], y[3];            // corners as in ClpvProjected, clockwise on the screen
+  int x[4], y[4];            // corners as in ClpvProjected, clockwise on the screen; the fourth is the first
   float key, key_x, key_y;   // at pixel `first`, and its change from pixel to pixel
   float nearest, farthest;   // least and greatest key of the corners
   unsigned int first, last;  // pixels it may cover: least and greatest x, plus 65536 y
-  unsigned int triangle;     // index in the scene
-  unsigned int masked;       // 1: its material has holes
-  unsigned int unused;
+  unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
 #define CLPV_SIZEOF_RASTER_TRIANGLE 64

@@ -1,0 +1,31 @@
+// Which pixels a triangle covers, exactly: edge functions in 64-bit integers.
+#ifndef CLPV_EDGES_H
+#define CLPV_EDGES_H
+
+#include "shared/raster.h"
+
+// An edge function: not negative at the pixel centres on the inner side of the edge from corner i to the next,
+// exactly. Centres on the edge itself belong to it if it is a top or a left edge, so to one of the two
+// triangles that share it.
+typedef struct {
+  long value;           // at the centre of a pixel
+  long step_x, step_y;  // from a pixel to the next one right, and below
+} Edge;
+
+static inline Edge edge_at(__global const ClpvRasterTriangle* r, const int i, const int px, const int py) {
+  const int dx = r->x[i + 1] - r->x[i], dy = r->y[i + 1] - r->y[i];
+  const int x = px * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2, y = py * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2;
+  const bool top_left = dy < 0 || (dy == 0 && dx > 0);
+  Edge edge;
+  edge.value = (long)dx * (y - r->y[i]) - (long)dy * (x - r->x[i]) - (top_left ? 0 : 1);
+  edge.step_x = -(long)dy * CLPV_SUBPIXELS;
+  edge.step_y = (long)dx * CLPV_SUBPIXELS;
+  return edge;
+}
+
+// The largest value the edge function takes in a tile, `edge` being at its upper left pixel.
+static inline long largest_in_tile(const Edge edge) {
+  return edge.value + (CLPV_TILE - 1) * (max(edge.step_x, 0L) + max(edge.step_y, 0L));
+}
+
+#endif

@@ -1,0 +1,36 @@
+// Eight pixels side by side, computed at once: a row of a tile. Explicit, since PoCL vectorises none of the work-items
+// of kernels as long as these.
+#ifndef CLPV_LANES_H
+#define CLPV_LANES_H
+
+#define CLPV_LANES 8
+#define CLPV_REAL float8
+
+// One element for each lane, from where `at` says.
+#define CLPV_GATHER(from, at)                                                                            \
+  ((from)[(at).s0], (from)[(at).s1], (from)[(at).s2], (from)[(at).s3], (from)[(at).s4], (from)[(at).s5], \
+   (from)[(at).s6], (from)[(at).s7])
+
+// Four elements for each lane, gathered at once and then taken column by column: a load a lane instead of four.
+typedef struct {
+  float4 r0, r1, r2, r3, r4, r5, r6, r7;
+} Rows;
+
+// Results of functions that read buffers go out through pointers, here and where these are used: what returns a struct
+// and reads memory is annotated by the compiler in a way that Oclgrind does not know.
+static inline void gather_rows(__global const float4* from, const uint8 at, Rows* rows) {
+  rows->r0 = from[at.s0];
+  rows->r1 = from[at.s1];
+  rows->r2 = from[at.s2];
+  rows->r3 = from[at.s3];
+  rows->r4 = from[at.s4];
+  rows->r5 = from[at.s5];
+  rows->r6 = from[at.s6];
+  rows->r7 = from[at.s7];
+}
+
+#define CLPV_COLUMN(rows, c)                                                                           \
+  ((float8)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
+            (rows).r7.c))
+
+#endif
