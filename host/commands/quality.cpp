@@ -149,7 +149,7 @@ class VariantRun {
     cell.scene = subject_.scene.name;
     cell.camera = subject_.cameras[view].name;
     cell.variant = variant_;
-    store_.keep(key, cell);
+    if (cell.refused.empty()) store_.keep(key, cell);  // what was refused may be a matter of the moment
     return cell;
   }
 

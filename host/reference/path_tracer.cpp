@@ -1,6 +1,4 @@
 // Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
-#include "reference/path_tracer.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,21 +7,17 @@
 #include <numbers>
 #include <thread>
 
-#include "reference/lighting.hpp"
+#include "reference/path_sampler.hpp"
 #include "reference/ray_scene.hpp"
 #include "reference/sampling.hpp"
-#include "reference/view.hpp"
 #include "support/error.hpp"
 
 namespace clpv::reference {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kTile = 16;          // pixels along each side of what a thread takes at a time
 constexpr std::uint32_t kFirstSamples = 64;  // paths a pixel before the noise is judged at all
 constexpr std::uint32_t kMostSamples = PathTracerOptions::kMostSamples;
-constexpr int kCertainBounces = 3;      // further ones are played Russian roulette for
-constexpr double kMostSurvival = 0.95;  // of roulette: paths end even between white walls
 
 /// A pixel's surface, and the two independent halves of its estimate.
 struct Pixel {
@@ -31,91 +25,11 @@ struct Pixel {
   glm::dvec3 sum[2] = {glm::dvec3(0), glm::dvec3(0)};  // irradiance [W/m^2], summed over paths
 };
 
-/// Traces one pixel's rays. Cheap to make: one a thread, so that rays can be counted without sharing.
-class Tracer {
- public:
-  Tracer(const RayScene& rays, const std::vector<Light>& lights, const PathTracerOptions& options)
-      : rays_(rays), lights_(lights), options_(options) {}
-
-  std::uint64_t shot() const { return shot_; }
-
-  /// The surface at a pixel's centre, its depth as `distance`.
-  std::optional<Hit> see(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
-    ++shot_;
-    const glm::dvec3 origin = surface_position(view, px, py, 0), one_on = surface_position(view, px, py, 1);
-    return rays_.intersect(glm::vec3(origin), glm::vec3(one_on - origin), view.near_depth, view.far_depth,
-                           Faces::as_seen);
-  }
-
-  /// Irradiance [W/m^2] straight from the lights.
-  glm::dvec3 direct(const Hit& hit) {
-    const glm::vec3 origin = rays_.leave(hit);
-    glm::dvec3 sum(0);
-    for (const Light& light : lights_) {
-      const Incident in = light_at(light.data, glm::dvec3(hit.position));
-      const double cosine = glm::dot(glm::dvec3(hit.normal), in.towards);
-      if (cosine <= 0 || glm::dot(glm::dvec3(hit.geometric), in.towards) <= 0) continue;
-      if (in.irradiance == glm::dvec3(0)) continue;
-      ++shot_;
-      if (!shadowed(light.data, origin, in.towards)) sum += in.irradiance * cosine;
-    }
-    return sum;
-  }
-
-  /// One path's estimate of the irradiance [W/m^2] that reaches `start` from other surfaces.
-  glm::dvec3 indirect(const Hit& start, std::uint32_t index, std::uint64_t stream) {
-    glm::dvec3 sum(0), throughput(1);
-    Hit at = start;
-    for (int bounce = 1; options_.bounces == PathTracerOptions::kAllBounces || bounce <= options_.bounces;
-         ++bounce) {
-      const std::uint64_t dimensions = mix(stream, bounce);
-      const glm::vec3 direction(cosine_direction(glm::dvec3(at.normal), sobol_point(index, dimensions)));
-      if (glm::dot(direction, at.geometric) <= 0)
-        break;  // into the surface: an interpolated normal leans that far
-      ++shot_;
-      const std::optional<Hit> next = rays_.intersect(rays_.leave(at), direction, 0, kInfinity, Faces::both);
-      if (!next) break;
-      if (options_.emissive_lights)
-        sum += throughput * glm::dvec3(rays_.materials().emissive(next->point)) * std::numbers::pi;
-      const glm::dvec3 lit = direct(*next);
-      const bool last = bounce == options_.bounces;
-      if (last && lit == glm::dvec3(0)) break;  // most last bounces: spares them the look at textures
-      throughput *= glm::dvec3(rays_.materials().albedo(next->point));
-      sum += throughput * lit;
-      if (last || !survive(throughput, bounce, mix(mix(dimensions), index))) break;
-      at = *next;
-    }
-    return sum;
-  }
-
- private:
-  bool shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const {
-    if (light.kind == CLPV_LIGHT_DIRECTIONAL) return rays_.occluded(origin, glm::vec3(towards), kInfinity);
-    const glm::vec3 path = glm::vec3(light.position[0], light.position[1], light.position[2]) - origin;
-    return rays_.occluded(origin, path, 1);
-  }
-
-  static bool survive(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
-    const double most = std::max({throughput.x, throughput.y, throughput.z});
-    if (bounce < kCertainBounces) return most > 0;
-    const double survival = std::min(most, kMostSurvival);
-    if (unit(bits) >= survival) return false;
-    throughput /= survival;
-    return true;
-  }
-
-  const RayScene& rays_;
-  const std::vector<Light>& lights_;
-  const PathTracerOptions& options_;
-  std::uint64_t shot_ = 0;
-};
-
 /// The image while it is traced, tile by tile.
 class Work {
  public:
   Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
        const PathTracerOptions& options, const TraceProgress& progress)
-
       : rays_(scene),
         lights_(lights),
         options_(options),
@@ -132,9 +46,9 @@ class Work {
          {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance}) {
       layer->assign(pixels_.size(), glm::vec3(0));
     }
-    each_pixel([&](Tracer& tracer, std::uint32_t x, std::uint32_t y) {
+    each_pixel([&](PathSampler& sampler, std::uint32_t x, std::uint32_t y) {
       const std::size_t i = std::size_t{y} * image_.view.width + x;
-      pixels_[i].hit = tracer.see(image_.view, x, y);
+      pixels_[i].hit = sampler.see(image_.view, x, y);
       if (!pixels_[i].hit) return;
       const Hit& hit = *pixels_[i].hit;
       image_.depth[i] = hit.distance;
@@ -142,20 +56,20 @@ class Work {
       const Footprint around = footprint(image_.view, x, y, hit);
       image_.albedo[i] = rays_.materials().albedo(hit.point, around);
       image_.emissive[i] = rays_.materials().emissive(hit.point, around);
-      image_.direct[i] = glm::vec3(tracer.direct(hit));
+      image_.direct[i] = glm::vec3(sampler.direct(hit));
     });
   }
 
   /// Paths until there are `samples` a pixel, half of them in each half (the first takes an odd one).
   void trace(std::uint32_t samples) {
-    each_pixel([&](Tracer& tracer, std::uint32_t x, std::uint32_t y) {
+    each_pixel([&](PathSampler& sampler, std::uint32_t x, std::uint32_t y) {
       const std::size_t i = std::size_t{y} * image_.view.width + x;
       Pixel& pixel = pixels_[i];
       if (!pixel.hit) return;
       for (std::uint32_t half = 0; half < 2; ++half) {
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
         for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s) {
-          pixel.sum[half] += tracer.indirect(*pixel.hit, s, stream);
+          pixel.sum[half] += sampler.indirect(*pixel.hit, s, stream);
         }
       }
     });
@@ -176,7 +90,7 @@ class Work {
  private:
   static std::uint32_t share(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
 
-  /// Runs action(tracer, x, y) once a pixel, tiles handed to threads as they come.
+  /// Runs action(sampler, x, y) once a pixel, tiles handed to threads as they come.
   template <typename Action>
   void each_pixel(const Action& action) {
     const std::uint32_t width = image_.view.width, height = image_.view.height;
@@ -186,18 +100,18 @@ class Work {
     std::uint32_t done = 0;
     std::mutex mutex;
     const auto run = [&] {
-      Tracer tracer(rays_, lights_, options_);
+      PathSampler sampler(rays_, lights_, options_);
       for (std::uint32_t tile; (tile = next.fetch_add(1)) < tiles;) {
         const std::uint32_t left = tile % columns * kTile, top = tile / columns * kTile;
         for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
-          for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x) action(tracer, x, y);
+          for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x) action(sampler, x, y);
         }
         const std::lock_guard lock(mutex);
         ++done;
         if (progress_) progress_(before_ + (after_ - before_) * done / tiles);
       }
       const std::lock_guard lock(mutex);
-      image_.rays += tracer.shot();
+      image_.rays += sampler.rays_shot();
     };
     std::vector<std::jthread> others;
     for (int t = 1; t < threads_; ++t) others.emplace_back(run);
