@@ -9,9 +9,9 @@
 
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
+#include "commands/quality_subjects.hpp"
 #include "commands/tracing_options.hpp"
 #include "pipeline/quality_report.hpp"
-#include "scene/load.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
@@ -21,7 +21,8 @@ namespace clpv {
 namespace {
 
 struct Options {
-  std::vector<std::string> scenes, models, cameras, varied;
+  QualitySubjects subjects;
+  std::vector<std::string> varied;
   std::string view = "indirect", cache, json, csv, format = "table";
   int frames = 3;
   bool fresh = false;
@@ -29,38 +30,10 @@ struct Options {
   GivenOptions given;
 };
 
-/// A scene, the options a user gave resolved for it, and the truths its views are held against.
-struct Subject {
-  Scene scene;
-  std::vector<reference::Reference> truths;  // one a camera chosen
-  std::vector<Camera> cameras;
-};
-
 std::filesystem::path cache_folder(const Options& options) {
   if (!options.cache.empty()) return options.cache;
   if (const auto folder = user_cache_folder()) return *folder / "quality";
   throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
-}
-
-/// The model given for a scene file: "STEM=PATH", or a bare path where there is one scene.
-std::filesystem::path model_for(const std::string& scene, const Options& options) {
-  const std::string stem = std::filesystem::path(scene).stem().string();
-  for (const std::string& model : options.models) {
-    if (model.starts_with(stem + "=")) return model.substr(stem.size() + 1);
-    if (options.scenes.size() == 1) return model;
-  }
-  return {};
-}
-
-void check_models(const Options& options) {
-  for (const std::string& model : options.models) {
-    const auto meant = [&](const std::string& scene) {
-      return model.starts_with(std::filesystem::path(scene).stem().string() + "=");
-    };
-    if (options.scenes.size() == 1 || std::ranges::any_of(options.scenes, meant)) continue;
-    throw Error(ExitCode::usage, "--model {}: with several scenes, STEM=PATH with the stem of one of them",
-                model);
-  }
 }
 
 /// All combinations: what --vary says; without a word about bases or transports, all of them.
@@ -85,44 +58,6 @@ RenderOptions with(const Options& options, const Variant& variant, const Scene& 
   GivenOptions given = options.given;
   for (const auto& [name, value] : variant) given[name] = value;
   return resolve_options(given, scene);
-}
-
-/// The scenes' chosen cameras; a name that no scene has is an error.
-std::vector<Subject> load(const Options& options) {
-  std::vector<Subject> subjects;
-  std::size_t chosen = 0;
-  for (const std::string& path : options.scenes) {
-    Subject& subject = subjects.emplace_back();
-    subject.scene = load_scene(path, {model_for(path, options)});
-    for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
-    for (const Camera& camera : subject.scene.cameras) {
-      if (!options.cameras.empty() && std::ranges::count(options.cameras, camera.name) == 0) continue;
-      subject.cameras.push_back(camera);
-      ++chosen;
-    }
-  }
-  for (const std::string& name : options.cameras) {
-    const auto has = [&](const Subject& s) { return std::ranges::count(s.cameras, name, &Camera::name) > 0; };
-    if (std::ranges::none_of(subjects, has))
-      subjects[0].scene.camera(name);  // throws, with the names there are
-  }
-  if (chosen == 0) throw Error(ExitCode::usage, "no camera in any of the scenes");
-  return subjects;
-}
-
-void trace_truths(std::vector<Subject>& subjects, const Options& options,
-                  const std::filesystem::path& folder) {
-  for (Subject& subject : subjects) {
-    const RenderOptions frame = with(options, {}, subject.scene);
-    for (const Camera& camera : subject.cameras) {
-      TraceBar bar(fmt::format("reference {} {}", subject.scene.name, camera.name));
-      subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, frame.width,
-                                                           frame.height, options.tracing.resolved(),
-                                                           [&](double share) { bar.show(share); }));
-      const reference::Reference& truth = subject.truths.back();
-      spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
-    }
-  }
 }
 
 /// Measures the cells of one variant and scene, the frame made when the first of them is not kept already.
@@ -221,7 +156,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
 }
 
 void run(const Options& options, const Shared& shared) {
-  check_models(options);
+  check_models(options.subjects);
   const std::vector<Variant> all = variants(options);
   show_named(options.view);
   for (const std::string& output : {options.json, options.csv}) {
@@ -230,8 +165,11 @@ void run(const Options& options, const Shared& shared) {
   const std::filesystem::path folder = cache_folder(options);
   const QualityStore store(folder / "cells");
   Session session(choose_device(shared.device));
-  std::vector<Subject> subjects = load(options);
-  trace_truths(subjects, options, folder / "references");
+  std::vector<Subject> subjects = load_subjects(options.subjects);
+  for (Subject& subject : subjects) {
+    const RenderOptions frame = with(options, {}, subject.scene);
+    trace_truths(subject, frame.width, frame.height, options.tracing.resolved(), folder / "references");
+  }
   const std::vector<QualityCell> cells = measure_all(session, options, store, subjects, all);
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
   if (!options.json.empty()) write_file(options.json, json);
@@ -242,12 +180,15 @@ void run(const Options& options, const Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scenes, "scene files (.json), or bare .gltf or .glb")->required();
+  command.add_option("SCENE", options.subjects.scenes, "scene files (.json), or bare .gltf or .glb")
+      ->required();
   command
-      .add_option("--model", options.models,
+      .add_option("--model", options.subjects.models,
                   "replaces a scene file's model; several scenes: STEM=PATH, repeatable")
       ->type_name("[STEM=]PATH");
-  command.add_option("--camera", options.cameras, "by name, repeatable (default: all cameras of all scenes)")
+  command
+      .add_option("--camera", options.subjects.cameras,
+                  "by name, repeatable (default: all cameras of all scenes)")
       ->type_name("NAME");
   command
       .add_option("--vary", options.varied,

@@ -1,0 +1,70 @@
+#include "commands/quality_subjects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands/tracing_options.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+/// The path in "STEM=PATH" where STEM is that of the scene's file, else nothing.
+std::string path_in(const std::string& model, const std::string& scene) {
+  const std::string stem = std::filesystem::path(scene).stem().string() + "=";
+  return model.starts_with(stem) ? model.substr(stem.size()) : "";
+}
+
+std::filesystem::path model_for(const std::string& scene, const QualitySubjects& given) {
+  for (const std::string& model : given.models) {
+    if (const std::string path = path_in(model, scene); !path.empty()) return path;
+    if (given.scenes.size() == 1) return model;
+  }
+  return {};
+}
+
+}  // namespace
+
+void check_models(const QualitySubjects& given) {
+  for (const std::string& model : given.models) {
+    const auto meant = [&](const std::string& scene) { return !path_in(model, scene).empty(); };
+    if (given.scenes.size() == 1 || std::ranges::any_of(given.scenes, meant)) continue;
+    throw Error(ExitCode::usage,
+                "--model {}: allowed with several scenes: STEM=PATH, STEM that of a scene's file", model);
+  }
+}
+
+std::vector<Subject> load_subjects(const QualitySubjects& given) {
+  std::vector<Subject> subjects;
+  for (const std::string& path : given.scenes) {
+    Subject& subject = subjects.emplace_back();
+    subject.scene = load_scene(path, {model_for(path, given)});
+    for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
+    for (const Camera& camera : subject.scene.cameras) {
+      const bool chosen = given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;
+      if (chosen) subject.cameras.push_back(camera);
+    }
+  }
+  for (const std::string& name : given.cameras) {
+    const auto has = [&](const Subject& s) { return std::ranges::count(s.cameras, name, &Camera::name) > 0; };
+    if (std::ranges::none_of(subjects, has))
+      subjects[0].scene.camera(name);  // throws, with the names there are
+  }
+  return subjects;
+}
+
+void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
+                  const std::filesystem::path& folder) {
+  for (const Camera& camera : subject.cameras) {
+    TraceBar bar(fmt::format("reference {} {}", subject.scene.name, camera.name));
+    subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
+                                                         options, [&](double share) { bar.show(share); }));
+    const reference::Reference& truth = subject.truths.back();
+    spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
+  }
+}
+
+}  // namespace clpv

@@ -1,0 +1,37 @@
+// What a quality run looks at: scenes, their cameras, and the truth of each view.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "reference/cached_reference.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv {
+
+/// As given on the command line.
+struct QualitySubjects {
+  std::vector<std::string> scenes;   ///< files
+  std::vector<std::string> models;   ///< "STEM=PATH", STEM that of a scene's file; one scene: "PATH" does
+  std::vector<std::string> cameras;  ///< names; none: all there are
+};
+
+/// A scene, the cameras chosen, and the truth of what each of them sees.
+struct Subject {
+  Scene scene;
+  std::vector<Camera> cameras;
+  std::vector<reference::Reference> truths;  ///< one a camera, once traced
+};
+
+/// Throws Error(usage) for a model that belongs to none of the scenes.
+void check_models(const QualitySubjects& given);
+
+/// Loads the scenes, without truths. Throws like load_scene, and Error(usage) for a camera that no scene has.
+std::vector<Subject> load_subjects(const QualitySubjects& given);
+
+/// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced.
+void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
+                  const std::filesystem::path& folder);
+
+}  // namespace clpv
