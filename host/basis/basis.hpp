@@ -80,9 +80,5 @@ std::vector<std::string> basis_names();
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres,
                                                double lambda = kDefaultLambda);
-/// The same from a JSON file {"name": "mine", "centres": [[x, y, z], ...]}, any length but 0; `name` may be
-/// left out (the file's stem then). Throws Error(bad_input) naming file, place and value where it is not like
-/// that.
-std::unique_ptr<Basis> load_basis(const std::string& path, double lambda = kDefaultLambda);
 
 }  // namespace clpv
