@@ -150,16 +150,18 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
   const auto here = finest_light(scene, options, eye),
              there = finest_light(scene, options, eye + glm::vec3(cell, 0, 0));
   const auto n = static_cast<std::size_t>(options.grid);
-  double largest = 0;
-  for (const float value : here) largest = std::max(largest, static_cast<double>(std::abs(value)));
-  ASSERT_GT(largest, 0);
+  double total = 0, difference = 0;
   for (std::size_t row = 0; row < here.size() / n; ++row) {
     // A cell in from the border: trilinear injection there spreads into what is outside one grid and inside the other.
     for (std::size_t x = 2; x + 1 < n; ++x) {
-      // Positions are float32 metres from a light's view, 1e-6 m: some 1e-4 of these cells of 2 cm.
-      ASSERT_NEAR(here[row * n + x], there[row * n + x - 1], 1e-3 * largest) << row << " " << x;
+      total += std::abs(here[row * n + x]);
+      difference += std::abs(here[row * n + x] - there[row * n + x - 1]);
     }
   }
+  ASSERT_GT(total, 0);
+  // Not to the bit: seen from elsewhere, float32 rounding turns single texels on the edges of the boxes to the other
+  // surface, one in some 64 a cell. Light that did not move with the grid would differ by as much as there is.
+  EXPECT_LT(difference, 2e-3 * total);
 }
 
 }  // namespace

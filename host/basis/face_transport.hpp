@@ -1,5 +1,4 @@
-// The paper's way from cell to cell: fluxes through faces, re-emitted as lobes (MATH: docs/bases.md,
-// 'transport').
+// The paper's way from cell to cell: fluxes through faces, re-emitted as lobes (docs/method.md, 'Propagation').
 #pragma once
 
 #include "basis/transport.hpp"

@@ -1,5 +1,5 @@
 // Linear transports: the free-space transport equation discretised on cells and projected on the basis
-// (docs/bases.md, 'transport').
+// (docs/method.md, Propagation).
 #pragma once
 
 #include "basis/transport.hpp"

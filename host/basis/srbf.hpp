@@ -1,7 +1,7 @@
 // Spherical radial basis functions: the Abel-Poisson kernel G at fixed centres.
 // G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2), b_i(w) = G(w . xi_i; lambda), Int b_i dw
 // = 4 pi, A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda^2): the 4 pi belongs there with the plain
-// measure dw (docs/bases.md).
+// measure dw.
 #pragma once
 
 #include "basis/basis.hpp"
