@@ -81,4 +81,9 @@ std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres,
                                                double lambda = kDefaultLambda);
 
+/// The same from a JSON file {"name": "mine", "centres": [[x, y, z], ...]}: 1 to 64 directions of any length, 1e-3
+/// radians apart at least; the file's stem where it has no name. Throws Error(bad_input) with the JSON pointer of what
+/// is wrong, and Error(usage) like make_basis.
+std::unique_ptr<Basis> load_basis(const std::string& path, double lambda = kDefaultLambda);
+
 }  // namespace clpv

@@ -52,12 +52,12 @@ std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const 
 }
 
 glm::dmat3 rotation_to(const glm::dvec3& axis) {
+  // Rodrigues about +z x axis = v: R = c + [v]x + v v^T / (1 + c); glm's matrices are columns.
   const double c = axis.z;
-  constexpr double kOpposite = 1e-12;
-  if (1 + c < kOpposite) return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-  // Rodrigues about +z x axis = (-y, x, 0): R = c + [v]x + v v^T / (1 + c); glm's matrices are columns.
   const glm::dvec3 v(-axis.y, axis.x, 0);
-  const double k = 1 / (1 + c);
+  const double square = glm::dot(v, v);  // (1 - c) (1 + c)
+  if (c < 0 && square == 0) return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  const double k = c < 0 ? (1 - c) / square : 1 / (1 + c);  // 1 + c loses its digits near -z
   return {{c + k * v.x * v.x, k * v.x * v.y, -v.y}, {k * v.x * v.y, c + k * v.y * v.y, v.x}, axis};
 }
 

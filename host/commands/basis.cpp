@@ -16,7 +16,7 @@ namespace clpv {
 namespace {
 
 struct Options {
-  std::string name, lobe = "exact", axis = "0,0,1";
+  std::string name, centres_file, lobe = "exact", axis = "0,0,1";
   double lambda = kDefaultLambda;
   int table_size = LobeOptions{}.table_size;
   bool json = false;
@@ -73,13 +73,22 @@ void print(const nlohmann::json& bases) {
   }
 }
 
+std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {
+  std::vector<std::unique_ptr<Basis>> bases;
+  if (!options.centres_file.empty()) {
+    bases.push_back(load_basis(options.centres_file, options.lambda));
+  } else if (!options.name.empty()) {
+    bases.push_back(make_basis(options.name, options.lambda));
+  } else {
+    for (const std::string& name : basis_names()) bases.push_back(make_basis(name, options.lambda));
+  }
+  return bases;
+}
+
 void run(const Options& options) {
   const glm::dvec3 axis = unit_axis(options.axis);
-  const std::vector<std::string> names =
-      options.name.empty() ? basis_names() : std::vector<std::string>{options.name};
   nlohmann::json bases = nlohmann::json::array();
-  for (const std::string& name : names)
-    bases.push_back(describe(*make_basis(name, options.lambda), options, axis));
+  for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, options, axis));
   if (options.json) {
     fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"bases", bases}}.dump(2));
   } else {
@@ -93,7 +102,13 @@ void add_basis(CLI::App& app, Shared&) {
   CLI::App* command = app.add_subcommand(
       "basis", "Tell of each basis: conditioning, error of its clamped cosine, energy after 8 and 24 steps");
   auto options = std::make_shared<Options>();
-  command->add_option("name", options->name, "one basis; all, if not given")->type_name("NAME");
+  CLI::Option* name =
+      command->add_option("name", options->name, "one basis; all, if not given")->type_name("NAME");
+  command
+      ->add_option("--centres", options->centres_file,
+                   "an SRBF set of your own: JSON {\"name\": ..., \"centres\": [[x, y, z], ...]}")
+      ->type_name("FILE")
+      ->excludes(name);
   command->add_option("--lambda", options->lambda, "bandwidth of the SRBF kernels, between 0 and 1")
       ->capture_default_str();
   command->add_option("--axis", options->axis, "axis of the clamped cosine, any length")

@@ -1,0 +1,85 @@
+// A user's own SRBF set: what load_basis makes of a file, and what it refuses; `clpv basis` on one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "basis/basis.hpp"
+#include "run_program.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+class CentresFile : public ::testing::Test {
+ protected:
+  std::string file(const std::string& text) {
+    const std::string path = (folder_.path() / "mine.json").string();
+    std::ofstream(path) << text;
+    return path;
+  }
+  void expect_refused(const std::string& path, const std::string& word) {
+    try {
+      load_basis(path);
+      ADD_FAILURE() << "taken: " << word;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
+      EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr(word)));
+    }
+  }
+  test::TemporaryFolder folder_;
+};
+
+const char* const kAxesFile = R"({"name": "axes", "centres":
+    [[2, 0, 0], [-1e200, 0, 0], [0, 1, 0], [0, -3, 0], [0, 0, 1e-200], [0, 0, -1]]})";
+
+TEST_F(CentresFile, MakesTheBasis) {
+  const auto basis = load_basis(file(kAxesFile), 0.3);
+  const auto named = make_basis("srbf6", 0.3);
+  EXPECT_EQ(basis->name(), "axes");
+  EXPECT_EQ(basis->centres(), named->centres());
+  EXPECT_EQ(basis->condition(), named->condition());
+  EXPECT_EQ(load_basis(file(R"({"centres": [[0, 0, 1]]})"))->name(), "mine");
+}
+
+TEST_F(CentresFile, RefusesWithThePlace) {
+  const std::pair<std::string, std::string> bad[] = {
+      {"{", "not JSON"},
+      {"[1]", "object"},
+      {"{}", "/centres is missing"},
+      {R"({"centres": []})", "1 to 64"},
+      {R"({"centres": 7})", "is 7"},
+      {R"({"centres": [[0, 0, 1], [1, 2]]})", "/centres/1"},
+      {R"({"centres": [[0, 0, 0]]})", "/centres/0"},
+      {R"({"centres": [[0, 0, "1"]]})", "/centres/0/2"},
+      {R"({"centres": [[0, 0, 1e999]]})", "not JSON"},
+      {R"({"centres": [[0, 0, 1], [0, 0, 5]]})", "/centres/1"},
+      {R"({"centres": [[0, 0, 1]], "lambda": 0.2})", "lambda"},
+      {R"({"centres": [[0, 0, 1]], "name": 3})", "/name"},
+      {std::string(100000, '['), "not JSON"},
+      {std::string(2 << 20, ' '), "bytes"},
+  };
+  for (const auto& [text, word] : bad) expect_refused(file(text), word);
+  std::string many = "[[0,0,1]";
+  for (int i = 1; i < 65; ++i) many += ",[" + std::to_string(i) + ",1,0]";
+  expect_refused(file("{\"centres\": " + many + "]}"), "array of 65");
+  expect_refused((folder_.path() / "none.json").string(), "cannot be read");
+  expect_refused(folder_.path().string(), "cannot be read");
+}
+
+TEST_F(CentresFile, IsDescribedByTheProgram) {
+  const std::string program = CLPV_PROGRAM;
+  const test::Outcome good = test::run(program + " basis --json --lambda 0.3 --centres " + file(kAxesFile));
+  ASSERT_EQ(good.exit_code, 0) << good.err;
+  const auto json = nlohmann::json::parse(good.out);
+  EXPECT_EQ(json.at("schema"), 1);
+  EXPECT_EQ(json.at("bases").size(), 1u);
+  EXPECT_EQ(json.at("bases")[0].at("name"), "axes");
+  EXPECT_EQ(test::run(program + " basis --centres " + file("{")).exit_code, 3);
+  EXPECT_EQ(test::run(program + " basis sh2 --centres " + file(kAxesFile)).exit_code, 2);
+  EXPECT_EQ(test::run(program + " basis --lambda 0.001 --centres " + file(kAxesFile)).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace clpv

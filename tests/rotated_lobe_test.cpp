@@ -1,0 +1,243 @@
+// The paper's lobes: the one towards +z, rotated, with and without the table; and direction bins' integrals.
+#include "basis/rotated_lobe.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "basis/quadrature.hpp"
+#include "basis/transport.hpp"
+#include "sphere_quadrature.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::Pointwise;
+
+constexpr double kPi = std::numbers::pi;
+const glm::dvec3 kUp(0, 0, 1);
+const glm::dvec3 kOblique = glm::normalize(glm::dvec3(-2, 1, -3));
+const LobeOptions kRotated{LobeKind::rotate, 0};
+const LobeOptions kTable{LobeKind::rotate, 256};
+
+// |f - max(0, w . axis)| / |max(0, w . axis)|, from A and alpha.
+double error_at(const Basis& basis, const Lobes& lobes, const glm::dvec3& axis) {
+  const std::vector<double> c = lobes(axis), product = basis.gram() * c;
+  std::vector<double> alpha(c.size());
+  basis.cosine_integrals(axis, alpha);
+  double square = 2 * kPi / 3;
+  for (std::size_t i = 0; i < c.size(); ++i) square += c[i] * (product[i] - 2 * alpha[i]);
+  return std::sqrt(square / (2 * kPi / 3));
+}
+
+struct Errors {
+  const char* name;
+  double up, oblique, mean;
+};
+class RotatedErrors : public ::testing::TestWithParam<Errors> {};
+INSTANTIATE_TEST_SUITE_P(
+    Names, RotatedErrors,
+    ::testing::Values(Errors{"sh2", .354, .354, .354}, Errors{"sh3", .088, .088, .088},
+                      Errors{"sh4", .088, .088, .088}, Errors{"sh5", .044, .044, .044},
+                      Errors{"srbf4", .158, .432, .401}, Errors{"srbf6", .123, .316, .280},
+                      Errors{"srbf8v1", .118, .248, .231}, Errors{"srbf8v2", .356, .357, .357},
+                      Errors{"srbf8v3", .117, .313, .233}, Errors{"srbf14", .080, .090, .089},
+                      Errors{"bins24", .293, .274, .276}, Errors{"bins96", .150, .140, .145}),
+    [](const auto& info) { return info.param.name; });
+
+TEST_P(RotatedErrors, AreThoseOfTheTable) {
+  constexpr double kTolerance = .003;
+  const auto basis = make_basis(GetParam().name);
+  const Lobes lobes(*basis, kRotated);
+  EXPECT_NEAR(error_at(*basis, lobes, kUp), GetParam().up, kTolerance);
+  EXPECT_NEAR(error_at(*basis, lobes, kOblique), GetParam().oblique, kTolerance);
+  constexpr int kAxesDrawn = 2000;
+  double mean = 0;
+  for (const glm::dvec3& axis : testing::spread_axes(kAxesDrawn))
+    mean += error_at(*basis, lobes, axis) / kAxesDrawn;
+  EXPECT_NEAR(mean, GetParam().mean, kTolerance);
+}
+
+TEST(Lobes, OfBasesWithoutCentresAreProjected) {
+  for (const char* name : {"sh2", "sh5", "bins24"}) {
+    const auto basis = make_basis(name);
+    for (const glm::dvec3& axis : testing::spread_axes(5)) {
+      EXPECT_EQ(Lobes(*basis, kTable)(axis), basis->clamped_cosine(axis));
+    }
+  }
+}
+
+TEST(Lobes, BandThreeOfSh4IsZero) {
+  for (const glm::dvec3& axis : testing::spread_axes(5)) {
+    const std::vector<double> sh4 = make_basis("sh4")->clamped_cosine(axis);
+    const std::vector<double> sh3 = make_basis("sh3")->clamped_cosine(axis);
+    for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(sh4[i], i < 9 ? sh3[i] : 0);
+  }
+}
+
+TEST(Lobes, OfSrbf8v2AlongTheAxesSpanFourDimensions) {
+  // Opposite ones add up to the same for x, y and z.
+  const auto basis = make_basis("srbf8v2");
+  const auto sum = [&](const glm::dvec3& axis) {
+    std::vector<double> a = basis->clamped_cosine(axis), b = basis->clamped_cosine(-axis);
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+    return a;
+  };
+  EXPECT_THAT(sum({1, 0, 0}), Pointwise(DoubleNear(1e-12), sum(kUp)));
+  EXPECT_THAT(sum({0, 1, 0}), Pointwise(DoubleNear(1e-12), sum(kUp)));
+}
+
+TEST(RotatedLobes, AreTheLobeTowardsZTurned) {
+  // (R c)_i = Int b_i(w) f(Rot^-1 w) dw.
+  const auto basis = make_basis("srbf8v1");
+  const glm::dmat3 back = glm::transpose(rotation_to(kOblique));
+  const std::vector<double> up = basis->clamped_cosine(kUp), turned = Lobes(*basis, kRotated)(kOblique);
+  const std::vector<double> expected = basis->gram() * turned;
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    const auto product = [&](const glm::dvec3& w) {
+      return basis->evaluate(w)[i] * basis->value(up, back * w);
+    };
+    EXPECT_NEAR(testing::integral(testing::sphere(), product), expected[i], 1e-10);
+  }
+}
+
+TEST(RotatedLobes, TowardsMinusZAreTheLobeUpsideDown) {
+  const auto basis = make_basis("srbf6");
+  EXPECT_THAT(Lobes(*basis, kRotated)(-kUp), Pointwise(DoubleNear(1e-12), basis->clamped_cosine(-kUp)));
+}
+
+TEST(RotatedLobes, MakeTheTransportsLobes) {
+  const auto basis = make_basis("srbf8v2");
+  const Lobes lobes(*basis, kTable);
+  for (const char* name : {"sampled", "exact"}) {
+    const Transport transport = make_transport(name, *basis, kTable);
+    const Matrix& columns = std::get<FaceTransport>(transport.scheme).lobes;
+    for (int a = 0; a < 6; ++a) {
+      const std::vector<double> lobe = lobes(glm::dvec3(kAxes[static_cast<std::size_t>(a)]));
+      const double carried = transport.unit_flux_lobes ? basis->energy(lobe) : kPi;
+      for (int i = 0; i < 8; ++i)
+        EXPECT_NEAR(columns(i, a), lobe[static_cast<std::size_t>(i)] / carried, 1e-15);
+    }
+  }
+}
+
+TEST(RotatedLobes, FloorCostsSrbf14ItsAxisLobes) {
+  // A^-1 amplifies what floor() drops: harmless at condition numbers of 1e3, not at 1.8e4.
+  for (const char* name : {"srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3"}) {
+    const auto basis = make_basis(name);
+    EXPECT_NEAR(error_at(*basis, Lobes(*basis, kTable), kUp), error_at(*basis, Lobes(*basis, kRotated), kUp),
+                .001)
+        << name;
+  }
+  const auto rich = make_basis("srbf14");
+  EXPECT_GT(error_at(*rich, Lobes(*rich, kTable), kUp), .2);
+  EXPECT_LT(error_at(*rich, Lobes(*rich, {LobeKind::rotate, 1 << 16}), kUp), .081);
+}
+
+TEST(RotationTo, TurnsAsLittleAsPossible) {
+  std::vector<glm::dvec3> axes = testing::spread_axes(20);
+  axes.insert(axes.end(), {kUp, -kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1e-7, 0, -1))});
+  for (const glm::dvec3& axis : axes) {
+    const glm::dmat3 rotation = rotation_to(axis);
+    EXPECT_NEAR(glm::length(rotation * kUp - axis), 0, 1e-12);
+    const glm::dmat3 one = glm::transpose(rotation) * rotation;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(one[i][j], i == j, 1e-12);
+    }
+    EXPECT_NEAR(glm::determinant(rotation), 1, 1e-12);
+    // The trace tells the angle: that between +z and the axis.
+    EXPECT_NEAR(rotation[0][0] + rotation[1][1] + rotation[2][2], 1 + 2 * axis.z, 1e-12);
+  }
+  EXPECT_EQ(rotation_to(-kUp) * glm::dvec3(1, 0, 0), glm::dvec3(1, 0, 0));
+}
+
+TEST(ZonalTable, IsReadByFloor) {
+  const ZonalTable table(5, [](double t) { return t; });  // -1, -.5, 0, .5, 1
+  const std::pair<double, double> reads[] = {
+      {-1, -1}, {-0.51, -1},    {-0.49, -0.5},    {0.999, 0.5},
+      {1, 1},   {1 + 1e-15, 1}, {-1 - 1e-15, -1}, {0.5 - 1e-7, 0.5}};  // the last: a float's rounding
+  for (const auto& [t, value] : reads) EXPECT_EQ(table(t), value) << t;
+  EXPECT_EQ(table.values(), (std::vector<float>{-1, -0.5f, 0, 0.5f, 1}));
+  EXPECT_THROW(ZonalTable(1, [](double) { return 0.0; }), Error);
+  EXPECT_THROW(ZonalTable(1 << 21, [](double) { return 0.0; }), Error);
+}
+
+TEST(ZonalTable, HoldsTheBasisFunctions) {
+  const auto basis = make_basis("srbf8v2");
+  const ZonalTable fine = function_table(*basis, 1 << 18);
+  EXPECT_NEAR(gram_table(*basis, 256)(1), basis->gram()(0, 0), 1e-12);
+  for (const glm::dvec3& w : testing::spread_axes(20)) {
+    EXPECT_THAT(evaluate(*basis, fine, w), Pointwise(DoubleNear(1e-4), basis->evaluate(w)));
+  }
+  const auto harmonics = make_basis("sh3");
+  EXPECT_EQ(evaluate(*harmonics, fine, kOblique), harmonics->evaluate(kOblique));
+}
+
+TEST(LobeKind, IsNamed) {
+  EXPECT_EQ(lobe_kind("exact"), LobeKind::exact);
+  EXPECT_EQ(lobe_kind("rotate"), LobeKind::rotate);
+  EXPECT_THROW(lobe_kind("turn"), Error);
+}
+
+// Int over each bin of max(0, w . d), split at d's horizon.
+std::vector<double> bin_integrals(const Basis& bins, const glm::dvec3& d) {
+  std::vector<glm::dvec3> planes = bins.creases();
+  planes.push_back(d);
+  std::vector<double> alpha(static_cast<std::size_t>(bins.size()), 0.0);
+  for (const SphericalPolygon& part : split(octants(), planes)) {
+    glm::dvec3 middle(0);
+    for (const glm::dvec3& corner : part) middle += corner;
+    if (glm::dot(middle, d) < 0) continue;
+    const std::vector<double> b = bins.evaluate(glm::normalize(middle));
+    const auto bin = static_cast<std::size_t>(std::ranges::max_element(b) - b.begin());
+    for (const QuadratureNode& node : nodes_of(part)) alpha[bin] += node.weight * glm::dot(node.w, d);
+  }
+  return alpha;
+}
+
+TEST(DirectionBins, CosineIntegralsAreNearTheIntegrals) {
+  for (const auto& [name, largest, root_mean_square] :
+       {std::tuple{"bins24", .01, .0025}, {"bins96", .033, .0045}}) {
+    const auto bins = make_basis(name);
+    double worst = 0, squares = 0;
+    std::vector<glm::dvec3> directions = testing::spread_axes(100);
+    directions.insert(directions.end(),
+                      {kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1, 1, 0)), glm::normalize(glm::dvec3(1))});
+    for (const glm::dvec3& d : directions) {
+      const std::vector<double> expected = bin_integrals(*bins, d);
+      std::vector<double> alpha(expected.size());
+      bins->cosine_integrals(d, alpha);
+      double sum = 0;
+      for (std::size_t i = 0; i < alpha.size(); ++i) {
+        EXPECT_GE(alpha[i], 0);
+        sum += alpha[i];
+        const double difference = (alpha[i] - expected[i]) * bins->size() / kPi;
+        worst = std::max(worst, std::abs(difference));
+        squares += difference * difference / static_cast<double>(alpha.size() * directions.size());
+      }
+      EXPECT_NEAR(sum, kPi, 1e-12);
+    }
+    EXPECT_LT(worst, largest) << name;
+    EXPECT_LT(std::sqrt(squares), root_mean_square) << name;
+  }
+}
+
+TEST(DirectionBins, ShareWhatLiesBetweenThem) {
+  const auto basis = make_basis("bins24");
+  const auto shares = [&](const glm::dvec3& w) {
+    std::vector<double> b = basis->evaluate(glm::normalize(w));
+    std::erase(b, 0.0);
+    return b;
+  };
+  EXPECT_EQ(shares({1, 0, 0}), std::vector<double>(4, 0.25));
+  EXPECT_EQ(shares({0, 1, 0.3}), std::vector<double>(2, 0.5));
+  EXPECT_EQ(shares({1, 1, 0}), std::vector<double>(4, 0.25));
+  EXPECT_THAT(shares({1, 1, 1}), Pointwise(DoubleNear(1e-15), std::vector<double>(3, 1.0 / 3)));
+}
+
+}  // namespace
+}  // namespace clpv
