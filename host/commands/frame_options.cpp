@@ -22,9 +22,13 @@ void add_frame_options(CLI::App& command, GivenOptions& given) {
 
 RenderOptions resolve_options(const GivenOptions& given, const Scene& scene) {
   RenderOptions options;
+  if (const auto preset = given.find("preset"); preset != given.end())
+    set_option(options, "preset", preset->second);
   if (scene.cascade_size) options.cascade_size = *scene.cascade_size;
   if (scene.cascades) options.cascades = *scene.cascades;
-  for (const auto& [name, value] : given) set_option(options, name, value);
+  for (const auto& [name, value] : given) {
+    if (name != "preset") set_option(options, name, value);
+  }
   return options;
 }
 

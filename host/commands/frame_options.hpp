@@ -16,7 +16,7 @@ using GivenOptions = std::map<std::string, std::string>;
 /// Adds one option of text each; `given` must outlive the parse.
 void add_frame_options(CLI::App& command, GivenOptions& given);
 
-/// Defaults, then what the scene wishes, then what was given. Throws Error(usage) for a bad value.
+/// The preset given, else the defaults; then what the scene wishes, then the other options given. Throws Error(usage) for a bad value.
 RenderOptions resolve_options(const GivenOptions& given, const Scene& scene);
 
 }  // namespace clpv

@@ -9,6 +9,8 @@
 
 #include "commands/commands.hpp"
 #include "commands/parse.hpp"
+#include "pipeline/options.hpp"
+#include "pipeline/presets.hpp"
 #include "pipeline/volume_files.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
@@ -24,7 +26,7 @@ struct Source {
 };
 
 struct Options {
-  std::string basis = "sh2", transport = "sampled", state = "coefficients";
+  std::string basis = "sh2", transport = "sampled", state = "coefficients", preset;
   double lambda = kDefaultLambda;
   int grid = 32, iterations = 8;
   std::vector<Source> sources;
@@ -118,9 +120,29 @@ nlohmann::json options_json(const Options& options) {
         {{"at", {s.at.x, s.at.y, s.at.z}}, {"normal", normal}, {"flux", {s.flux.x, s.flux.y, s.flux.z}}});
   }
   for (const auto& [a, b] : options.blocks) blocks.push_back({{a.x, a.y, a.z}, {b.x, b.y, b.z}});
-  return {{"basis", options.basis}, {"lambda", options.lambda}, {"transport", options.transport},
-          {"state", options.state}, {"grid", options.grid},     {"iterations", options.iterations},
-          {"sources", sources},     {"blocks", blocks}};
+  return {{"preset", options.preset.empty() ? nlohmann::json() : nlohmann::json(options.preset)},
+          {"basis", options.basis},
+          {"lambda", options.lambda},
+          {"transport", options.transport},
+          {"state", options.state},
+          {"grid", options.grid},
+          {"iterations", options.iterations},
+          {"sources", sources},
+          {"blocks", blocks}};
+}
+
+/// What a preset says of propagation, where the command line says nothing of its own.
+void take_preset(const CLI::App& command, Options& options) {
+  if (options.preset.empty()) return;
+  RenderOptions preset;
+  apply_preset(preset, options.preset);
+  const auto take = [&](const char* option, auto& member, const auto& value) {
+    if (command.count(option) == 0) member = value;
+  };
+  take("--basis", options.basis, preset.basis);
+  take("--lambda", options.lambda, preset.lambda);
+  take("--transport", options.transport, preset.transport);
+  take("--state", options.state, preset.state);
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -174,6 +196,11 @@ void add_propagate(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("propagate", "Propagate sources in an empty grid; energy of each step as JSON [W]");
   auto options = std::make_shared<Options>();
+  command
+      ->add_option(
+          "--preset", options->preset,
+          "basis, lambda, transport and state of that preset of clpv render, where not given themselves")
+      ->check(CLI::IsMember(preset_names()));
   command->add_option("--basis", options->basis, "basis of the sphere (clpv basis lists them)")
       ->capture_default_str();
   command->add_option("--lambda", options->lambda, "SRBF bandwidth, in (0, 1)")->capture_default_str();
@@ -244,7 +271,10 @@ void add_propagate(CLI::App& app, Shared& shared) {
   command->add_option("-o,--out", options->npy, "accumulated light as .npy, float32, shape 3,N,z,y,x [W/sr]")
       ->type_name("FILE.npy");
   command->add_option("--vti", options->vti, "accumulated light for ParaView")->type_name("FILE.vti");
-  command->callback([options, &shared] { run(*options, shared); });
+  command->callback([command, options, &shared] {
+    take_preset(*command, *options);
+    run(*options, shared);
+  });
 }
 
 }  // namespace clpv

@@ -36,7 +36,7 @@ std::filesystem::path cache_folder(const Options& options) {
   throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
 }
 
-/// All combinations: what --vary says; without a word about bases or transports, all of them.
+/// All combinations: what --vary says; without a word about bases, transports or presets, which have both, all of them.
 std::vector<Variant> variants(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
@@ -49,8 +49,9 @@ std::vector<Variant> variants(const Options& options) {
   const auto mentioned = [&](const char* name) {
     return options.given.contains(name) || std::ranges::count(varied, name, &VariedOption::name) > 0;
   };
-  if (!mentioned("transport")) varied.insert(varied.begin(), {"transport", transport_names()});
-  if (!mentioned("basis")) varied.insert(varied.begin(), {"basis", basis_names()});
+  const bool preset = mentioned("preset");
+  if (!preset && !mentioned("transport")) varied.insert(varied.begin(), {"transport", transport_names()});
+  if (!preset && !mentioned("basis")) varied.insert(varied.begin(), {"basis", basis_names()});
   return combinations(varied);
 }
 
@@ -191,10 +192,11 @@ void add_options(CLI::App& command, Options& options) {
                   "by name, repeatable (default: all cameras of all scenes)")
       ->type_name("NAME");
   command
-      .add_option("--vary", options.varied,
-                  "a render option and its values, repeatable: every combination is a variant. Bases and "
-                  "transports vary\n"
-                  "over all there are, unless --basis or --transport fixes them or --vary names them")
+      .add_option(
+          "--vary", options.varied,
+          "a render option and its values, repeatable: every combination is a variant. Bases and "
+          "transports vary\n"
+          "over all there are, unless --preset, --basis or --transport fixes them or --vary names them")
       ->type_name("OPTION=a,b,c");
   command.add_option("--view", options.view, fmt::format("{}", fmt::join(show_names(), "|")))
       ->type_name("VIEW")

@@ -8,6 +8,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "pipeline/presets.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -23,9 +24,20 @@ struct Range {
   bool open = false;  ///< the ends themselves are not allowed
 };
 
+/// A line a preset.
+std::string preset_help() {
+  std::string text = "a set of options, overridden by any of them that is given";
+  for (const Preset& preset : presets()) {
+    text += fmt::format("\n{}: {}", preset.name, preset.help);
+    for (const auto& [name, value] : preset.options) text += fmt::format(" --{} {}", name, value);
+  }
+  return text;
+}
+
 /// Calls visit(name, member, help, allowed) for every option; the one list of them.
 template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
+  visit("preset", o.preset, preset_help(), preset_names());
   visit("basis", o.basis, "basis of the sphere (clpv basis tells of each)", basis_names());
   visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
   visit("transport", o.transport, "how light moves from cell to cell", transport_names());
@@ -104,15 +116,16 @@ bool parse(std::string_view text, const std::vector<std::string>& choices, bool&
 
 std::vector<OptionInfo> list_options(const RenderOptions& options) {
   std::vector<OptionInfo> list;
-  for_each_option(options, [&](const char* name, const auto& member, const char* help, const auto& allowed) {
-    list.push_back({name, help, text_of(allowed), text_of(member)});
-  });
+  for_each_option(options,
+                  [&](const char* name, const auto& member, const std::string& help, const auto& allowed) {
+                    list.push_back({name, help, text_of(allowed), text_of(member)});
+                  });
   return list;
 }
 
 void set_option(RenderOptions& options, std::string_view name, std::string_view value) {
   bool known = false;
-  for_each_option(options, [&](const char* candidate, auto& member, const char*, const auto& allowed) {
+  for_each_option(options, [&](const char* candidate, auto& member, const std::string&, const auto& allowed) {
     if (name != candidate) return;
     known = true;
     if (!parse(value, allowed, member)) {
@@ -120,12 +133,14 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
     }
   });
   if (!known) throw Error(ExitCode::usage, "no option named --{}", name);
+  if (name == "preset") apply_preset(options, value);
 }
 
 nlohmann::json to_json(const RenderOptions& options) {
   nlohmann::json json;
-  for_each_option(
-      options, [&](const char* name, const auto& member, const char*, const auto&) { json[name] = member; });
+  for_each_option(options, [&](const char* name, const auto& member, const std::string&, const auto&) {
+    json[name] = member;
+  });
   return json;
 }
 

@@ -15,9 +15,10 @@ enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal
 
 enum class ToneMap { none, reinhard, aces };
 
-/// The defaults are what comes closest to path tracing at about the published scheme's cost (docs/method.md,
-/// 'Two ways to use clpv').
+/// The defaults are the preset `best`, and stand here alone: what comes closest to path tracing at about the
+/// published scheme's cost (docs/method.md, 'Two ways to use clpv').
 struct RenderOptions {
+  std::string preset = "best";  ///< the one set last; options set after it may differ from it
   std::string basis = "srbf8v2";
   double lambda = 0.25;
   std::string transport = "upwind";
@@ -52,7 +53,7 @@ struct OptionInfo {
 /// All options with their present values, in the order of --help.
 std::vector<OptionInfo> list_options(const RenderOptions& options);
 
-/// Sets one option from text. Throws Error(usage) that names the option, the value found and the values
+/// Sets one option from text; `preset` sets all that presets know of, so it comes before those that override it. Throws Error(usage) that names the option, the value found and the values
 /// allowed.
 void set_option(RenderOptions& options, std::string_view name, std::string_view value);
 

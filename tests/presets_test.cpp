@@ -1,0 +1,122 @@
+// Presets: what they set, what overrides them, and that results tell what was resolved.
+#include "pipeline/presets.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/image_io.hpp"
+#include "pipeline/options.hpp"
+#include "run_program.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Presets, BestIsTheDefaults) {
+  RenderOptions options;
+  set_option(options, "preset", "best");
+  EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
+  EXPECT_EQ(to_json(options)["preset"], "best");
+}
+
+TEST(Presets, PaperIsThePublishedScheme) {
+  RenderOptions options;
+  set_option(options, "preset", "paper");
+  const nlohmann::json json = to_json(options);
+  EXPECT_EQ(json["preset"], "paper");
+  EXPECT_EQ(json["basis"], "srbf8v2");
+  EXPECT_EQ(json["lambda"], 0.25);
+  EXPECT_EQ(json["transport"], "sampled");
+  EXPECT_EQ(json["state"], "coefficients");
+  EXPECT_EQ(json["rsm-format"], "paper");
+  EXPECT_EQ(json["blocking"], "one-sided");
+  EXPECT_EQ(json["injection"], "nearest");
+  EXPECT_EQ(json["late-light"], false);
+  EXPECT_EQ(json["gather-floor"], 0);
+}
+
+TEST(Presets, LeaveAloneWhatTheyDoNotSet) {
+  RenderOptions options;
+  set_option(options, "width", "77");
+  set_option(options, "cascade-size", "3.5");
+  set_option(options, "preset", "paper");
+  set_option(options, "preset", "best");
+  nlohmann::json expected = to_json(RenderOptions{});
+  expected["width"] = 77;
+  expected["cascade-size"] = 3.5;
+  EXPECT_EQ(to_json(options), expected) << "best undoes all that paper set";
+}
+
+TEST(Presets, RefusesUnknownNames) {
+  RenderOptions options;
+  for (const auto& refuse : {+[](RenderOptions& o) { set_option(o, "preset", "worst"); },
+                             +[](RenderOptions& o) { apply_preset(o, "worst"); }}) {
+    try {
+      refuse(options);
+      ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::usage);
+      EXPECT_THAT(error.what(), HasSubstr("worst"));
+      EXPECT_THAT(error.what(), HasSubstr("best|paper"));
+    }
+  }
+}
+
+TEST(Presets, RenderRecordsWhatWasResolved) {
+  const test::TemporaryFolder folder;
+  const std::string image = (folder.path() / "a.exr").string(), stats = (folder.path() / "a.json").string();
+  // The preset comes last, and is overridden all the same; the scene's own cascades stand.
+  const test::Outcome outcome =
+      test::run(std::string(CLPV_PROGRAM) + " render " + CLPV_SOURCE_DIR + "/scenes/cornell.json -o " +
+                image + " --stats " + stats + " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json options = nlohmann::json::parse(test::read_file(stats)).at("options");
+  EXPECT_EQ(options["preset"], "paper");
+  EXPECT_EQ(options["basis"], "sh2");
+  EXPECT_EQ(options["transport"], "sampled");
+  EXPECT_EQ(options["cascade-size"], 2.0);
+  const auto metadata = read_image(image).metadata;
+  EXPECT_EQ(metadata.at("preset"), "paper");
+  EXPECT_EQ(metadata.at("basis"), "sh2");
+  EXPECT_EQ(metadata.at("blocking"), "one-sided");
+}
+
+TEST(Presets, PropagateTakesThem) {
+  const auto options = [](const std::string& given) {
+    const test::Outcome outcome =
+        test::run(std::string(CLPV_PROGRAM) + " propagate --grid 5 --iterations 1 --at 2,2,2 " + given);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out).at("options");
+  };
+  EXPECT_EQ(options("")["preset"], nullptr);
+  const nlohmann::json paper = options("--lambda 0.3 --preset paper");
+  EXPECT_EQ(paper["preset"], "paper");
+  EXPECT_EQ(paper["basis"], "srbf8v2");
+  EXPECT_EQ(paper["lambda"], 0.3);
+  EXPECT_EQ(options("--preset best")["transport"], RenderOptions{}.transport);
+}
+
+TEST(Presets, QualityTakesAPresetsBasisAndTransport) {
+  const test::TemporaryFolder folder;
+  const test::Outcome outcome =
+      test::run(std::string(CLPV_PROGRAM) + " quality " + CLPV_SOURCE_DIR +
+                "/scenes/cornell.json --camera red --vary preset=paper,best --width 16 --height 9 --grid 8 "
+                "--spp 1 --frames 1 --format json --cache " +
+                folder.path().string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json cells = nlohmann::json::parse(outcome.out).at("cells");
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_NE(cells[0]["nrmse"], cells[1]["nrmse"]);
+}
+
+TEST(Presets, HelpStatesThem) {
+  const test::Outcome outcome = test::run(std::string(CLPV_PROGRAM) + " render --help");
+  EXPECT_THAT(outcome.out, HasSubstr("paper: the published scheme --basis srbf8v2"));
+}
+
+}  // namespace
+}  // namespace clpv
