@@ -8,6 +8,7 @@
 
 #include "basis/lobe_quality.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "commands/basis_figures.hpp"
 #include "commands/commands.hpp"
 #include "commands/parse.hpp"
 #include "support/error.hpp"
@@ -16,7 +17,7 @@ namespace clpv {
 namespace {
 
 struct Options {
-  std::string name, centres_file, lobe = "exact", axis = "0,0,1";
+  std::string name, centres_file, lobe = "exact", axis = "0,0,1", figures;
   double lambda = kDefaultLambda;
   int table_size = LobeOptions{}.table_size;
   bool json = false;
@@ -85,7 +86,17 @@ std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {
   return bases;
 }
 
+/// Of the bases that are named, or else of the paper's.
+void write_figures(const Options& options) {
+  const bool named = !options.name.empty() || !options.centres_file.empty();
+  const BasisFigures figures{named ? bases_of(options) : paper_bases(options.lambda),
+                             {lobe_kind(options.lobe), options.table_size},
+                             options.lambda};
+  for (const auto& file : write_basis_figures(figures, options.figures)) fmt::print("{}\n", file.string());
+}
+
 void run(const Options& options) {
+  if (!options.figures.empty()) return write_figures(options);
   const glm::dvec3 axis = unit_axis(options.axis);
   nlohmann::json bases = nlohmann::json::array();
   for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, options, axis));
@@ -121,7 +132,14 @@ void add_basis(CLI::App& app, Shared&) {
       ->capture_default_str();
   command->add_option("--table-size", options->table_size, "entries of the table of rotated lobes")
       ->capture_default_str();
-  command->add_flag("--json", options->json, "JSON on stdout");
+  CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
+  command
+      ->add_option(
+          "--figures", options->figures,
+          "draw the paper's figures 2, 3 and 6 into this folder instead: kernels, and lobes as spherical "
+          "plots")
+      ->type_name("DIR")
+      ->excludes(json);
   command->callback([options] { run(*options); });
 }
 
