@@ -1,7 +1,7 @@
 // The N coefficients of a cell as a struct of named scalars, and the few operations on it.
 // Named scalars and straight-line code, not arrays and loops: work-items then vectorise on CPU devices.
 //
-// CLPV_INLINE, CLPV_N, CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N-1), and the struct come from the host
+// CLPV_INLINE, CLPV_LANES, CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N-1), and the struct come from the host
 // (coefficient_macros), since generated text such as a basis's functions stands before this file and uses them.
 #ifndef CLPV_COEFFICIENTS_H
 #define CLPV_COEFFICIENTS_H
@@ -23,7 +23,7 @@ CLPV_INLINE Coefficients clpv_add(const Coefficients a, const Coefficients b) {
 }
 
 // a + s b
-CLPV_INLINE Coefficients clpv_add_scaled(const Coefficients a, const float s, const Coefficients b) {
+CLPV_INLINE Coefficients clpv_add_scaled(const Coefficients a, const CLPV_REAL s, const Coefficients b) {
   Coefficients r;
 #define CLPV_DO(i) r.c##i = fma(s, b.c##i, a.c##i);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
@@ -31,8 +31,8 @@ CLPV_INLINE Coefficients clpv_add_scaled(const Coefficients a, const float s, co
   return r;
 }
 
-CLPV_INLINE float clpv_dot(const Coefficients a, const Coefficients b) {
-  float r = 0.0f;
+CLPV_INLINE CLPV_REAL clpv_dot(const Coefficients a, const Coefficients b) {
+  CLPV_REAL r = 0.0f;
 #define CLPV_DO(i) r = fma(a.c##i, b.c##i, r);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO

@@ -2,7 +2,8 @@
 //
 // In: geometry volume, samples at the cells' corners. Out: transmittance volume, a number a cell and way.
 // B is the mean over the corners of the face a way leads to, looked up against the light (docs/method.md, 'Propagation');
-// the generated CLPV_TRANSMITTANCE comes from host/pipeline/transmit.cpp. A work-item is a cell.
+// the generated CLPV_TRANSMITTANCE comes from host/pipeline/transmit.cpp. A work-item is a cell, or
+// CLPV_LANES cells side by side.
 #include "coefficients.h"
 #include "volume/geometry.h"
 #include "volume/transmittance.h"
@@ -13,7 +14,7 @@
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) void transmit(
     CLPV_VOLUME_IN blockers, CLPV_VOLUME_OUT transmittance) {
-  const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
+  const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
   CLPV_RETURN_OUTSIDE(x, y);
   CLPV_LOAD_CORNER(0) CLPV_LOAD_CORNER(1) CLPV_LOAD_CORNER(2) CLPV_LOAD_CORNER(3)
   CLPV_LOAD_CORNER(4) CLPV_LOAD_CORNER(5) CLPV_LOAD_CORNER(6) CLPV_LOAD_CORNER(7)

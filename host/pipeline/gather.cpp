@@ -135,7 +135,7 @@ void Gatherer::reserve(std::size_t volumes, std::size_t cascades) {
 
 void Gatherer::pack(const Volume& volume, std::size_t slot) {
   const auto n = static_cast<std::size_t>(options_.grid);
-  pack_.setArg(0, volume.buffer());
+  pack_.setArg(0, volume.memory());
   pack_.setArg(1, packed_);
   pack_.setArg(2, static_cast<cl_uint>(slot * n * n * n));
   session_.launch(pack_, cl::NDRange(n, n, n), cl::NDRange(n, 1, 1));

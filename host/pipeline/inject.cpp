@@ -111,9 +111,9 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, V
   for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
     set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
                   surface.normal, surface.colour, surface.colour_scale, details_,
-                  static_cast<cl_uint>(texels), volume.buffer(), partials_, firsts_);
+                  static_cast<cl_uint>(texels), volume.memory(), partials_, firsts_);
     session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
-    set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.buffer(),
+    set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(),
                   partials_, firsts_);
     session_.launch(kernel.join_segments, cl::NDRange(blocks), kSegments);
   }

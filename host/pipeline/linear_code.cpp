@@ -72,7 +72,7 @@ int parity_class(std::span<const double> coordinate, const std::vector<SignedPer
 std::string LinearCode::name(const std::string& expression, const OperationCount& cost) {
   const auto [entry, fresh] = names_.emplace(expression, fmt::format("v{}", names_.size()));
   if (fresh) {
-    text_ += fmt::format("  const float {} = {};\n", entry->second, expression);
+    text_ += fmt::format("  const CLPV_REAL {} = {};\n", entry->second, expression);
     operations_.additions += cost.additions;
     operations_.multiplications += cost.multiplications;
     operations_.fused += cost.fused;
@@ -96,7 +96,7 @@ std::string LinearCode::combination(const std::vector<Term>& terms) {
   for (const Term& term : terms) {
     const std::string factor = float_literal(term.factor);
     sum = sum.empty() ? name(fmt::format("{} * {}", factor, term.input), {.multiplications = 1})
-                      : name(fmt::format("fma({}, {}, {})", factor, term.input, sum), {.fused = 1});
+                      : name(fmt::format("fma((CLPV_REAL)({}), {}, {})", factor, term.input, sum), {.fused = 1});
   }
   return sum;
 }

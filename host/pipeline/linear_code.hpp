@@ -23,7 +23,7 @@ struct OperationCount {
   int flops() const { return additions + multiplications + 2 * fused; }
 };
 
-/// A list of statements `const float NAME = ...;`. The same expression is never written twice.
+/// A list of statements `const CLPV_REAL NAME = ...;`. The same expression is never written twice.
 class LinearCode {
  public:
   /// Statements for rows * inputs (inputs: expressions). Mirrors must be symmetries of the inputs, commuting;

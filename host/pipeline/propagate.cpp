@@ -60,20 +60,20 @@ cl::NDRange Propagator::per_channel() const {
   return {n, n, 3 * n};
 }
 
-void Propagator::run_step(Form& form, bool blocking, const cl::Buffer& source, const cl::Buffer& target,
-                          const cl::Buffer& sum_so_far, const cl::Buffer& sum) {
+void Propagator::run_step(Form& form, bool blocking, const cl::Memory& source, const cl::Memory& target,
+                          const cl::Memory& sum_so_far, const cl::Memory& sum) {
   form.step.setArg(0, source);
   form.step.setArg(1, target);
   form.step.setArg(2, sum_so_far);
   form.step.setArg(3, sum);
-  if (blocking) form.step.setArg(4, transmitter_->transmittance().buffer());
+  if (blocking) form.step.setArg(4, transmitter_->transmittance().memory());
   const auto n = static_cast<std::size_t>(options_.grid);
   session_.launch(form.step, form.channels == 3 ? cl::NDRange(n, n, n) : per_channel(),
                   {options_.local[0], options_.local[1], 1});
 }
 
-void Propagator::run_expand(Form& form, const cl::Buffer& base, const cl::Buffer& sum,
-                            const cl::Buffer& accumulated) {
+void Propagator::run_expand(Form& form, const cl::Memory& base, const cl::Memory& sum,
+                            const cl::Memory& accumulated) {
   form.expand.setArg(0, base);
   form.expand.setArg(1, sum);
   form.expand.setArg(2, accumulated);
@@ -84,8 +84,7 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   const bool fluxes = options_.state == State::fluxes;
   if (volumes.geometry != nullptr && iterations > 1) transmit(*volumes.geometry);
   if (fluxes) sum_->clear(session_);
-  if (iterations == 0)
-    session_.copy(volumes.injected.buffer(), volumes.accumulated.buffer(), volumes.accumulated.bytes());
+  if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);
   if (volumes.late != nullptr) {
     volumes.late->clear(session_);
     if (fluxes && !late_sum_)
@@ -95,29 +94,29 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
 
   // Coefficients add up in `accumulated` itself, which starts as the injected field; fluxes in a sum of their
   // own.
-  const cl::Buffer& total = fluxes ? sum_->buffer() : volumes.accumulated.buffer();
-  const cl::Buffer* source = &volumes.injected.buffer();
+  const cl::Memory& total = fluxes ? sum_->memory() : volumes.accumulated.memory();
+  const cl::Memory* source = &volumes.injected.memory();
   Form* last = nullptr;
   for (int step = 1; step <= iterations; ++step) {
     const bool blocking = volumes.geometry != nullptr && step > 1;
     const bool is_late = volumes.late != nullptr && 2 * step > iterations && step > 1;
     const Volume& target = *travelling_[static_cast<std::size_t>(step % 2)];
-    const cl::Buffer& sum = !is_late ? total : fluxes ? late_sum_->buffer() : volumes.late->buffer();
-    const cl::Buffer& sum_so_far = step == 1 && !fluxes ? volumes.injected.buffer() : sum;
+    const cl::Memory& sum = !is_late ? total : fluxes ? late_sum_->memory() : volumes.late->memory();
+    const cl::Memory& sum_so_far = step == 1 && !fluxes ? volumes.injected.memory() : sum;
     Form& current = form(step == 1, blocking);
-    run_step(current, blocking, *source, target.buffer(), sum_so_far, sum);
-    source = &target.buffer();
+    run_step(current, blocking, *source, target.memory(), sum_so_far, sum);
+    source = &target.memory();
     last = &current;
     if (after_step) after_step(step, target);
   }
   if (last == nullptr) return;
-  if (fluxes) run_expand(*last, volumes.injected.buffer(), sum_->buffer(), volumes.accumulated.buffer());
+  if (fluxes) run_expand(*last, volumes.injected.memory(), sum_->memory(), volumes.accumulated.memory());
   if (volumes.late == nullptr) return;
   if (fluxes) {
-    run_expand(*last, volumes.late->buffer(), late_sum_->buffer(), volumes.late->buffer());
-    run_expand(*last, volumes.accumulated.buffer(), late_sum_->buffer(), volumes.accumulated.buffer());
+    run_expand(*last, volumes.late->memory(), late_sum_->memory(), volumes.late->memory());
+    run_expand(*last, volumes.accumulated.memory(), late_sum_->memory(), volumes.accumulated.memory());
   } else {
-    run_expand(*last, volumes.accumulated.buffer(), volumes.late->buffer(), volumes.accumulated.buffer());
+    run_expand(*last, volumes.accumulated.memory(), volumes.late->memory(), volumes.accumulated.memory());
   }
 }
 

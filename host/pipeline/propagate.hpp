@@ -58,9 +58,9 @@ class Propagator {
   };
   Form& form(bool first, bool blocking);
   void transmit(const Volume& geometry);
-  void run_step(Form& form, bool blocking, const cl::Buffer& source, const cl::Buffer& target,
-                const cl::Buffer& sum_so_far, const cl::Buffer& sum);
-  void run_expand(Form& form, const cl::Buffer& base, const cl::Buffer& sum, const cl::Buffer& accumulated);
+  void run_step(Form& form, bool blocking, const cl::Memory& source, const cl::Memory& target,
+                const cl::Memory& sum_so_far, const cl::Memory& sum);
+  void run_expand(Form& form, const cl::Memory& base, const cl::Memory& sum, const cl::Memory& accumulated);
   cl::NDRange per_channel() const;
 
   Session& session_;

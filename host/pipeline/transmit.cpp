@@ -122,8 +122,8 @@ Transmitter::Transmitter(Session& session, const Basis& basis, const Transport& 
 }
 
 void Transmitter::transmit(const Volume& geometry) {
-  kernel_.setArg(0, geometry.buffer());
-  kernel_.setArg(1, transmittance_->buffer());
+  kernel_.setArg(0, geometry.memory());
+  kernel_.setArg(1, transmittance_->memory());
   const auto n = static_cast<std::size_t>(grid_);
   session_.launch(kernel_, {n, n, n}, {local_[0], local_[1], 1});
 }

@@ -1,56 +1,147 @@
 #include "pipeline/volume.hpp"
 
+#include <glm/gtc/packing.hpp>
+
+#include "device/cl_error.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
 
-std::size_t pitch(const VolumeShape& shape) {
-  return static_cast<std::size_t>(shape.n) + 2;
-}
-
-std::size_t planes(const VolumeShape& shape) {
-  return static_cast<std::size_t>(shape.channels) * static_cast<std::size_t>(shape.coefficients);
-}
-
-/// Calls visit(index in the padded planes, index in host order) for every coefficient of every sample.
+/// Calls visit(index among the stored numbers, index in host order) for every coefficient of every sample.
 template <typename Visit>
-void for_each_sample(const VolumeShape& shape, Visit visit) {
-  const std::size_t n = static_cast<std::size_t>(shape.n), p = pitch(shape);
+void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit visit) {
   std::size_t host = 0;
-  for (std::size_t plane = 0; plane < planes(shape); ++plane) {
-    for (std::size_t z = 0; z < n; ++z) {
-      for (std::size_t y = 0; y < n; ++y) {
-        for (std::size_t x = 0; x < n; ++x) visit(((plane * p + z + 1) * p + y + 1) * p + x + 1, host++);
+  for (int channel = 0; channel < shape.channels; ++channel) {
+    for (int i = 0; i < shape.coefficients; ++i) {
+      for (int z = 0; z < shape.n; ++z) {
+        for (int y = 0; y < shape.n; ++y) {
+          for (int x = 0; x < shape.n; ++x) visit(stored_index(format, shape, channel, i, x, y, z), host++);
+        }
       }
     }
   }
 }
 
+std::size_t host_numbers(const VolumeShape& shape) {
+  const auto n = static_cast<std::size_t>(shape.n);
+  return n * n * n * static_cast<std::size_t>(shape.coefficients) * static_cast<std::size_t>(shape.channels);
+}
+
+cl::Image3D make_image(Session& session, const VolumeShape& shape, Storage storage, std::size_t bytes,
+                       const std::string& what) {
+  const ImageExtent extent = image_extent(shape);
+  if (bytes > session.largest_buffer()) {
+    throw Error(ExitCode::run_time, "{}: an image of {} bytes; {} has room for {}", what, bytes,
+                session.device().name, session.largest_buffer());
+  }
+  const cl::ImageFormat texel(CL_RGBA, storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
+  try {
+    cl::Image3D image(session.context(), CL_MEM_READ_WRITE, texel, extent.x, extent.y, extent.z);
+    session.account(bytes);
+    return image;
+  } catch (const cl::Error& error) {
+    throw cl_error(error, fmt::format("{} (an image of {} x {} x {} texels) on {}", what, extent.x, extent.y,
+                                      extent.z, session.device().name));
+  }
+}
+
+cl::array<cl::size_type, 3> region(const VolumeShape& shape) {
+  const ImageExtent extent = image_extent(shape);
+  return {extent.x, extent.y, extent.z};
+}
+
 }  // namespace
 
-Volume::Volume(Session& session, const VolumeShape& shape, const std::string& what)
-    : shape_(shape),
-      bytes_(planes(shape) * pitch(shape) * pitch(shape) * pitch(shape) * sizeof(float)),
-      buffer_(session.buffer(bytes_, what)) {
+Volume::Volume(Session& session, const VolumeShape& shape, const std::string& what,
+               const VolumeFormat& format)
+    : shape_(shape), format_(format), bytes_(stored_bytes(format, shape)) {
+  require_supported(session.device(), format, shape);
+  if (format.layout == Layout::image) {
+    image_ = make_image(session, shape, format.storage, bytes_, what);
+  } else {
+    buffer_ = session.buffer(bytes_, what);
+  }
   clear(session);
 }
 
+const cl::Memory& Volume::memory() const {
+  if (format_.layout == Layout::image) return image_;
+  return buffer_;
+}
+
 void Volume::clear(Session& session) {
-  session.fill_zero(buffer_, bytes_);
+  if (format_.layout != Layout::image) {
+    session.fill_zero(buffer_, bytes_);
+    return;
+  }
+  cl::Event event;
+  session.queue().enqueueFillImage(image_, cl_float4{{0, 0, 0, 0}}, {0, 0, 0}, region(shape_), nullptr,
+                                   &event);
+  session.timeline().add(event);
+}
+
+void Volume::copy_from(Session& session, const Volume& from) {
+  if (from.shape_ != shape_ || from.format_ != format_) {
+    throw Error(ExitCode::run_time, "a copy between volumes of different shapes or formats");
+  }
+  if (format_.layout != Layout::image) {
+    session.copy(from.buffer_, buffer_, bytes_);
+    return;
+  }
+  cl::Event event;
+  session.queue().enqueueCopyImage(from.image_, image_, {0, 0, 0}, {0, 0, 0}, region(shape_), nullptr,
+                                   &event);
+  session.timeline().add(event);
+}
+
+void Volume::read_stored(Session& session, void* numbers) const {
+  if (format_.layout == Layout::image) {
+    session.queue().enqueueReadImage(image_, CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
+  } else {
+    session.queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes_, numbers);
+  }
+}
+
+void Volume::write_stored(Session& session, const void* numbers) {
+  if (format_.layout == Layout::image) {
+    session.queue().enqueueWriteImage(image_, CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
+  } else {
+    session.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes_, numbers);
+  }
 }
 
 std::vector<float> Volume::read(Session& session) const {
-  const std::vector<float> padded = session.read<float>(buffer_, bytes_ / sizeof(float));
-  std::vector<float> values(planes(shape_) * shape_.n * shape_.n * shape_.n);
-  for_each_sample(shape_, [&](std::size_t from, std::size_t to) { values[to] = padded[from]; });
+  std::vector<float> values(host_numbers(shape_));
+  const std::size_t stored = stored_numbers(format_, shape_);
+  if (format_.storage == Storage::float16) {
+    std::vector<std::uint16_t> numbers(stored);
+    read_stored(session, numbers.data());
+    for_each_number(format_, shape_, [&](std::size_t from, std::size_t to) {
+      values[to] = glm::unpackHalf1x16(numbers[from]);
+    });
+  } else {
+    std::vector<float> numbers(stored);
+    read_stored(session, numbers.data());
+    for_each_number(format_, shape_, [&](std::size_t from, std::size_t to) { values[to] = numbers[from]; });
+  }
   return values;
 }
 
 void Volume::write(Session& session, const std::vector<float>& values) {
-  std::vector<float> padded(bytes_ / sizeof(float), 0.0f);
-  for_each_sample(shape_, [&](std::size_t to, std::size_t from) { padded[to] = values.at(from); });
-  session.write(buffer_, padded);
+  const std::size_t stored = stored_numbers(format_, shape_);
+  if (format_.storage == Storage::float16) {
+    std::vector<std::uint16_t> numbers(stored, 0);
+    for_each_number(format_, shape_, [&](std::size_t to, std::size_t from) {
+      numbers[to] = glm::packHalf1x16(values.at(from));
+    });
+    write_stored(session, numbers.data());
+  } else {
+    std::vector<float> numbers(stored, 0.0f);
+    for_each_number(format_, shape_,
+                    [&](std::size_t to, std::size_t from) { numbers[to] = values.at(from); });
+    write_stored(session, numbers.data());
+  }
 }
 
 std::string cell_macros(const std::string& type, const std::string& each, int count) {
@@ -59,14 +150,16 @@ std::string cell_macros(const std::string& type, const std::string& each, int co
     list += fmt::format(" DO({})", i);
     fields += fmt::format("{} c{}", i == 0 ? "" : ",", i);
   }
-  return fmt::format("#define CLPV_EACH_{}(DO){}\ntypedef struct {{\n  float{};\n}} {};\n", each, list,
+  return fmt::format("#define CLPV_EACH_{}(DO){}\ntypedef struct {{\n  CLPV_REAL{};\n}} {};\n", each, list,
                      fields, type);
 }
 
 std::string coefficient_macros(int coefficients) {
   // Inlined by the compiler's front end: left to later passes, structs would be passed in memory or in vector registers,
   // and work-items would no longer vectorise on CPU devices.
-  return "#define CLPV_INLINE static inline __attribute__((always_inline))\n" +
+  return "#define CLPV_INLINE static inline __attribute__((always_inline))\n"
+         "#ifndef CLPV_LANES\n#define CLPV_LANES 1\n#endif\n"
+         "#if CLPV_LANES == 8\n#define CLPV_REAL float8\n#else\n#define CLPV_REAL float\n#endif\n" +
          fmt::format("#define CLPV_N {}\n", coefficients) +
          cell_macros("Coefficients", "COEFFICIENT", coefficients);
 }

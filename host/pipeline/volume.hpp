@@ -1,49 +1,54 @@
-// A volume: N coefficients a cell and channel, all of them in one buffer.
+// A volume on the device: N coefficients a cell and channel, in one buffer or one image.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "device/session.hpp"
+#include "pipeline/volume_format.hpp"
 
 namespace clpv {
 
-/// Shape of a volume. `n` samples along each axis, `coefficients` a sample and channel.
-struct VolumeShape {
-  int n = 0;
-  int coefficients = 0;
-  int channels = 3;  ///< light volumes: red, green, blue; geometry volumes: 1
-};
-
-/// A volume on the device in the `soa` layout (kernels/volume/soa.h): one plane of samples a channel and
-/// coefficient, each plane with a border of one zero sample all round, so that neighbours need no bounds
-/// checks.
+/// Every layout has zeros round the samples of each channel, so that neighbours need no bounds checks. Made
+/// zero.
 class Volume {
  public:
-  Volume(Session& session, const VolumeShape& shape, const std::string& what);
+  /// Throws Error(device) "unsupported: ..." where the device cannot hold such a volume, Error(run_time) where its
+  /// memory does not suffice.
+  Volume(Session& session, const VolumeShape& shape, const std::string& what,
+         const VolumeFormat& format = {});
 
   const VolumeShape& shape() const { return shape_; }
-  cl::Buffer& buffer() { return buffer_; }
-  const cl::Buffer& buffer() const { return buffer_; }
+  const VolumeFormat& format() const { return format_; }
   std::size_t bytes() const { return bytes_; }
+  /// For a kernel's argument of type CLPV_VOLUME_IN or CLPV_VOLUME_OUT.
+  const cl::Memory& memory() const;
+  /// May one launch both read and write this volume? Not an image, in OpenCL 1.2.
+  bool updates_in_place() const { return format_.layout != Layout::image; }
 
   void clear(Session& session);
+  /// `from`: the same shape and format.
+  void copy_from(Session& session, const Volume& from);
   /// Host order: [channel][coefficient][z][y][x], as in a .npy of shape (channels, N, z, y, x).
   std::vector<float> read(Session& session) const;
   void write(Session& session, const std::vector<float>& values);
 
  private:
+  void read_stored(Session& session, void* numbers) const;
+  void write_stored(Session& session, const void* numbers);
+
   VolumeShape shape_;
+  VolumeFormat format_;
   std::size_t bytes_ = 0;
-  cl::Buffer buffer_;
+  cl::Buffer buffer_;  ///< one of the two is empty
+  cl::Image3D image_;
 };
 
-/// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_N,
-/// CLPV_EACH_COEFFICIENT(DO) and the struct Coefficients of N floats c0, c1, ...
+/// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and
+/// CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO) and the struct Coefficients of N CLPV_REALs c0, c1, ...
 std::string coefficient_macros(int coefficients);
 
-/// The struct `type` of `count` floats c0, c1, ... and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
+/// The struct `type` of `count` CLPV_REALs c0, c1, ... and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
 std::string cell_macros(const std::string& type, const std::string& each, int count);
 
 }  // namespace clpv

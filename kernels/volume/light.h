@@ -6,4 +6,4 @@
 #define CLPV_VOLUME_CELL Coefficients
 #define CLPV_VOLUME_EACH CLPV_EACH_COEFFICIENT
 #define CLPV_VOLUME_COUNT CLPV_N
-#include "volume/soa.h"
+#include "volume/instance.h"

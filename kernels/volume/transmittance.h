@@ -5,4 +5,4 @@
 #define CLPV_VOLUME_CELL Ways
 #define CLPV_VOLUME_EACH CLPV_EACH_WAY
 #define CLPV_VOLUME_COUNT CLPV_WAYS
-#include "volume/soa.h"
+#include "volume/instance.h"

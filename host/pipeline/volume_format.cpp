@@ -1,0 +1,187 @@
+#include "pipeline/volume_format.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr std::array<std::string_view, 4> kLayoutNames{"soa", "aos", "tiled", "image"};
+constexpr std::array<std::string_view, 4> kLayoutLiterals{"CLPV_SOA", "CLPV_AOS", "CLPV_TILED", "CLPV_IMAGE"};
+constexpr int kTile = 8;   // samples of a block of layout `tiled`
+constexpr int kTexel = 4;  // coefficients of a texel
+constexpr int kMostLanes = 8;
+
+std::size_t size(int value) {
+  return static_cast<std::size_t>(value);
+}
+
+std::size_t number_bytes(Storage storage) {
+  return storage == Storage::float16 ? 2 : 4;
+}
+
+int texels_per_cell(int coefficients) {
+  return (coefficients + kTexel - 1) / kTexel;
+}
+
+std::size_t blocks_per_row(const VolumeShape& shape) {
+  return size((shape.n + kTile - 1) / kTile + 1);
+}
+
+/// Samples of a channel with the border all round.
+std::size_t bordered(const VolumeShape& shape) {
+  return size(shape.n + 2) * size(shape.n + 2) * size(shape.n + 2);
+}
+
+}  // namespace
+
+std::vector<std::string> layout_names() {
+  return {"image", "aos", "soa", "tiled"};
+}
+
+std::vector<std::string> storage_names() {
+  return {"float", "half"};
+}
+
+std::string layout_name(Layout layout) {
+  return std::string(kLayoutNames[static_cast<std::size_t>(layout)]);
+}
+
+std::string storage_name(Storage storage) {
+  return storage == Storage::float16 ? "half" : "float";
+}
+
+std::string format_name(const VolumeFormat& format) {
+  return fmt::format("{}/{}", layout_name(format.layout), storage_name(format.storage));
+}
+
+VolumeFormat volume_format(std::string_view layout, std::string_view storage) {
+  const auto found = std::find(kLayoutNames.begin(), kLayoutNames.end(), layout);
+  if (found == kLayoutNames.end()) {
+    throw Error(ExitCode::usage, "--layout: found '{}', allowed: {}", layout, fmt::join(layout_names(), "|"));
+  }
+  if (storage != "float" && storage != "half") {
+    throw Error(ExitCode::usage, "--storage: found '{}', allowed: {}", storage,
+                fmt::join(storage_names(), "|"));
+  }
+  return {static_cast<Layout>(found - kLayoutNames.begin()),
+          storage == "half" ? Storage::float16 : Storage::float32};
+}
+
+std::vector<VolumeFormat> all_formats() {
+  std::vector<VolumeFormat> formats;
+  for (const std::string& layout : layout_names()) {
+    for (const std::string& storage : storage_names()) formats.push_back(volume_format(layout, storage));
+  }
+  return formats;
+}
+
+std::optional<std::string> unsupported(const Device& device, const VolumeFormat& format) {
+  if (format.layout != Layout::image) return std::nullopt;
+  if (!device.images) return "no images";
+  if (!device.image3d_writes) return "no 3-D image writes (cl_khr_3d_image_writes)";
+  return std::nullopt;
+}
+
+std::optional<std::string> unsupported(const Device& device, const VolumeFormat& format,
+                                       const VolumeShape& shape) {
+  if (const auto reason = unsupported(device, format)) return reason;
+  if (format.layout == Layout::image) {
+    const ImageExtent extent = image_extent(shape);
+    const std::size_t most_x = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_WIDTH>(),
+                      most_y = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_HEIGHT>(),
+                      most_z = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_DEPTH>();
+    if (extent.x <= most_x && extent.y <= most_y && extent.z <= most_z) return std::nullopt;
+    return fmt::format("an image of {} x {} x {} texels; at most {} x {} x {}", extent.x, extent.y, extent.z,
+                       most_x, most_y, most_z);
+  }
+  const std::size_t most = std::numeric_limits<std::int32_t>::max(), numbers = stored_numbers(format, shape);
+  if (numbers > most) {
+    return fmt::format("a volume of {} numbers; kernels address at most {}", numbers, most);
+  }
+  return std::nullopt;
+}
+
+void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape) {
+  if (const auto reason = unsupported(device, format, shape)) {
+    throw Error(ExitCode::device, "{} on {} is unsupported: {}", format_name(format), device.name, *reason);
+  }
+}
+
+int preferred_lanes(const Device& device, const VolumeFormat& format) {
+  const bool across_work_items = format == VolumeFormat{};
+  return device.type == "cpu" && format.layout != Layout::image && !across_work_items ? kMostLanes : 1;
+}
+
+void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
+  literals["CLPV_LAYOUT"] = kLayoutLiterals[static_cast<std::size_t>(format.layout)];
+  literals["CLPV_STORAGE_HALF"] = format.storage == Storage::float16 ? "1" : "0";
+  literals["CLPV_LANES"] = std::to_string(lanes);
+}
+
+int accesses_per_cell(const VolumeFormat& format, int coefficients) {
+  return format.layout == Layout::image ? texels_per_cell(coefficients) : coefficients;
+}
+
+std::size_t bytes_per_cell(const VolumeFormat& format, int coefficients) {
+  const int numbers = format.layout == Layout::image ? kTexel * texels_per_cell(coefficients) : coefficients;
+  return size(numbers) * number_bytes(format.storage);
+}
+
+ImageExtent image_extent(const VolumeShape& shape) {
+  const auto stacked = [&](int parts) { return size(parts) * size(shape.n + 1) - 1; };
+  return {size(shape.n), stacked(shape.channels), stacked(texels_per_cell(shape.coefficients))};
+}
+
+std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape) {
+  const std::size_t n = size(shape.coefficients), channels = size(shape.channels);
+  // With 8 lanes the last cell of a row is loaded with seven beyond, maybe past the end of the last row. An even number
+  // of halves can be filled four bytes at a time.
+  const auto padded = [](std::size_t numbers) { return (numbers + 1) / 2 * 2; };
+  switch (format.layout) {
+    case Layout::image: {
+      const ImageExtent extent = image_extent(shape);
+      return extent.x * extent.y * extent.z * kTexel;
+    }
+    case Layout::tiled:
+      return (channels * size(shape.n + 2) * size(shape.n + 2) * blocks_per_row(shape) + 1) * kTile * n;
+    case Layout::aos:
+      return padded((channels * bordered(shape) + kMostLanes - 1) * n);
+    case Layout::soa:
+      break;
+  }
+  return padded(channels * n * bordered(shape) + kMostLanes - 1);
+}
+
+std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape) {
+  return stored_numbers(format, shape) * number_bytes(format.storage);
+}
+
+std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel, int coefficient,
+                         int x, int y, int z) {
+  const std::size_t n = size(shape.coefficients), i = size(coefficient), pitch = size(shape.n + 2);
+  const std::size_t row = (size(channel) * pitch + size(z + 1)) * pitch + size(y + 1);
+  switch (format.layout) {
+    case Layout::image: {
+      const ImageExtent extent = image_extent(shape);
+      const std::size_t step = size(shape.n + 1);
+      const std::size_t ty = size(y) + size(channel) * step, tz = size(z) + i / kTexel * step;
+      return ((tz * extent.y + ty) * extent.x + size(x)) * kTexel + i % kTexel;
+    }
+    case Layout::tiled:
+      return ((row * blocks_per_row(shape) + 1 + size(x / kTile)) * n + i) * kTile + size(x % kTile);
+    case Layout::aos:
+      return (row * pitch + size(x + 1)) * n + i;
+    case Layout::soa:
+      break;
+  }
+  return (size(channel) * n + i) * bordered(shape) + (size(z + 1) * pitch + size(y + 1)) * pitch +
+         size(x + 1);
+}
+
+}  // namespace clpv

@@ -1,0 +1,55 @@
+// A volume in the layout and storage the host chose: the one place where kernels learn of either.
+//
+// Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, computed with in single
+// precision all the same; CLPV_LANES (lanes.h): cells side by side along x that a load or store serves, 1 or 8.
+//
+// A template: before each inclusion define, and it is undefined after,
+//   CLPV_VOLUME         the name the functions below start with (light, geometry, ...)
+//   CLPV_VOLUME_N       samples along each axis, a literal
+//   CLPV_VOLUME_CELL    the struct of named CLPV_REALs c0, c1, ... a sample and channel holds
+//   CLPV_VOLUME_EACH    CLPV_VOLUME_EACH(DO) writes DO(0) DO(1) ... , one a coefficient
+//   CLPV_VOLUME_COUNT   how many those are
+// It defines
+//   CLPV_VOLUME_IN, CLPV_VOLUME_OUT                    types of kernel parameters that read, write
+//   CELL NAME_load(in, channel, x, y, z)               x, y, z in -1..n; the border is 0
+//   void NAME_store(out, channel, x, y, z, cell)       x, y, z in 0..n-1
+// With 8 lanes, x is a multiple of 8 to store and at most one off such to load; lanes beyond the border load anything
+// and are not stored.
+// Every layout has a border of zeros all round, so that a neighbour outside the grid reads 0 without a test.
+#ifndef CLPV_VOLUME_INSTANCE_ONCE
+#define CLPV_VOLUME_INSTANCE_ONCE
+
+#define CLPV_SOA 0
+#define CLPV_AOS 1
+#define CLPV_TILED 2
+#define CLPV_IMAGE 3
+#ifndef CLPV_LAYOUT
+#define CLPV_LAYOUT CLPV_SOA
+#endif
+#ifndef CLPV_STORAGE_HALF
+#define CLPV_STORAGE_HALF 0
+#endif
+
+#define CLPV_PASTE2(a, b) a##_##b
+#define CLPV_PASTE(a, b) CLPV_PASTE2(a, b)
+#endif
+
+#if CLPV_LAYOUT == CLPV_IMAGE
+#include "volume/image.h"
+#else
+#include "volume/numbers.h"
+#if CLPV_LAYOUT == CLPV_AOS
+#include "volume/aos.h"
+#elif CLPV_LAYOUT == CLPV_TILED
+#include "volume/tiled.h"
+#else
+#include "volume/soa.h"
+#endif
+#include "volume/buffer.h"
+#endif
+
+#undef CLPV_VOLUME
+#undef CLPV_VOLUME_N
+#undef CLPV_VOLUME_CELL
+#undef CLPV_VOLUME_EACH
+#undef CLPV_VOLUME_COUNT

@@ -1,0 +1,25 @@
+// Volume layout `tiled`: blocks of 8 samples along x by all coefficients; in a block, the 8 of a coefficient lie side by
+// side. A row of samples starts with a block of zeros, which ends the row before it as well. Rows of zeros lie all
+// round. Part of the template instance.h; buffer.h makes the functions.
+#define CLPV_BLOCKS ((CLPV_VOLUME_N + 7) / 8 + 1)  // a row
+#define CLPV_ROWS (CLPV_VOLUME_N + 2)
+#define CLPV_BLOCK (8 * CLPV_VOLUME_COUNT)
+#define CLPV_NEXT 8  // from a coefficient to the next one
+#define CLPV_LANE 1  // from a cell to its right neighbour, in the same block
+
+CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
+  const int row = (channel * CLPV_ROWS + (z + 1)) * CLPV_ROWS + (y + 1);
+  return (row * CLPV_BLOCKS + 1 + (x >> 3)) * CLPV_BLOCK + (x & 7);
+}
+
+// x is a multiple of 8, one less, or one more, which the compiler knows of a literal step from such a multiple.
+CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_VOLUME_IN volume, const int at, const int x) {
+  const int block = at - (x & 7);
+  const float8 row = CLPV_READ_ROW(volume, block);
+  if ((x & 7) == 0) return row;
+  const float8 next = CLPV_READ_ROW(volume, block + CLPV_BLOCK);
+  return (x & 7) == 1 ? (float8)(row.s1234, row.s567, next.s0) : (float8)(row.s7, next.s0123, next.s456);
+}
+
+#define CLPV_LOAD_LANES(volume, at, x) CLPV_PASTE(CLPV_VOLUME, row)(volume, at, x)
+#define CLPV_STORE_LANES(volume, at, value) CLPV_WRITE_ROW(volume, at, value)
