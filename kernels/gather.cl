@@ -72,11 +72,14 @@ CLPV_INLINE Packed clpv_sample(__global const float8* volume, const float3 at) {
   return r;
 }
 
+// Spelt out: made of two float4, it has lanes that are undefined for a while, which Oclgrind 21.10 crashes on.
+#define CLPV_PAIR(a, b) ((float8)(a, a, a, a, b, b, b, b))
+
 // weights . coefficients, a channel.
 CLPV_INLINE float3 clpv_weigh(const Coefficients weights, const Packed sampled) {
   float8 sum = 0.0f;
 #define CLPV_DO(j, even, odd) \
-  sum = fma((float8)((float4)(even(weights)), (float4)(odd(weights))), sampled.p##j, sum);
+  sum = fma(CLPV_PAIR(even(weights), odd(weights)), sampled.p##j, sum);
   CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
   return sum.lo.xyz + sum.hi.xyz;
@@ -127,5 +130,5 @@ __kernel void gather(const ClpvView view, __global const float* depths, __global
 #endif
     }
   }
-  irradiance[pixel] = (float4)(sum, 0.0f);
+  irradiance[pixel] = (float4)(sum.x, sum.y, sum.z, 0.0f);
 }

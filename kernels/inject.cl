@@ -60,8 +60,9 @@ static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS) {
 static inline Lanes cell_weights(__global const float* details, const uint texels, const uint texel) {
 #if CLPV_TRILINEAR
   const float x = details[texel], y = details[texels + texel], z = details[2 * texels + texel];
-  const float4 plane = (float4)((1.0f - x) * (1.0f - y), x * (1.0f - y), (1.0f - x) * y, x * y);
-  return (float8)(plane * (1.0f - z), plane * z);
+  const float4 p = (float4)((1.0f - x) * (1.0f - y), x * (1.0f - y), (1.0f - x) * y, x * y);
+  const float far = 1.0f - z;  // spelt out as in gather.cl
+  return (float8)(p.x, p.y, p.z, p.w, p.x, p.y, p.z, p.w) * (float8)(far, far, far, far, z, z, z, z);
 #else
   return 1.0f;
 #endif

@@ -108,7 +108,7 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
     if (count > 1 && !clpv_sees(views, count, which, offset)) return;
     irradiance *= clpv_visibility(view, map, clpv_receiver(view, offset, normal, cosine));
   }
-  direct[pixel] += (float4)(irradiance, 0.0f);
+  direct[pixel] += (float4)(irradiance.x, irradiance.y, irradiance.z, 0.0f);
 }
 
 // The image of one CLPV_SHOW_*. `emissive` may be null.
@@ -134,5 +134,5 @@ __kernel void shade(const uint show, const uint pixels, __global const float* de
   if (show == CLPV_SHOW_ALBEDO) shown = albedo;
   if (show == CLPV_SHOW_NORMAL) shown = clpv_load_normal(normals, pixel);
   if (show == CLPV_SHOW_DEPTH) shown = depth;
-  image[pixel] = (float4)(shown, 1.0f);
+  image[pixel] = (float4)(shown.x, shown.y, shown.z, 1.0f);
 }

@@ -48,7 +48,7 @@ TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::run_time);
     EXPECT_THAT(error.what(), HasSubstr("kernel 'sizes' on " + session.device().name));
-    EXPECT_THAT(error.what(), HasSubstr("CL_INVALID_WORK_GROUP_SIZE (-54)"));
+    EXPECT_THAT(error.what(), HasSubstr("CL_INVALID_WORK_"));
   }
 }
 

@@ -108,7 +108,7 @@ void run(const Options& options, const Shared& shared) {
   progress.advance();
 
   stats.begin_startup();
-  Session session(choose_device(shared.device));
+  Session session(choose_device(shared.device), ProgramCache::of_user());
   Frame frame(session, scene, resolved);
   stats.end_startup(session);
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
@@ -141,6 +141,7 @@ void run(const Options& options, const Shared& shared) {
   write_images(frame, options, views, exposure, metadata);
   if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, all).dump(2) + "\n");
   progress.advance();
+  session.store_programs();
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ bool profiling_is_plausible(const cl::Device& handle) {
     const std::size_t bytes = 1 << 20;
     cl::Buffer buffer(context, CL_MEM_READ_WRITE, bytes);
     cl::Event event;
-    queue.enqueueFillBuffer(buffer, cl_uint{0}, 0, bytes, nullptr, &event);
+    queue.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes, nullptr, &event);
     queue.finish();
     const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
     const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();

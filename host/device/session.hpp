@@ -44,7 +44,7 @@ class Session {
   /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current
   /// mark.
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
-  void fill_zero(const cl::Buffer& buffer, std::size_t bytes);
+  void fill_zero(const cl::Buffer& buffer, std::size_t bytes);  ///< the first `bytes`, a multiple of 4
   void copy(const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes);
 
   template <typename T>
@@ -83,8 +83,13 @@ class Session {
   cl::Program build(const ProgramSource& source, const std::string& text, const std::string& key,
                     bool& stored);
 
+  void fill_by_kernel(const cl::Buffer& buffer, std::size_t bytes);
+
+  bool oclgrind() const { return device_.platform == "Oclgrind"; }
+
   std::optional<ProgramCache> cache_;
   std::map<std::string, Built> programs_;  ///< by ProgramCache::key
+  std::vector<cl::Buffer> kept_;           ///< see buffer()
   std::size_t bytes_ = 0;
   double build_ms_ = 0;
 };
