@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   add_reference(app, shared);
   add_quality(app, shared);
   add_basis(app, shared);
+  add_bench(app, shared);
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"

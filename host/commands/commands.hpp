@@ -22,5 +22,6 @@ void add_compare(CLI::App& app, Shared& shared);
 void add_reference(CLI::App& app, Shared& shared);
 void add_quality(CLI::App& app, Shared& shared);
 void add_basis(CLI::App& app, Shared& shared);
+void add_bench(CLI::App& app, Shared& shared);
 
 }  // namespace clpv

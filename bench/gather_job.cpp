@@ -1,0 +1,116 @@
+// Stage `gather`, the light buffer, as a job.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "bench/stage_jobs.hpp"
+#include "pipeline/gather.hpp"
+#include "reference/gather.hpp"
+#include "reference/tolerances.hpp"
+
+namespace clpv::bench {
+namespace {
+
+struct Gathering {
+  std::unique_ptr<Basis> basis;
+  Transport transport;
+  GatherOptions options;
+  std::vector<ClpvGrid> grids;
+  std::vector<std::unique_ptr<Volume>> volumes;
+  std::vector<const Volume*> accumulated;
+  Gatherer gatherer;
+  cl::Buffer irradiance;
+
+  Gathering(Session& session, const Variant& v)
+      : basis(make_basis(v.basis, v.lambda)),
+        transport(make_transport(v.transport, *basis, lobe_options(v))),
+        options{.grid = v.grid},
+        gatherer(session, *basis, transport, options) {}
+};
+
+/// Where a pixel's surface lies [m].
+glm::dvec3 position(const ClpvView& view, std::size_t pixel, double depth) {
+  const double sx = (2 * (static_cast<double>(pixel % view.width) + 0.5) / view.width - 1) * view.half_width;
+  const double sy =
+      (1 - 2 * (static_cast<double>(pixel / view.width) + 0.5) / view.height) * view.half_height;
+  glm::dvec3 p;
+  for (int a = 0; a < 3; ++a)
+    p[a] = view.eye[a] + depth * (view.forward[a] + sx * view.right[a] + sy * view.up[a]);
+  return p;
+}
+
+/// Irradiance of every kCheckedPixels-th pixel, three channels each.
+std::vector<double> twin_of(const Gathering& p, Inputs& inputs, const SurfaceImage& camera) {
+  std::vector<reference::Volume> volumes;
+  std::vector<reference::Cascade> cascades;
+  for (std::size_t c = 0; c < p.grids.size(); ++c) {
+    volumes.push_back(
+        to_reference(inputs.light(*p.basis, static_cast<int>(c)), p.options.grid, p.basis->size(), 3));
+  }
+  for (std::size_t c = 0; c < p.grids.size(); ++c) cascades.push_back({p.grids[c], &volumes[c], nullptr});
+  std::vector<double> values;
+  for (std::size_t i = 0; i < camera.depth.size(); i += kCheckedPixels) {
+    const glm::dvec3 normal(glm::vec3(camera.normal[i]));
+    const glm::dvec3 e = camera.depth[i] > 0
+                             ? reference::gather(*p.basis, p.transport, p.options, cascades,
+                                                 position(camera.view, i, camera.depth[i]), normal)
+                             : glm::dvec3(0);
+    values.insert(values.end(), {e.x, e.y, e.z});
+  }
+  return values;
+}
+
+Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& twin) {
+  Deviation deviation{0, reference::tolerance("gather"), {}};
+  double largest = 0;
+  for (const double value : twin) largest = std::max(largest, std::abs(value));
+  for (std::size_t i = 0; i < twin.size(); ++i) {
+    const std::size_t pixel = i / 3 * kCheckedPixels;
+    const double found = device[pixel].s[i % 3], error = std::abs(found - twin[i]) / largest;
+    if (error <= deviation.worst) continue;
+    deviation.worst = error;
+    deviation.place = fmt::format("pixel {} channel {}: {:.7g}, twin {:.7g}", pixel, i % 3, found, twin[i]);
+    if (std::isnan(error)) break;
+  }
+  return deviation;
+}
+
+}  // namespace
+
+Job gather_job(Bench& bench, const Variant& variant) {
+  Session& session = bench.session;
+  const auto p = std::make_shared<Gathering>(session, variant);
+  p->grids = bench.inputs->grids();
+  for (std::size_t c = 0; c < p->grids.size(); ++c) {
+    p->volumes.push_back(std::make_unique<Volume>(session, VolumeShape{variant.grid, p->basis->size(), 3},
+                                                  "bench: accumulated light"));
+    p->volumes.back()->write(session, bench.inputs->light(*p->basis, static_cast<int>(c)));
+    p->accumulated.push_back(p->volumes.back().get());
+  }
+  const Inputs::Seen& seen = bench.inputs->seen(0);
+  const std::size_t pixels = seen.camera_image.depth.size(), bytes = pixels * sizeof(cl_float4);
+  p->irradiance = session.buffer(bytes, "bench: irradiance");
+  Job job;
+  job.reset = [p, &session, bytes] { session.fill_zero(p->irradiance, bytes); };
+  job.run = [p, &seen] { p->gatherer.gather(seen.camera, p->grids, p->accumulated, {}, p->irradiance); };
+  job.verify = [p, &bench, &seen, variant, pixels] {
+    const std::string key = fmt::format("gather {} {} {} {} {}", variant.basis, variant.lambda,
+                                        variant.transport, variant.lobe, variant.grid);
+    const auto twin = bench.twin(key, [&] { return twin_of(*p, *bench.inputs, seen.camera_image); });
+    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin);
+  };
+  // Depth and normal of a pixel in, irradiance out; every volume read once, and packed: written and read again.
+  const double n = p->basis->size();
+  double volumes = 0;
+  for (const auto& volume : p->volumes) volumes += 3.0 * static_cast<double>(volume->bytes());
+  job.cost.bytes = static_cast<double>(pixels) * (sizeof(float) + 2 * sizeof(cl_float4)) + volumes;
+  job.cost.working_set = job.cost.bytes;
+  job.cost.reads_per_cell = 8 * 3 * n;  // of a pixel, in its cascade
+  // Trilinear weights once, then 8 multiply-adds a coefficient and channel, and the product with g(n).
+  job.cost.flops = static_cast<double>(pixels) * 3 * n * (2 * 8 + 2);
+  return job;
+}
+
+}  // namespace clpv::bench

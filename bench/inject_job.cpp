@@ -1,0 +1,135 @@
+// Stage `inject` as a job.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "basis/basis.hpp"
+#include "bench/stage_jobs.hpp"
+#include "pipeline/inject.hpp"
+#include "reference/inject.hpp"
+#include "reference/tolerances.hpp"
+
+namespace clpv::bench {
+namespace {
+
+struct Injection {
+  std::unique_ptr<Basis> basis;
+  Volume light;
+  std::unique_ptr<Volume> geometry;
+  Injector injector;
+
+  Injection(Session& session, const Variant& v)
+      : basis(make_basis(v.basis, v.lambda)),
+        light(session, {v.grid, basis->size(), 3}, "bench: injected light"),
+        injector(session, *basis, Inputs::published_injection(v.grid)) {
+    if (v.occlusion)
+      geometry = std::make_unique<Volume>(session, VolumeShape{v.grid + 1, basis->size(), 1},
+                                          "bench: geometry volume");
+  }
+};
+
+/// Both volumes, one after the other.
+std::vector<double> twin_of(const Injection& injection, const Inputs::Seen& seen) {
+  const int grid = static_cast<int>(seen.grid.n), n = injection.basis->size();
+  const InjectOptions options = Inputs::published_injection(grid);
+  reference::Volume light(grid, n, 3);
+  reference::inject_light(seen.rsm_image, seen.grid, *injection.basis, options, light);
+  std::vector<double> values = std::move(light.values);
+  if (!injection.geometry) return values;
+  reference::Volume geometry(grid + 1, n, 1);
+  reference::inject_geometry(seen.rsm_image, seen.grid, *injection.basis, options, geometry);
+  reference::inject_geometry(seen.camera_image, seen.grid, *injection.basis, options, geometry);
+  values.insert(values.end(), geometry.values.begin(), geometry.values.end());
+  return values;
+}
+
+/// Directions in which functions are compared: the axes and the corners of a cube.
+std::vector<glm::dvec3> directions() {
+  std::vector<glm::dvec3> found;
+  for (int c = 0; c < 8; ++c)
+    found.push_back(glm::normalize(glm::dvec3(c & 1, c >> 1 & 1, c >> 2) * 2.0 - 1.0));
+  for (int axis = 0; axis < 6; ++axis) {
+    glm::dvec3 d(0);
+    d[axis / 2] = axis % 2 == 0 ? 1 : -1;
+    found.push_back(d);
+  }
+  return found;
+}
+
+/// Functions, not coefficients, are compared: an ill-conditioned Gram matrix tells coefficients apart that hardly
+/// differ as functions. `n` samples along each axis; of one volume.
+void compare(const Basis& basis, const std::vector<float>& device, const double* twin, int n,
+             const char* what, Deviation& deviation) {
+  const auto samples = static_cast<std::size_t>(n) * n * n, size = static_cast<std::size_t>(basis.size());
+  double largest = 0;
+  std::vector<std::pair<double, std::size_t>> errors;  // worst of each direction
+  for (const glm::dvec3& w : directions()) {
+    const std::vector<double> b = basis.evaluate(w);
+    std::pair<double, std::size_t> worst{0, 0};
+    for (std::size_t at = 0; at < device.size() / size; ++at) {
+      double found = 0, wanted = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        const std::size_t index = (at / samples * size + i) * samples + at % samples;
+        found += b[i] * device[index];
+        wanted += b[i] * twin[index];
+      }
+      largest = std::max(largest, std::abs(wanted));
+      const double error = std::abs(found - wanted);
+      if (!(error <= worst.first)) worst = {error, at};
+    }
+    errors.push_back(worst);
+  }
+  for (const auto& [error, at] : errors) {
+    if (error / largest <= deviation.worst) continue;
+    deviation.worst = error / largest;
+    const std::size_t cell = at % samples, side = static_cast<std::size_t>(n);
+    deviation.place =
+        fmt::format("{}, sample {},{},{} channel {}: off by {:.3g} of the largest value", what, cell % side,
+                    cell / side % side, cell / side / side, at / samples, error / largest);
+  }
+}
+
+}  // namespace
+
+Job inject_job(Bench& bench, const Variant& variant) {
+  Session& session = bench.session;
+  const auto p = std::make_shared<Injection>(session, variant);
+  const Inputs::Seen& seen = bench.inputs->seen(variant.cascade.value_or(0));
+  Job job;
+  job.reset = [p, &session] {
+    p->light.clear(session);
+    if (p->geometry) p->geometry->clear(session);
+  };
+  job.run = [p, &seen] {
+    p->injector.inject_light(seen.rsm, seen.grid, p->light);
+    if (!p->geometry) return;
+    p->injector.inject_geometry(seen.rsm, seen.grid, *p->geometry);
+    p->injector.inject_geometry(seen.camera, seen.grid, *p->geometry);
+  };
+  job.verify = [p, &bench, &seen, variant] {
+    const std::string key = fmt::format("inject {} {} {} {} {}", variant.basis, variant.lambda,
+                                        variant.occlusion, variant.grid, variant.cascade.value_or(0));
+    const auto twin = bench.twin(key, [&] { return twin_of(*p, seen); });
+    Deviation deviation{0, reference::tolerance("inject"), {}};
+    const std::vector<float> light = p->light.read(bench.session);
+    compare(*p->basis, light, twin->data(), variant.grid, "light", deviation);
+    if (p->geometry)
+      compare(*p->basis, p->geometry->read(bench.session), twin->data() + light.size(), variant.grid + 1,
+              "geometry", deviation);
+    return deviation;
+  };
+  // A texel's depth, normal and colour once; volumes are zeroed outside, and cells that gain are read and written.
+  const auto texels = [](const Surface& surface) {
+    return static_cast<double>(surface.view.width) * surface.view.height;
+  };
+  constexpr double kTexelBytes = sizeof(float) + 2 * sizeof(cl_float4);
+  job.cost.bytes = texels(seen.rsm) * kTexelBytes;
+  job.cost.working_set = job.cost.bytes + static_cast<double>(p->light.bytes());
+  if (p->geometry) {
+    job.cost.bytes += (texels(seen.rsm) + texels(seen.camera)) * (kTexelBytes - sizeof(cl_float4));
+    job.cost.working_set = job.cost.bytes + static_cast<double>(p->light.bytes() + p->geometry->bytes());
+  }
+  return job;
+}
+
+}  // namespace clpv::bench

@@ -1,0 +1,95 @@
+#include "bench/inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/cascade.hpp"
+#include "pipeline/scene_buffers.hpp"
+#include "pipeline/view.hpp"
+#include "pipeline/volume.hpp"
+#include "reference/inject.hpp"
+#include "support/error.hpp"
+
+namespace clpv::bench {
+namespace {
+
+constexpr double kMargin = 1e-4;  // [cells]: some hundred roundings of a position in a cascade
+
+/// Whether the cell of a point is a matter of rounding.
+bool doubtful(const glm::dvec3& point) {
+  const glm::dvec3 off = glm::abs(point - glm::round(point));
+  return std::min({off.x, off.y, off.z}) < kMargin;
+}
+
+/// `image` without the texels whose cell, of light or of geometry, is doubtful.
+SurfaceImage without_doubt(SurfaceImage image, const ClpvGrid& grid) {
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    if (image.depth[i] <= 0) continue;
+    const bool light = doubtful(reference::grid_point(image, i, grid, true));
+    if (light || doubtful(reference::grid_point(image, i, grid, false) + 0.5)) image.depth[i] = 0;
+  }
+  return image;
+}
+
+}  // namespace
+
+Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const Settings& settings)
+    : session_(session), settings_(settings) {
+  const std::vector<Light> lights = scene.lights_for(camera);
+  if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light shines; bench needs one", scene.name);
+  const SceneBuffers buffers = upload_scene(session, scene);
+  Rasterizer rasterizer(session, buffers);
+  Surface seen =
+      make_surface(session, camera_view(camera, settings.width, settings.height), RsmFormat::float32, false);
+  rasterizer.rasterize_camera(seen);
+  const SurfaceImage image = read_surface(session, seen);
+  for (const ClpvGrid& grid :
+       cascade_grids(camera.eye, settings.cascades, settings.cascade_size, settings.grid)) {
+    Surface rsm =
+        make_surface(session, rsm_views(lights.front().data, grid, buffers.bounds, settings.rsm_size).front(),
+                     RsmFormat::float32, false);
+    rasterizer.rasterize_rsm(lights.front().data, rsm);
+    Seen result{grid, {}, {}, without_doubt(read_surface(session, rsm), grid), without_doubt(image, grid)};
+    result.rsm = upload_surface(session, result.rsm_image);
+    result.camera = upload_surface(session, result.camera_image);
+    seen_.push_back(std::move(result));
+  }
+}
+
+std::vector<ClpvGrid> Inputs::grids() const {
+  std::vector<ClpvGrid> grids;
+  for (const Seen& seen : seen_) grids.push_back(seen.grid);
+  return grids;
+}
+
+const Inputs::Injected& Inputs::injected(const Basis& basis, int cascade) {
+  const auto [entry, made] = injected_.try_emplace({basis.name(), cascade});
+  if (made) {
+    const int grid = settings_.grid;
+    Injector injector(session_, basis, published_injection(grid));
+    Volume light(session_, {grid, basis.size(), 3}, "bench: injected light");
+    Volume geometry(session_, {grid + 1, basis.size(), 1}, "bench: geometry volume");
+    const Seen& from = seen(cascade);
+    injector.inject_light(from.rsm, from.grid, light);
+    injector.inject_geometry(from.rsm, from.grid, geometry);
+    injector.inject_geometry(from.camera, from.grid, geometry);
+    entry->second = {light.read(session_), geometry.read(session_)};
+  }
+  return entry->second;
+}
+
+const std::vector<float>& Inputs::light(const Basis& basis, int cascade) {
+  return injected(basis, cascade).light;
+}
+
+const std::vector<float>& Inputs::geometry(const Basis& basis, int cascade) {
+  return injected(basis, cascade).geometry;
+}
+
+reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels) {
+  reference::Volume volume(n, coefficients, channels);
+  volume.values.assign(values.begin(), values.end());
+  return volume;
+}
+
+}  // namespace clpv::bench

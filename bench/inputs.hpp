@@ -1,0 +1,65 @@
+// What stages work on in a benchmark: what a light and a camera see of a scene, and what injection makes of it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/row.hpp"
+#include "device/session.hpp"
+#include "pipeline/inject.hpp"
+#include "pipeline/rasterize.hpp"
+#include "pipeline/surface.hpp"
+#include "reference/volume.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv::bench {
+
+/// The published settings; a scene may wish for other cascades.
+struct Settings {
+  int cascades = 3;
+  double cascade_size = 12.5;  ///< edge of the finest [m]
+  int rsm_size = 256;
+  int width = 960, height = 540;  ///< [pixels]
+  int grid = 32;
+};
+
+/// Views of one scene, rasterised on the device once. Texels within rounding of where their cell changes are emptied
+/// (some per mille of them), so that a stage and its twin put every one into the same cell.
+class Inputs {
+ public:
+  /// Sees `scene` through `camera`, lit by the first light that shines there. Throws Error(bad_input) without a light.
+  Inputs(Session& session, const Scene& scene, const Camera& camera, const Settings& settings);
+
+  struct Seen {
+    ClpvGrid grid{};
+    Surface rsm, camera;  ///< format float32
+    SurfaceImage rsm_image, camera_image;
+  };
+  const Seen& seen(int cascade) const { return seen_.at(static_cast<std::size_t>(cascade)); }
+  std::vector<ClpvGrid> grids() const;
+  const Settings& settings() const { return settings_; }
+
+  /// Injected light and blocking of a cascade in a basis, the published way (nearest cell, one-sided), by layout `soa`
+  /// in float: Volume's host order. Made once.
+  const std::vector<float>& light(const Basis& basis, int cascade);
+  const std::vector<float>& geometry(const Basis& basis, int cascade);
+
+  static InjectOptions published_injection(int grid) { return {.grid = grid, .two_sided = false}; }
+
+ private:
+  struct Injected {
+    std::vector<float> light, geometry;
+  };
+  const Injected& injected(const Basis& basis, int cascade);
+
+  Session& session_;
+  Settings settings_;
+  std::vector<Seen> seen_;
+  std::map<std::pair<std::string, int>, Injected> injected_;
+};
+
+reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels);
+
+}  // namespace clpv::bench

@@ -1,0 +1,22 @@
+// A benchmark's results as text: JSON in Google Benchmark's shape, CSV, a plain table.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/row.hpp"
+
+namespace clpv::bench {
+
+/// {"context": ..., "benchmarks": [row, ...]}
+nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows);
+
+/// A line a row under a line of keys, the same for every row (Google Benchmark's own CSV gives up where rows differ);
+/// samples are left to JSON. By RFC 4180.
+std::string report_csv(const std::vector<Row>& rows);
+
+/// Name, median, spread, wall time, GFLOP/s, GB/s, share of the ceiling, error.
+std::string report_table(const std::vector<Row>& rows);
+
+}  // namespace clpv::bench

@@ -1,0 +1,52 @@
+// The pipeline's stages as jobs: inject, propagate, gather, each with its cost and its twin.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "basis/rotated_lobe.hpp"
+#include "bench/inputs.hpp"
+#include "bench/job.hpp"
+#include "pipeline/transport_source.hpp"
+
+namespace clpv::bench {
+
+/// What the jobs of a suite share.
+struct Bench {
+  Session& session;
+  std::shared_ptr<Inputs> inputs;
+  /// Twins' results by what they depend on: variants that should agree share one. In double, Volume's host order.
+  std::map<std::string, std::shared_ptr<const std::vector<double>>> twins;
+
+  /// The twin's result under `key`, made by `make` the first time.
+  template <typename Make>
+  std::shared_ptr<const std::vector<double>> twin(const std::string& key, Make make) {
+    auto& entry = twins[key];
+    if (!entry) entry = std::make_shared<const std::vector<double>>(make());
+    return entry;
+  }
+};
+
+/// A row for `stage` of `variant`: n, and the name STAGE/BASIS/LAYOUT/STORAGE with what else is not the default, then
+/// `more` ("/grid:64").
+Row make_row(const std::string& suite, const std::string& stage, const Variant& variant,
+             const std::string& more = {});
+
+/// RSM -> light volume, and with occlusion RSM and G-buffer -> geometry volume; of variant.cascade (default 0).
+Job inject_job(Bench& bench, const Variant& variant);
+/// Light volume -> accumulated light volume; with occlusion past the geometry volume.
+Job propagate_job(Bench& bench, const Variant& variant);
+/// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the twin.
+Job gather_job(Bench& bench, const Variant& variant);
+inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
+
+LobeOptions lobe_options(const Variant& variant);
+State state_of(const Variant& variant);
+
+/// The job of that name: "inject", "propagate", "gather".
+Case stage_case(Bench& bench, const std::string& suite, const std::string& stage, const Variant& variant,
+                const std::string& more = {});
+
+}  // namespace clpv::bench

@@ -1,0 +1,49 @@
+// The suites of `clpv bench`: which rows each has, and what its table looks like.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/runner.hpp"
+#include "bench/stage_jobs.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv::bench {
+
+/// What a suite is asked to do.
+struct SuiteOptions {
+  const Scene* scene = nullptr;  ///< none: the hall of hall.hpp
+  std::string camera;
+  std::vector<std::string> bases;  ///< named by the user; empty: the suite's own
+  Settings settings;
+  int iterations = 8;  ///< propagation steps
+};
+
+/// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.
+struct Group {
+  std::function<std::vector<Case>()> cases;
+};
+
+struct Suite {
+  std::string name, help;
+  std::function<std::vector<Group>(Session&, const SuiteOptions&)> groups;
+  /// The rows as text; the plain table (report.hpp) where there is none.
+  std::function<std::string(const std::vector<Row>&)> table;
+};
+
+const std::vector<Suite>& suites();
+
+// Each in suites/NAME.cpp.
+Suite ceilings_suite();
+Suite table1_suite();
+Suite bases_suite();
+
+/// A basis with all else as the options say or by default.
+Variant plain_variant(const SuiteOptions& options, const std::string& basis);
+
+/// The scene and camera a suite works on, from its options; `hall` holds the scene where none was given.
+const Scene& scene_of(const SuiteOptions& options, Scene& hall);
+std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options);
+
+}  // namespace clpv::bench

@@ -1,0 +1,43 @@
+// Suite `bases`: the cost of every basis, with either state and either lobe.
+#include "basis/basis.hpp"
+#include "bench/suites.hpp"
+
+namespace clpv::bench {
+namespace {
+
+std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
+                           const std::string& basis) {
+  std::vector<Case> cases;
+  const Variant plain = plain_variant(options, basis);
+  Variant variant = plain;
+  cases.push_back(stage_case(*bench, "bases", "inject", variant));
+  for (const std::string lobe : {"exact", "rotate"}) {
+    for (const std::string state : {"coefficients", "fluxes"}) {
+      for (const bool occlusion : {false, true}) {
+        variant.lobe = lobe, variant.state = state, variant.occlusion = occlusion;
+        cases.push_back(stage_case(*bench, "bases", "propagate", variant));
+      }
+    }
+  }
+  variant = plain;
+  cases.push_back(stage_case(*bench, "bases", "gather", variant));
+  return cases;
+}
+
+}  // namespace
+
+Suite bases_suite() {
+  return {"bases",
+          "every basis, both states, both lobes: injection, propagation, gathering",
+          [](Session& session, const SuiteOptions& options) {
+            const auto bench = make_bench(session, options);
+            const auto names = options.bases.empty() ? basis_names() : options.bases;
+            std::vector<Group> groups;  // one a basis: all of them at once would hold gigabytes
+            for (const std::string& basis : names)
+              groups.push_back({[bench, options, basis] { return cases_of(bench, options, basis); }});
+            return groups;
+          },
+          {}};
+}
+
+}  // namespace clpv::bench

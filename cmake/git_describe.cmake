@@ -1,0 +1,11 @@
+# cmake -DGIT=git -DSOURCE=folder -DOUTPUT=file.h -P git_describe.cmake
+# Writes CLPV_GIT_DESCRIBE: "unknown" outside a repository.
+set(described unknown)
+if(GIT)
+  execute_process(COMMAND ${GIT} describe --always --dirty --tags WORKING_DIRECTORY ${SOURCE}
+                  OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
+  if(NOT failed)
+    set(described ${found})
+  endif()
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#define CLPV_GIT_DESCRIBE \"@described@\"\n" @ONLY)

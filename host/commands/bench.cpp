@@ -1,0 +1,126 @@
+// clpv bench: how long stages take on this device, in all their variants.
+#include "bench/bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "basis/basis.hpp"
+#include "bench/context.hpp"
+#include "bench/report.hpp"
+#include "commands/commands.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+struct Options {
+  std::string suite, scene, model, filter, format = "table", out;
+  bench::BenchOptions bench;
+};
+
+const bench::Suite& suite_named(const std::string& name) {
+  for (const bench::Suite& suite : bench::suites()) {
+    if (suite.name == name) return suite;
+  }
+  throw Error(ExitCode::usage, "no suite named '{}'", name);
+}
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  for (const bench::Suite& suite : bench::suites()) names.push_back(suite.name);
+  return names;
+}
+
+std::regex parse_filter(const std::string& text) {
+  try {
+    return std::regex(text);
+  } catch (const std::regex_error& error) {
+    throw Error(ExitCode::usage, "--filter '{}': {}; allowed: an ECMAScript regular expression", text,
+                error.what());
+  }
+}
+
+std::string as_text(const Options& options, const bench::Suite& suite, const Session& session,
+                    const bench::Results& results) {
+  if (options.format == "json")
+    return bench::report_json(bench::context_json(session), results.rows).dump(2) + "\n";
+  if (options.format == "csv") return bench::report_csv(results.rows);
+  return suite.table ? suite.table(results.rows) : bench::report_table(results.rows);
+}
+
+/// Tells of the rows that failed. Exit code 5 where an output was wrong.
+void judge(const std::vector<bench::Row>& rows) {
+  const auto wrong = std::count_if(rows.begin(), rows.end(),
+                                   [](const bench::Row& r) { return r.status == bench::Status::wrong; });
+  if (wrong == 0) return;
+  const auto& first = *std::find_if(rows.begin(), rows.end(),
+                                    [](const bench::Row& r) { return r.status == bench::Status::wrong; });
+  throw Error(ExitCode::validation, "{} of {} rows computed something wrong; {}: {:.3g} > {:.0e} at {}",
+              wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
+}
+
+void run(Options options, const Shared& shared) {
+  if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
+  for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
+  if (!options.out.empty()) check_writable(options.out);
+  const bench::Suite& suite = suite_named(options.suite);
+  std::optional<Scene> scene;
+  if (!options.scene.empty()) {
+    scene = load_scene(options.scene, {options.model});
+    options.bench.suite.scene = &*scene;
+    if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
+    if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
+  } else if (!options.model.empty()) {
+    throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
+  }
+  Session session(choose_device(shared.device), ProgramCache::of_user());
+  spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
+               session.device().driver);
+  const bench::Results results = bench::run_suite(session, suite, options.bench);
+  const std::string text = as_text(options, suite, session, results);
+  if (options.out.empty()) {
+    fmt::print("{}", text);
+  } else {
+    write_file(options.out, text);
+  }
+  session.store_programs();
+  judge(results.rows);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Shared& shared) {
+  CLI::App* command =
+      app.add_subcommand("bench", "Time stages and frames on this device, and check what was timed");
+  auto options = std::make_shared<Options>();
+  std::string suites = "what to time:";
+  for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
+  command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
+  command->add_option("--scene", options->scene, "scene file or model; default: a hall made on the spot")
+      ->type_name("SCENE");
+  command->add_option("--model", options->model, "replaces the scene file's model")->type_name("PATH");
+  command->add_option("--camera", options->bench.suite.camera, "camera by name; default: the scene's first")
+      ->type_name("NAME");
+  command
+      ->add_option("--basis", options->bench.suite.bases,
+                   "bases, between commas; table1 adds them to its own")
+      ->delimiter(',')
+      ->type_name("NAME");
+  command->add_option("--filter", options->filter, "only rows in whose name this regular expression is found")
+      ->type_name("REGEX");
+  command->add_option("--repetitions", options->bench.repetitions, "how often each row is timed")
+      ->capture_default_str()
+      ->check(CLI::Range(1, bench::kMostRepetitions));
+  command->add_option("--format", options->format, "table|json|csv")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"table", "json", "csv"}));
+  command->add_option("-o,--out", options->out, "file to write in place of stdout")->type_name("FILE");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

@@ -1,0 +1,53 @@
+// What a device can do at most, to hold the other kernels against: fused multiply-adds, bytes moved, launches.
+//
+// CLPV_WIDTH  floats of a vector
+// CLPV_BLOCK  vectors that a work-item moves one after another, before it skips those of the other work-items: all of
+//             them on a CPU, whose cores each stream through a part of memory; 1 where neighbouring work-items should
+//             touch neighbouring memory
+#ifndef CLPV_WIDTH
+#define CLPV_WIDTH 8
+#endif
+#ifndef CLPV_BLOCK
+#define CLPV_BLOCK 1u
+#endif
+#define CLPV_PASTE2(a, b) a##b
+#define CLPV_PASTE(a, b) CLPV_PASTE2(a, b)
+typedef CLPV_PASTE(float, CLPV_WIDTH) Vector;
+
+// Chains that do not wait for each other: as many as hide the latency of a fused multiply-add, and fit registers.
+#define CLPV_EACH_CHAIN(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11)
+
+// Each chain is a = a/2 + 1, which ends at 2 from wherever it starts: the result tells that the work was done.
+__kernel void fma_peak(const uint passes, const float start, __global float* out) {
+  const uint item = get_global_id(0);
+#define CLPV_DO(i) Vector a##i = (Vector)(start + i + item);
+  CLPV_EACH_CHAIN(CLPV_DO)
+#undef CLPV_DO
+#define CLPV_DO(i) a##i = fma(a##i, (Vector)(0.5f), (Vector)(1.0f));
+  for (uint pass = 0; pass < passes; ++pass) {
+    CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO)
+  }
+#undef CLPV_DO
+  Vector sum = 0.0f;
+#define CLPV_DO(i) sum += a##i;
+  CLPV_EACH_CHAIN(CLPV_DO)
+#undef CLPV_DO
+  out[item] = sum.s0;
+}
+
+// c = a + pass b, over and over: `blocks` blocks of CLPV_BLOCK vectors a work-item.
+__kernel void stream(const uint passes, const uint blocks, __global const Vector* a, __global const Vector* b,
+                     __global Vector* c) {
+  const uint item = get_global_id(0), items = get_global_size(0);
+  for (uint pass = 1; pass <= passes; ++pass) {
+    const Vector factor = (float)pass;
+    for (uint block = 0; block < blocks; ++block) {
+      const uint first = (block * items + item) * CLPV_BLOCK;
+      for (uint i = first; i < first + CLPV_BLOCK; ++i) c[i] = fma(factor, b[i], a[i]);
+    }
+  }
+}
+
+__kernel void nothing(__global float* out) {
+  if (get_global_id(0) == 0) out[0] = 1.0f;
+}
