@@ -11,7 +11,8 @@
 //
 // The host writes, beside the literals below and the basis's functions,
 //   CLPV_EACH_PAIR(DO)    writes DO(j, even, odd) for each pair j; even(c), odd(c) are its members of Coefficients c
-//   Coefficients clpv_gather_weights(float3 n), Coefficients clpv_floor_weights(void)
+//   Coefficients clpv_gather_weights(float3 n CLPV_PASS_TABLE), Coefficients clpv_floor_weights(void)
+// Where b comes from a look-up table, `gather` has it as its last argument.
 #include "volume/light.h"
 #include "shared/grid.h"
 #include "surface.h"
@@ -97,7 +98,7 @@ CLPV_INLINE float3 clpv_irradiance(__global const float8* volume, const float3 a
 
 __kernel void gather(const ClpvView view, __global const float* depths, __global const SurfaceTexel* normals,
                      __global const ClpvGrid* grids, const uint cascades, __global const float8* packed,
-                     __global float4* irradiance) {
+                     __global float4* irradiance CLPV_AND_TABLE) {
   const uint px = get_global_id(0), py = get_global_id(1);
   if (px >= view.width || py >= view.height) return;
   const uint pixel = py * view.width + px;
@@ -106,7 +107,7 @@ __kernel void gather(const ClpvView view, __global const float* depths, __global
   if (depth > 0.0f) {
     const float3 position = clpv_position(view, (float)px, (float)py, depth);
     const float3 normal = clpv_load_normal(normals, pixel);
-    const Coefficients weights = clpv_gather_weights(normal);
+    const Coefficients weights = clpv_gather_weights(normal CLPV_PASS_TABLE);
     float left = 1.0f;  // what finer cascades left to this one
     for (uint c = 0; c < cascades; ++c) {
       const ClpvGrid grid = grids[c];

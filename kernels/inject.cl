@@ -11,7 +11,7 @@
 // it is made of segments counted from the cell's first texel.
 //
 // From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
-// what host/pipeline/inject_source.hpp lists.
+// what host/pipeline/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
 #include "deliver.h"
@@ -46,11 +46,11 @@ static inline Sum add_lobe(Sum sum, const Lanes weight, const Coefficients lobe)
 
 #if CLPV_GEOMETRY
 
-static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS) {
+static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = clpv_load_normal(normals, texel);
-  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(n.x, n.y, n.z));
+  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE));
 #if CLPV_TWO_SIDED
-  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(-n.x, -n.y, -n.z));
+  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(-n.x, -n.y, -n.z CLPV_PASS_TABLE));
 #endif
   return sums;
 }
@@ -68,9 +68,9 @@ static inline Lanes cell_weights(__global const float* details, const uint texel
 #endif
 }
 
-static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS) {
+static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = clpv_load_normal(normals, texel);
-  const Coefficients lobe = clpv_lobe_integrals(n.x, n.y, n.z);
+  const Coefficients lobe = clpv_lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE);
   float3 flux = clpv_load_colour(colours, texel, colour_scale);
 #if CLPV_UNIT_FLUX
   flux *= M_PI_F / clpv_flux(lobe);
@@ -142,7 +142,7 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
 // in slot 2 block + 1 of its first segment, in slot 2 block of another one. A block starts at most one of either.
 __kernel void sum_segments(__global const uint2* sorted, __global const uint* count, const uint length,
                            const uint blocks, const uint phase, CLPV_TEXELS, CLPV_VOLUME_OUT volume,
-                           __global Lanes* partials, __global uint* firsts) {
+                           __global Lanes* partials, __global uint* firsts CLPV_AND_TABLE) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   firsts[block] = CLPV_NO_SEGMENT;
@@ -158,7 +158,7 @@ __kernel void sum_segments(__global const uint2* sorted, __global const uint* co
     const bool wanted = phase_of(CLPV_KEYS(CLPV_GRID), key) == phase;
     Sums sums = no_sums();
     for (; at < end && sorted[at].x == key; ++at) {
-      if (wanted) sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS);
+      if (wanted) sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS CLPV_PASS_TABLE);
     }
     const bool ends_cell = at == total || sorted[at].x != key;
     if (wanted && starts_cell && ends_cell) {

@@ -39,8 +39,8 @@ std::vector<double> integral_over(const Basis& basis, const SphericalPolygon& co
   return sum;
 }
 
-std::vector<double> sample_of(const Basis& basis, const Face& face) {
-  std::vector<double> b = basis.evaluate(face.direction);
+std::vector<double> sample_of(const Basis& basis, const LobeOptions& lobes, const Face& face) {
+  std::vector<double> b = evaluate(basis, lobes, face.direction);
   for (double& value : b) value *= face.solid_angle;
   return b;
 }
@@ -64,7 +64,7 @@ FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeO
     }
   }
   for (Face& face : transport.faces) {
-    face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face)) : sample_of(basis, face);
+    face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face)) : sample_of(basis, lobes, face);
   }
   const Lobes lobe_round(basis, lobes);
   transport.lobes = Matrix(basis.size(), static_cast<int>(kAxes.size()));

@@ -31,9 +31,16 @@ ZonalTable::ZonalTable(int size, const std::function<double(double)>& function) 
   for (int i = 0; i < size; ++i) values_.push_back(function(-1 + 2.0 * i / (size - 1)));
 }
 
+double ZonalTable::place(double t) const {
+  return (t + 1) / 2 * (size() - 1) + kIndexBias;
+}
+
 double ZonalTable::operator()(double t) const {
-  const double place = std::floor((t + 1) / 2 * (size() - 1) + kIndexBias);
-  return values_[static_cast<std::size_t>(std::clamp(place, 0.0, size() - 1.0))];
+  return values_[static_cast<std::size_t>(std::clamp(std::floor(place(t)), 0.0, size() - 1.0))];
+}
+
+double ZonalTable::to_step(double t) const {
+  return std::abs(place(t) - std::round(place(t)));
 }
 
 ZonalTable gram_table(const Basis& basis, int size) {
@@ -49,6 +56,11 @@ std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const 
   std::vector<double> b;
   for (const glm::dvec3& centre : basis.centres()) b.push_back(table(glm::dot(centre, w)));
   return b;
+}
+
+std::vector<double> evaluate(const Basis& basis, const LobeOptions& options, const glm::dvec3& w) {
+  if (!options.table_functions || basis.centres().empty()) return basis.evaluate(w);
+  return evaluate(basis, function_table(basis, options.table_size), w);
 }
 
 glm::dmat3 rotation_to(const glm::dvec3& axis) {

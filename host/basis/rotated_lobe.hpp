@@ -17,9 +17,11 @@ enum class LobeKind {
   rotate,  ///< projected towards +z, turned to the axis
 };
 
+/// How lobes and basis functions are come by. Matters to bases with centres alone.
 struct LobeOptions {
   LobeKind kind = LobeKind::exact;
-  int table_size = 256;  ///< entries of H's table; 0: H itself
+  int table_size = 256;          ///< entries of the tables of H and G; 0: H itself
+  bool table_functions = false;  ///< basis functions are read from G's table where stages evaluate them
 };
 
 /// "exact", "rotate". Throws Error(usage) for another name.
@@ -36,10 +38,13 @@ class ZonalTable {
   ZonalTable(int size, const std::function<double(double)>& function);
 
   double operator()(double t) const;
+  double to_step(double t) const;  ///< how far t is from where another entry is read, in entries
   int size() const { return static_cast<int>(values_.size()); }
   std::vector<float> values() const { return {values_.begin(), values_.end()}; }  ///< for a device
 
  private:
+  double place(double t) const;
+
   std::vector<double> values_;
 };
 
@@ -49,6 +54,8 @@ ZonalTable function_table(const Basis& basis, int size);
 
 /// b_i(w) with G from `function_table` (`--evaluate table`). A basis without centres has no table: its own evaluate().
 std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const glm::dvec3& w);
+/// b_i(w) as `options` want them.
+std::vector<double> evaluate(const Basis& basis, const LobeOptions& options, const glm::dvec3& w);
 
 /// The rotation that takes +z to `axis` (unit) and moves least; towards -z, where that is undefined, a half turn about x.
 glm::dmat3 rotation_to(const glm::dvec3& axis);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "support/error.hpp"
+
 namespace clpv {
 
 void add_frame_options(CLI::App& command, GivenOptions& given) {
@@ -26,9 +28,12 @@ RenderOptions resolve_options(const GivenOptions& given, const Scene& scene) {
     set_option(options, "preset", preset->second);
   if (scene.cascade_size) options.cascade_size = *scene.cascade_size;
   if (scene.cascades) options.cascades = *scene.cascades;
+  if (given.contains("basis") && given.contains("centres"))
+    throw Error(ExitCode::usage, "--basis and --centres are both given; allowed: one of them");
   for (const auto& [name, value] : given) {
     if (name != "preset") set_option(options, name, value);
   }
+  if (!options.centres.empty()) options.basis = make_basis(options)->name();
   return options;
 }
 

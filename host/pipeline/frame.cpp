@@ -13,14 +13,18 @@ InjectOptions inject_options(const RenderOptions& options, const Transport& tran
   return {.grid = options.grid,
           .trilinear = options.injection == "trilinear",
           .two_sided = options.blocking == "two-sided",
-          .unit_flux_lobes = transport.unit_flux_lobes};
+          .unit_flux_lobes = transport.unit_flux_lobes,
+          .lobes = options.lobes(),
+          .table = options.table_storage()};
 }
 
 GatherOptions gather_options(const RenderOptions& options) {
   return {.grid = options.grid,
           .gather_offset = options.gather_offset,
           .late_light = options.late_light,
-          .floor = options.gather_floor};
+          .floor = options.gather_floor,
+          .lobes = options.lobes(),
+          .table = options.table_storage()};
 }
 
 /// Bytes of the volumes of a frame at this grid.
@@ -64,9 +68,9 @@ const RenderOptions& checked(const Session& session, const RenderOptions& option
 Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
     : session_(session),
       scene_(scene),
-      basis_(make_basis(options.basis, options.lambda)),
+      basis_(make_basis(options)),
       options_(checked(session, options, *basis_)),
-      transport_(make_transport(options.transport, *basis_)),
+      transport_(make_transport(options.transport, *basis_, options.lobes())),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_)),

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "basis/table_kernel.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -29,10 +30,12 @@ std::string pair_macros(int coefficients) {
 }
 
 /// g(n): 4 b(-n), or alpha(-n) K.
-std::string gather_weights(const Transport& transport, int coefficients) {
-  std::string text = "CLPV_INLINE Coefficients clpv_gather_weights(const float3 n) {\n";
-  text += fmt::format("  const Coefficients a = {}(-n.x, -n.y, -n.z);\n  Coefficients g;\n",
-                      transport.gathers_cosine ? "clpv_cosine_integrals" : "clpv_basis");
+std::string gather_weights(const Transport& transport, int coefficients, bool from_table) {
+  std::string text = "CLPV_INLINE Coefficients clpv_gather_weights(const float3 n CLPV_AND_TABLE) {\n";
+  text += fmt::format("  const Coefficients a = {};\n  Coefficients g;\n",
+                      transport.gathers_cosine ? "clpv_cosine_integrals(-n.x, -n.y, -n.z)"
+                      : from_table             ? "clpv_table_basis(-n.x, -n.y, -n.z CLPV_PASS_TABLE)"
+                                               : "clpv_basis(-n.x, -n.y, -n.z)");
   for (int j = 0; j < coefficients; ++j) {
     std::string sum;
     for (int i = 0; i < coefficients; ++i) {
@@ -57,7 +60,15 @@ std::string floor_weights(const Basis& basis, const Transport& transport, double
   return text + "  return g;\n}\n";
 }
 
-ProgramSource source_of(const Basis& basis, const Transport& transport, const GatherOptions& options) {
+/// Gathering by the cosine evaluates no basis function.
+LobeOptions looked_up(const Transport& transport, const GatherOptions& options) {
+  LobeOptions lobes = options.lobes;
+  lobes.table_functions = lobes.table_functions && !transport.gathers_cosine;
+  return lobes;
+}
+
+ProgramSource source_of(const Basis& basis, const Transport& transport, const GatherOptions& options,
+                        const LookupTable& table) {
   ProgramSource source;
   source.file = "gather.cl";
   source.literals = {{"CLPV_GRID", std::to_string(options.grid)},
@@ -66,8 +77,10 @@ ProgramSource source_of(const Basis& basis, const Transport& transport, const Ga
                      {"CLPV_INVERSE_BLEND", float_literal(1 / options.blend_cells)},
                      {"CLPV_LATE", options.late_light ? "1" : "0"},
                      {"CLPV_FLOORED", options.floor > 0 ? "1" : "0"}};
-  source.generated = coefficient_macros(basis.size()) + pair_macros(basis.size()) + basis.kernel_source() +
-                     gather_weights(transport, basis.size());
+  source.generated =
+      table.macros() + coefficient_macros(basis.size()) + pair_macros(basis.size()) + basis.kernel_source();
+  if (table.exists()) source.generated += table_basis_source(basis, options.lobes.table_size);
+  source.generated += gather_weights(transport, basis.size(), table.exists());
   if (options.floor > 0) source.generated += floor_weights(basis, transport, options.floor);
   return source;
 }
@@ -95,9 +108,12 @@ double isotropic_share(const Basis& basis, const Transport& transport) {
 
 Gatherer::Gatherer(Session& session, const Basis& basis, const Transport& transport,
                    const GatherOptions& options)
-    : session_(session), options_(options), coefficients_(basis.size()) {
+    : session_(session),
+      options_(options),
+      coefficients_(basis.size()),
+      table_(session, basis, looked_up(transport, options), options.table, TableUse::functions) {
   require_sound(options);
-  const ProgramSource source = source_of(basis, transport, options);
+  const ProgramSource source = source_of(basis, transport, options, table_);
   pack_ = session.kernel(source, "pack");
   gather_ = session.kernel(source, "gather");
 }
@@ -160,6 +176,7 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   gather_.setArg(4, static_cast<cl_uint>(grids.size()));
   gather_.setArg(5, packed_);
   gather_.setArg(6, irradiance);
+  table_.set(gather_);
   session_.launch(gather_, cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocalX, kLocalY));
 }
 

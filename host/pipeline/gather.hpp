@@ -8,6 +8,7 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "pipeline/lookup_table.hpp"
 #include "pipeline/surface.hpp"
 #include "pipeline/volume.hpp"
 
@@ -19,6 +20,8 @@ struct GatherOptions {
   double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
   bool late_light = false;     ///< add the late light of coarser cascades
   double floor = 0;            ///< E is at least so much of its value were the light isotropic, in [0, 1]
+  LobeOptions lobes;           ///< b(-n) may come from a table; alpha(-n) is exact always
+  TableStorage table = TableStorage::buffer;
 };
 
 /// Isotropic light of energy Int I dw puts isotropic_share(...) Int I dw / s^2 on a surface, averaged over
@@ -55,6 +58,7 @@ class Gatherer {
   Session& session_;
   GatherOptions options_;
   int coefficients_;
+  LookupTable table_;
   cl::Kernel pack_, gather_;
   cl::Buffer packed_, grids_;
   std::size_t reserved_volumes_ = 0, reserved_grids_ = 0;

@@ -52,6 +52,7 @@ Injector::Injector(Session& session, const Basis& basis, const InjectOptions& op
     : session_(session),
       basis_(basis),
       options_(options),
+      table_(session, basis, options.lobes, options.table, TableUse::lobes),
       sorter_(session),
       strip_(session.device().type == "cpu" ? kCpuStrip : 1) {}
 
@@ -73,7 +74,7 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
                              {"CLPV_GRID", std::to_string(options_.grid)},
                              {"CLPV_TWO_SIDED", flag(options_.two_sided)},
                              {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
-                            inject_source(basis_, trilinear)};
+                            table_.macros() + inject_source(basis_, options_.lobes, trilinear)};
     found->second = {session_.kernel(find, "find_cells"), session_.kernel(sum, "sum_segments"),
                      session_.kernel(sum, "join_segments")};
   }
@@ -112,6 +113,7 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, V
     set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
                   surface.normal, surface.colour, surface.colour_scale, details_,
                   static_cast<cl_uint>(texels), volume.memory(), partials_, firsts_);
+    table_.set(kernel.sum_segments);
     session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
     set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(),
                   partials_, firsts_);

@@ -8,6 +8,7 @@
 #include "basis/basis.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "pipeline/lookup_table.hpp"
 #include "pipeline/sort_by_cell.hpp"
 #include "pipeline/surface.hpp"
 #include "pipeline/volume.hpp"
@@ -19,6 +20,8 @@ struct InjectOptions {
   bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
   bool two_sided = true;   ///< surfels block from both sides; else only what travels against their normal
   bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
+  LobeOptions lobes;             ///< rotated lobes are so at run time, by a table
+  TableStorage table = TableStorage::buffer;
 };
 
 /// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own
@@ -47,6 +50,7 @@ class Injector {
   Session& session_;
   const Basis& basis_;
   InjectOptions options_;
+  LookupTable table_;
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "basis/table_kernel.hpp"
 #include "device/session.hpp"
 #include "pipeline/volume.hpp"
 
@@ -73,11 +74,16 @@ std::string projection(const Basis& basis, bool trilinear) {
 
 }  // namespace
 
-std::string inject_source(const Basis& basis, bool trilinear) {
+std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
   // The flux of c = A^-1 alpha is integrals . A^-1 alpha, and A is symmetric.
   const std::vector<double> flux = basis.gram_inverse() * std::span<const double>(basis.integrals());
   std::string text = coefficient_macros(basis.size()) + basis.kernel_source();
-  text += "#define clpv_lobe_integrals clpv_cosine_integrals\n";
+  if (lobes.kind == LobeKind::rotate && !basis.centres().empty()) {
+    text += rotated_integrals_source(basis, lobes.table_size);
+    text += "#define clpv_lobe_integrals clpv_rotated_integrals\n";
+  } else {
+    text += "#define clpv_lobe_integrals clpv_cosine_integrals\n";
+  }
   text += weighted_sum("clpv_flux", flux, 1.0);
   text += weighted_sum("clpv_mean", basis.integrals(), 0.25 * std::numbers::inv_pi);
   text += projection(basis, trilinear);

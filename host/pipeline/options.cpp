@@ -18,6 +18,7 @@ namespace {
 constexpr double kMostCells = 512, kMostSteps = 4096, kMostTexels = 8192, kMostPixels = 16384,
                  kMostMetres = 1e6;
 constexpr int kMostCascades = 8;
+constexpr int kMostEntries = 65536;  // what the least of devices with images takes as an image of a buffer
 
 struct Range {
   double least, most;
@@ -34,12 +35,24 @@ std::string preset_help() {
   return text;
 }
 
+struct Path {
+  const char* of;  ///< what the file holds
+};
+
 /// Calls visit(name, member, help, allowed) for every option; the one list of them.
 template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
   visit("preset", o.preset, preset_help(), preset_names());
   visit("basis", o.basis, "basis of the sphere (clpv basis tells of each)", basis_names());
+  visit("centres", o.centres, "an SRBF set of your own, in place of a basis", Path{"directions as JSON"});
   visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
+  visit("lobe", o.lobe, "cosine lobes: projected each, or that along +z turned through a table",
+        std::vector<std::string>{"exact", "rotate"});
+  visit("evaluate", o.evaluate, "SRBF functions: computed, or read from a table",
+        std::vector<std::string>{"exact", "table"});
+  visit("table-size", o.table_size, "entries of those tables", Range{2, kMostEntries});
+  visit("table", o.table, "what kernels read those tables as: a buffer, or a 1-D image of it",
+        std::vector<std::string>{"buffer", "image"});
   visit("transport", o.transport, "how light moves from cell to cell", transport_names());
   visit("state", o.state, "what travels: the basis's coefficients, or six fluxes a cell",
         std::vector<std::string>{"coefficients", "fluxes"});
@@ -89,6 +102,15 @@ std::string text_of(const Range& range) {
                     : fmt::format("{}..{}", range.least, range.most);
 }
 
+std::string text_of(const Path& path) {
+  return fmt::format("a file of {}", path.of);
+}
+
+bool parse(std::string_view text, const Path&, std::string& out) {
+  out = text;
+  return !text.empty();
+}
+
 template <typename Number>
 bool parse(std::string_view text, const Range& range, Number& out) {
   Number value{};
@@ -114,6 +136,11 @@ bool parse(std::string_view text, const std::vector<std::string>& choices, bool&
 
 }  // namespace
 
+std::unique_ptr<Basis> make_basis(const RenderOptions& options) {
+  return options.centres.empty() ? make_basis(options.basis, options.lambda)
+                                 : load_basis(options.centres, options.lambda);
+}
+
 std::vector<OptionInfo> list_options(const RenderOptions& options) {
   std::vector<OptionInfo> list;
   for_each_option(options,
@@ -132,6 +159,7 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
       throw Error(ExitCode::usage, "--{}: found '{}', allowed: {}", name, value, text_of(allowed));
     }
   });
+  if (name == "basis") options.centres.clear();
   if (!known) throw Error(ExitCode::usage, "no option named --{}", name);
   if (name == "preset") apply_preset(options, value);
 }

@@ -2,11 +2,14 @@
 // presets.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "basis/rotated_lobe.hpp"
+#include "pipeline/lookup_table.hpp"
 #include "pipeline/transport_source.hpp"
 
 namespace clpv {
@@ -20,7 +23,12 @@ enum class ToneMap { none, reinhard, aces };
 struct RenderOptions {
   std::string preset = "best";  ///< the one set last; options set after it may differ from it
   std::string basis = "srbf8v2";
+  std::string centres;  ///< file of an SRBF set that replaces `basis`; none: empty
   double lambda = 0.25;
+  std::string lobe = "exact";
+  int table_size = 256;
+  std::string table = "buffer";
+  std::string evaluate = "exact";
   std::string transport = "upwind";
   std::string state = "coefficients";
   int iterations = 8;
@@ -39,8 +47,13 @@ struct RenderOptions {
   int width = 960, height = 540;
 
   RsmFormat rsm() const { return rsm_format == "paper" ? RsmFormat::paper : RsmFormat::float32; }
+  LobeOptions lobes() const { return {lobe_kind(lobe), table_size, evaluate == "table"}; }
+  TableStorage table_storage() const { return table == "image" ? TableStorage::image : TableStorage::buffer; }
   State travelling() const { return state == "fluxes" ? State::fluxes : State::coefficients; }
 };
+
+/// The basis they ask for. Throws as make_basis and load_basis do.
+std::unique_ptr<Basis> make_basis(const RenderOptions& options);
 
 /// What a user is told of one option.
 struct OptionInfo {
@@ -53,7 +66,8 @@ struct OptionInfo {
 /// All options with their present values, in the order of --help.
 std::vector<OptionInfo> list_options(const RenderOptions& options);
 
-/// Sets one option from text; `preset` sets all that presets know of, so it comes before those that override it. Throws Error(usage) that names the option, the value found and the values
+/// Sets one option from text; `preset` sets all that presets know of, so it comes before those that override it; a
+/// basis replaces a file of centres. Throws Error(usage) that names the option, the value found and the values
 /// allowed.
 void set_option(RenderOptions& options, std::string_view name, std::string_view value);
 

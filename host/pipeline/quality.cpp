@@ -82,6 +82,10 @@ std::string quality_key(const reference::Reference& truth, const Device& device,
   Fingerprint print;
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
   print.add(to_json(options).dump()).add(name_of(show)).add(frames);
+  if (!options.centres.empty()) {
+    for (const glm::dvec3& centre : make_basis(options)->centres())
+      print.add(centre.x).add(centre.y).add(centre.z);
+  }
   for (const auto& [name, embedded] : detail::embedded_kernel_files()) print.add(kernel_file(name));
   return print.hex();
 }

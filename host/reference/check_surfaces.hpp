@@ -22,4 +22,8 @@ SurfaceImage random_surfaces(std::mt19937& random);
 CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& twin,
                            unsigned width, std::string_view stage, const std::string& variant);
 
+/// Whether single precision may read another entry than double: in looking up `direction`, or in turning a lobe there
+/// or to where it points away from. False where no table is used.
+bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm::dvec3& direction);
+
 }  // namespace clpv::reference

@@ -44,13 +44,14 @@ std::vector<double> sample(const Volume& volume, int channel, const glm::dvec3& 
 }
 
 /// g(n): what irradiance is in each coefficient, per s^2.
-std::vector<double> gather_weights(const Basis& basis, const Transport& transport, const glm::dvec3& normal) {
+std::vector<double> gather_weights(const Basis& basis, const Transport& transport, const LobeOptions& lobes,
+                                   const glm::dvec3& normal) {
   std::vector<double> weights(static_cast<std::size_t>(basis.size()));
   if (transport.gathers_cosine) {
     basis.cosine_integrals(-normal, weights);
     return transport.gather.transposed() * weights;
   }
-  basis.evaluate(-normal, weights);
+  weights = evaluate(basis, lobes, -normal);
   for (double& weight : weights) weight *= 4;
   return weights;
 }
@@ -86,7 +87,7 @@ double share_of(const glm::dvec3& at, int n, double blend_cells) {
 glm::dvec3 gather(const Basis& basis, const Transport& transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
                   const glm::dvec3& normal) {
-  const std::vector<double> weights = gather_weights(basis, transport, normal);
+  const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
   const double floor_share = options.floor * isotropic_share(basis, transport);
   glm::dvec3 e(0);
   double left = 1;

@@ -20,9 +20,9 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// A^-1 alpha round `normal`, scaled to a flux of pi where asked for.
-std::vector<double> lobe(const Basis& basis, const glm::dvec3& normal, bool unit_flux) {
-  std::vector<double> c = basis.clamped_cosine(normal);
+/// The lobe round `normal`, scaled to a flux of pi where asked for.
+std::vector<double> lobe(const Basis& basis, const Lobes& lobes, const glm::dvec3& normal, bool unit_flux) {
+  std::vector<double> c = lobes(normal);
   if (!unit_flux) return c;
   const double scale = std::numbers::pi / basis.energy(c);
   for (double& value : c) value *= scale;
@@ -63,7 +63,9 @@ bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
 }
 
 /// One source's blocking shares, before it is merged with others.
-Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis, bool two_sided) {
+Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
+                   const InjectOptions& options) {
+  const Lobes lobes(basis, options.lobes);
   Volume blocking(static_cast<int>(grid.n) + 1, basis.size(), 1);
   for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
     if (!has_surface(surface, pixel)) continue;
@@ -71,8 +73,8 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
     const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
     const double share = footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
     const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
-    add(blocking, 0, corner, share, lobe(basis, normal, false));
-    if (two_sided) add(blocking, 0, corner, share, lobe(basis, -normal, false));
+    add(blocking, 0, corner, share, lobes(normal));
+    if (options.two_sided) add(blocking, 0, corner, share, lobes(-normal));
   }
   return blocking;
 }
@@ -95,10 +97,11 @@ glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const Clpv
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
                   const InjectOptions& options, Volume& light) {
+  const Lobes lobes(basis, options.lobes);
   for (std::size_t pixel = 0; pixel < rsm.depth.size(); ++pixel) {
     const glm::dvec3 flux = vector(rsm.colour[pixel]);
     if (!has_surface(rsm, pixel) || !finite(flux)) continue;
-    const std::vector<double> c = lobe(basis, vector(rsm.normal[pixel]), options.unit_flux_lobes);
+    const std::vector<double> c = lobe(basis, lobes, vector(rsm.normal[pixel]), options.unit_flux_lobes);
     const glm::dvec3 point = grid_point(rsm, pixel, grid, true);
     for (int channel = 0; channel < 3; ++channel) {
       const double intensity = flux[channel] / std::numbers::pi;
@@ -118,7 +121,7 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
 
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                      const InjectOptions& options, Volume& geometry) {
-  const Volume blocking = blocking_of(surface, grid, basis, options.two_sided);
+  const Volume blocking = blocking_of(surface, grid, basis, options);
   for (int z = 0; z < geometry.n; ++z) {
     for (int y = 0; y < geometry.n; ++y) {
       for (int x = 0; x < geometry.n; ++x) {

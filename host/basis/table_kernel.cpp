@@ -1,0 +1,73 @@
+#include "basis/table_kernel.hpp"
+
+#include <fmt/format.h>
+
+#include "basis/kernel_text.hpp"
+#include "basis/rotated_lobe.hpp"
+#include "support/literal.hpp"
+
+namespace clpv {
+namespace {
+
+std::string opening(const char* name) {
+  return fmt::format(
+      "CLPV_INLINE Coefficients {}(const float x, const float y, const float z CLPV_AND_TABLE) {{\n"
+      "  Coefficients r;\n",
+      name);
+}
+
+/// "centre . (x, y, z)" with the names of those three.
+std::string height(const glm::dvec3& centre, const std::vector<std::string>& names) {
+  const double factors[] = {centre.x, centre.y, centre.z};
+  return sum_of_products(factors, names);
+}
+
+/// What the table holds for the height t, an expression.
+std::string entry(const std::string& t, int table_size) {
+  const double half = (table_size - 1) / 2.0;
+  return fmt::format("CLPV_TABLE_READ(table, clamp((int)fma({}, {}, {}), 0, {}))", t, float_literal(half),
+                     float_literal(half + ZonalTable::kIndexBias), table_size - 1);
+}
+
+/// The rotation that takes +z to (x, y, z): rotation_to(), straight-line.
+constexpr const char* kRotation = R"(  const float square = fma(x, x, y * y);
+  const float k = z < 0.0f ? (1.0f - z) / square : 1.0f / (1.0f + z);
+  const int down = z < 0.0f && square == 0.0f;
+  const float xx = down ? 1.0f : fma(k * y, y, z), xy = down ? 0.0f : -k * x * y;
+  const float yy = down ? -1.0f : fma(k * x, x, z);
+)";
+
+}  // namespace
+
+std::string rotated_integrals_source(const Basis& basis, int table_size) {
+  const std::vector<double> upwards = basis.clamped_cosine({0, 0, 1});
+  std::string text = opening("clpv_rotated_integrals") + kRotation;
+  for (int j = 0; j < basis.size(); ++j) {
+    const glm::dvec3& c = basis.centres()[static_cast<std::size_t>(j)];
+    text += fmt::format("  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n",
+                        j, height(c, {"xx", "xy", "x"}), height(c, {"xy", "yy", "y"}),
+                        height(c, {"(-x)", "(-y)", "z"}));
+  }
+  for (int i = 0; i < basis.size(); ++i) {
+    for (int j = 0; j < basis.size(); ++j) {
+      const std::string t = height(basis.centres()[static_cast<std::size_t>(i)],
+                                   {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
+      const std::string weight = float_literal(upwards[static_cast<std::size_t>(j)]),
+                        value = entry(t, table_size);
+      text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
+                     : fmt::format("  r.c{0} = fma({1}, {2}, r.c{0});\n", i, weight, value);
+    }
+  }
+  return text + "  return r;\n}\n";
+}
+
+std::string table_basis_source(const Basis& basis, int table_size) {
+  std::string text = opening("clpv_table_basis");
+  for (int i = 0; i < basis.size(); ++i) {
+    const std::string t = height(basis.centres()[static_cast<std::size_t>(i)], {"x", "y", "z"});
+    text += fmt::format("  r.c{} = {};\n", i, entry(t, table_size));
+  }
+  return text + "  return r;\n}\n";
+}
+
+}  // namespace clpv

@@ -1,0 +1,19 @@
+// Kernel text of the paper's look-up tables: lobes turned at run time (Appendix 2), and basis functions read from a table.
+#pragma once
+
+#include <string>
+
+#include "basis/basis.hpp"
+
+namespace clpv {
+
+/// Both texts need a basis with centres, and the macros of pipeline/lookup_table.hpp before them. Tables of
+/// `table_size` entries are read as ZonalTable is.
+///
+///   Coefficients clpv_rotated_integrals(x, y, z, table)   R c: integrals times b_i of the lobe towards +z, turned to
+///                                                         the unit direction; the table is gram_table()'s
+std::string rotated_integrals_source(const Basis& basis, int table_size);
+///   Coefficients clpv_table_basis(x, y, z, table)         b_i of a unit direction; the table is function_table()'s
+std::string table_basis_source(const Basis& basis, int table_size);
+
+}  // namespace clpv

@@ -1,0 +1,63 @@
+#include "pipeline/lookup_table.hpp"
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+std::optional<ZonalTable> table_of(const Basis& basis, const LobeOptions& options, TableUse use) {
+  if (basis.centres().empty()) return std::nullopt;
+  if (use == TableUse::lobes) {
+    if (options.kind != LobeKind::rotate) return std::nullopt;
+    return gram_table(basis, options.table_size);
+  }
+  if (!options.table_functions) return std::nullopt;
+  return function_table(basis, options.table_size);
+}
+
+void require_image(const Device& device, int entries) {
+  if (!device.images)
+    throw Error(ExitCode::device, "--table image: {} has no images; allowed: buffer", device.name);
+  const std::size_t most = device.handle.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
+  if (static_cast<std::size_t>(entries) > most) {
+    throw Error(ExitCode::device, "--table image: {} entries; an image of a buffer on {} holds {}", entries,
+                device.name, most);
+  }
+}
+
+}  // namespace
+
+LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions& options,
+                         TableStorage storage, TableUse use)
+    : values_(table_of(basis, options, use)), storage_(storage) {
+  if (!values_) return;
+  if (storage == TableStorage::image) require_image(session.device(), values_->size());
+  buffer_ = session.upload(values_->values(), "look-up table");
+  if (storage == TableStorage::image) {
+    // One channel of 32-bit floats is among the formats that every device with images reads (OpenCL 1.2, 5.3.2.1).
+    image_ = cl::Image1DBuffer(session.context(), CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
+                               static_cast<std::size_t>(values_->size()), buffer_);
+  }
+}
+
+std::string LookupTable::macros() const {
+  if (!values_) return "#define CLPV_AND_TABLE\n#define CLPV_PASS_TABLE\n";
+  const bool image = storage_ == TableStorage::image;
+  return fmt::format(
+      "#define CLPV_AND_TABLE , {} table\n#define CLPV_PASS_TABLE , table\n"
+      "#define CLPV_TABLE_READ(table, i) {}\n",
+      image ? "__read_only image1d_buffer_t" : "__global const float*",
+      image ? "read_imagef(table, i).x" : "(table)[i]");
+}
+
+void LookupTable::set(cl::Kernel& kernel) const {
+  if (!values_) return;
+  const cl_uint index = kernel.getInfo<CL_KERNEL_NUM_ARGS>() - 1;
+  if (storage_ == TableStorage::image) {
+    kernel.setArg(index, image_);
+  } else {
+    kernel.setArg(index, buffer_);
+  }
+}
+
+}  // namespace clpv

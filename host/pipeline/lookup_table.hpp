@@ -1,0 +1,42 @@
+// The paper's look-up tables on the device: as a plain buffer, or as a 1-D image of a buffer.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <optional>
+#include <string>
+
+#include "basis/basis.hpp"
+#include "basis/rotated_lobe.hpp"
+#include "device/session.hpp"
+
+namespace clpv {
+
+enum class TableStorage { buffer, image };
+
+/// Which table a kernel looks things up in, if any.
+enum class TableUse { lobes, functions };
+
+/// A table, or none, as a kernel's last argument. Kernels take it by the macros that macros() defines:
+///   CLPV_AND_TABLE               ", TYPE table" at the end of a parameter list, or nothing
+///   CLPV_PASS_TABLE              ", table" at the end of a call, or nothing
+///   CLPV_TABLE_READ(table, i)    entry i
+class LookupTable {
+ public:
+  /// None, if `options` ask for none or the basis has no centres. Throws Error(usage) for a size out of range, and
+  /// Error(device) for an image that the device cannot make, with the reason.
+  LookupTable(Session& session, const Basis& basis, const LobeOptions& options, TableStorage storage,
+              TableUse use);
+
+  bool exists() const { return values_.has_value(); }
+  std::string macros() const;
+  /// Sets the last argument of a kernel that was compiled with macros(), where there is a table.
+  void set(cl::Kernel& kernel) const;
+
+ private:
+  std::optional<ZonalTable> values_;
+  TableStorage storage_;
+  cl::Buffer buffer_;
+  cl::Image1DBuffer image_;
+};
+
+}  // namespace clpv
