@@ -28,9 +28,9 @@ const std::vector<Stage>& stages() {
     return [check](Session& session, bool) { return check(session); };
   };
   static const std::vector<Stage> all = {
-      {"sizes", plain(reference::check_sizes)},   {"rasterize", plain(reference::check_rasterize)},
-      {"inject", plain(reference::check_inject)}, {"propagate", reference::check_propagate},
-      {"gather", plain(reference::check_gather)}, {"shade", plain(reference::check_shade)},
+      {"sizes", plain(reference::check_sizes)}, {"rasterize", plain(reference::check_rasterize)},
+      {"inject", reference::check_inject},      {"propagate", reference::check_propagate},
+      {"gather", reference::check_gather},      {"shade", plain(reference::check_shade)},
   };
   return all;
 }
@@ -123,7 +123,7 @@ void add_check(CLI::App& app, Shared& shared) {
       ->delimiter(',')
       ->check(CLI::IsMember(stage_names()));
   command->add_flag("--thorough", options->thorough,
-                    "every basis with every transport and state; takes minutes");
+                    "every basis with every choice of lobes, tables, transport and state; takes minutes");
   command->add_flag("--json", options->json, "JSON on stdout");
   command->callback([options, &shared] { run(*options, shared); });
 }

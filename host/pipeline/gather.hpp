@@ -20,7 +20,7 @@ struct GatherOptions {
   double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
   bool late_light = false;     ///< add the late light of coarser cascades
   double floor = 0;            ///< E is at least so much of its value were the light isotropic, in [0, 1]
-  LobeOptions lobes;           ///< b(-n) may come from a table; alpha(-n) is exact always
+  LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
   TableStorage table = TableStorage::buffer;
 };
 

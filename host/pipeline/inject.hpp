@@ -20,7 +20,7 @@ struct InjectOptions {
   bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
   bool two_sided = true;   ///< surfels block from both sides; else only what travels against their normal
   bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
-  LobeOptions lobes;             ///< rotated lobes are so at run time, by a table
+  LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
   TableStorage table = TableStorage::buffer;
 };
 

@@ -24,10 +24,10 @@ using CheckResults = std::vector<CheckResult>;
 // One a stage, in reference/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device.
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
-CheckResults check_inject(Session& session);
-/// `thorough`: every basis with every transport and state; minutes, for the kernels there are to build.
+// `thorough`: every combination of basis and options; minutes, for the kernels there are to build.
+CheckResults check_inject(Session& session, bool thorough = false);
 CheckResults check_propagate(Session& session, bool thorough = false);
-CheckResults check_gather(Session& session);
+CheckResults check_gather(Session& session, bool thorough = false);
 CheckResults check_shade(Session& session);
 
 }  // namespace clpv::reference

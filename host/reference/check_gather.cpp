@@ -29,6 +29,8 @@ struct Variant {
   std::string name;
   bool late_light = false;
   double floor = 0;
+  LobeOptions lobes = {};
+  TableStorage table = TableStorage::buffer;
 };
 
 /// One cascade's sums, on the device and for the twin.
@@ -44,9 +46,16 @@ struct Lit {
 CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
                       const Variant& variant) {
   std::mt19937 random(11);
-  const SurfaceImage image = random_surfaces(random);
+  SurfaceImage image = random_surfaces(random);
+  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
+    if (rounding_decides(basis, variant.lobes, glm::dvec3(image.normal[pixel]))) image.depth[pixel] = 0;
+  }
   const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
-  const GatherOptions options{.grid = kGrid, .late_light = variant.late_light, .floor = variant.floor};
+  const GatherOptions options{.grid = kGrid,
+                              .late_light = variant.late_light,
+                              .floor = variant.floor,
+                              .lobes = variant.lobes,
+                              .table = variant.table};
   std::vector<Lit> full, late;
   for (int c = 0; c < kCascades; ++c) {
     full.emplace_back(session, basis.size(), random);
@@ -70,7 +79,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
 
 }  // namespace
 
-CheckResults check_gather(Session& session) {
+CheckResults check_gather(Session& session, bool thorough) {
   CheckResults results;
   for (const std::string& name : basis_names()) {
     const std::unique_ptr<Basis> basis = make_basis(name);
@@ -78,6 +87,13 @@ CheckResults check_gather(Session& session) {
     results.push_back(check_one(session, *basis, make_transport("sampled", *basis), {"plain"}));
     results.push_back(
         check_one(session, *basis, make_transport("upwind", *basis), {"late, floor", true, 0.15}));
+    if (basis->centres().empty()) continue;  // no table
+    const LobeOptions functions{.table_functions = true};
+    results.push_back(
+        check_one(session, *basis, make_transport("sampled", *basis), {"table", false, 0, functions}));
+    if (!session.device().images || (!thorough && basis->size() > 4)) continue;
+    results.push_back(check_one(session, *basis, make_transport("sampled", *basis),
+                                {"table image", false, 0, functions, TableStorage::image}));
   }
   return results;
 }

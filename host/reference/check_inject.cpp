@@ -9,6 +9,7 @@
 
 #include "pipeline/inject.hpp"
 #include "reference/check.hpp"
+#include "reference/check_surfaces.hpp"
 #include "reference/inject.hpp"
 #include "reference/tolerances.hpp"
 
@@ -48,8 +49,10 @@ bool near_border(const glm::dvec3& point) {
   return std::min({off.x, off.y, off.z}) < kMargin;
 }
 
-/// Random depths, normals towards the viewer and colours; holes and values that are not finite among them.
-SurfaceImage random_surface(bool orthographic, bool light, RsmFormat format, unsigned seed) {
+/// Random depths, normals towards the viewer and colours; holes and values that are not finite among them. No normal
+/// whose lobe rounding decides.
+SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool orthographic, bool light,
+                            RsmFormat format, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);
   constexpr float kDistance = 5, kSpread = 1.4f;
@@ -64,7 +67,9 @@ SurfaceImage random_surface(bool orthographic, bool light, RsmFormat format, uns
     surface.normal[i] = glm::vec4(glm::normalize(1.2f * around - forward), 0);
     surface.colour[i] = 0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);
     const glm::dvec3 point = grid_point(surface, i, kCells, light);
-    if (near_border(light ? point : point + 0.5)) surface.depth[i] = 0;
+    const bool unsure =
+        lobes.kind == LobeKind::rotate && rounding_decides(basis, lobes, glm::dvec3(surface.normal[i]));
+    if (unsure || near_border(light ? point : point + 0.5)) surface.depth[i] = 0;
   }
   surface.depth[3] = std::numeric_limits<float>::infinity();
   if (format == RsmFormat::paper) return surface;  // 8 bits hold no NaN
@@ -84,9 +89,10 @@ std::vector<glm::dvec3> directions() {
 
 /// The functions, not their coefficients, are compared: where the Gram matrix is ill-conditioned coefficients
 /// differ in directions in which functions hardly do.
-CheckResult compare(const Basis& basis, const std::vector<float>& device, const Volume& twin,
+CheckResult compare(const Basis& basis, LobeKind lobes, const std::vector<float>& device, const Volume& twin,
                     const std::string& variant) {
-  CheckResult result{"inject", variant, 0, tolerance("inject"), {}};
+  CheckResult result{
+      "inject", variant, 0, tolerance(lobes == LobeKind::rotate ? "inject-rotated" : "inject"), {}};
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
   const auto size = static_cast<std::size_t>(basis.size());
   double largest = 0, worst = 0;
@@ -116,17 +122,21 @@ std::string name_of(const Basis& basis, const char* stage, bool orthographic, Rs
                     const InjectOptions& options) {
   return fmt::format("{}/{}/{}{}{}{}{}", basis.name(), stage, orthographic ? "orthographic" : "perspective",
                      format == RsmFormat::paper ? "/paper" : "", options.trilinear ? "/trilinear" : "",
-                     options.two_sided ? "" : "/one-sided", options.unit_flux_lobes ? "/unit-flux" : "");
+                     options.two_sided ? "" : "/one-sided", options.unit_flux_lobes ? "/unit-flux" : "") +
+         (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
+         (options.table == TableStorage::buffer ? "" : "/image");
 }
 
 CheckResult check_light(Session& session, const Basis& basis, const InjectOptions& options, bool orthographic,
                         RsmFormat format) {
-  const Surface surface = upload_surface(session, random_surface(orthographic, true, format, 11), format);
+  const Surface surface =
+      upload_surface(session, random_surface(basis, options.lobes, orthographic, true, format, 11), format);
   clpv::Volume light(session, {kGrid, basis.size(), 3}, "check: light");
   Injector(session, basis, options).inject_light(surface, kCells, light);
   Volume twin(kGrid, basis.size(), 3);
   inject_light(read_surface(session, surface), kCells, basis, options, twin);
-  return compare(basis, light.read(session), twin, name_of(basis, "light", orthographic, format, options));
+  return compare(basis, options.lobes.kind, light.read(session), twin,
+                 name_of(basis, "light", orthographic, format, options));
 }
 
 /// Two surfaces, so that they are merged.
@@ -137,23 +147,36 @@ CheckResult check_geometry(Session& session, const Basis& basis, const InjectOpt
   Injector injector(session, basis, options);
   for (const unsigned seed : {12u, 13u}) {
     const bool from_above = orthographic == (seed == 12u);
-    const Surface surface = upload_surface(session, random_surface(from_above, false, format, seed), format);
+    const Surface surface = upload_surface(
+        session, random_surface(basis, options.lobes, from_above, false, format, seed), format);
     injector.inject_geometry(surface, kCells, geometry);
     inject_geometry(read_surface(session, surface), kCells, basis, options, twin);
   }
-  return compare(basis, geometry.read(session), twin,
+  return compare(basis, options.lobes.kind, geometry.read(session), twin,
                  name_of(basis, "geometry", orthographic, format, options));
+}
+
+/// Lobes rotated at run time. Reading an image hardly depends on the basis.
+void check_rotated(Session& session, const Basis& basis, bool thorough, CheckResults& results) {
+  if (basis.centres().empty()) return;  // rotated are the exact ones
+  InjectOptions rotated{.grid = kGrid, .lobes = {.kind = LobeKind::rotate}};
+  results.push_back(check_light(session, basis, rotated, true, RsmFormat::float32));
+  results.push_back(check_geometry(session, basis, rotated, true, RsmFormat::float32));
+  rotated.table = TableStorage::image;
+  if (session.device().images && (thorough || basis.size() == 4))
+    results.push_back(check_light(session, basis, rotated, false, RsmFormat::float32));
 }
 
 }  // namespace
 
-CheckResults check_inject(Session& session) {
+CheckResults check_inject(Session& session, bool thorough) {
   CheckResults results;
   for (const std::string& name : basis_names()) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     const InjectOptions plain{.grid = kGrid};
     results.push_back(check_light(session, *basis, plain, true, RsmFormat::float32));
     results.push_back(check_geometry(session, *basis, plain, true, RsmFormat::float32));
+    check_rotated(session, *basis, thorough, results);
     // What hardly depends on the basis, for the small ones: compiling takes most of the time.
     if (basis->size() > 4) continue;
     const InjectOptions trilinear{.grid = kGrid, .trilinear = true, .unit_flux_lobes = true};

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "basis/rotated_lobe.hpp"
 #include "pipeline/surface.hpp"
 #include "reference/check.hpp"
 
