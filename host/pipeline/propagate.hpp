@@ -10,6 +10,8 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
+#include "pipeline/running_sum.hpp"
+#include "pipeline/stencil.hpp"
 #include "pipeline/transmit.hpp"
 #include "pipeline/transport_source.hpp"
 #include "pipeline/volume.hpp"
@@ -19,8 +21,11 @@ namespace clpv {
 struct PropagateOptions {
   int grid = 32;  ///< cells along each axis
   State state = State::coefficients;
-  std::array<std::size_t, 2> local = {0,
-                                      1};  ///< work-group size along x, y; x 0: the grid's edge, at most 64
+  VolumeFormat format = {};  ///< of all volumes
+  int lanes = 0;             ///< as in StencilOptions, and so is `local`
+  std::array<std::size_t, 2> local = {0, 1};
+
+  StencilOptions stencil() const { return {grid, format, lanes, local}; }
 };
 
 /// What a propagation reads and writes. The caller owns the volumes; all have `grid` cells, geometry one more
@@ -58,19 +63,30 @@ class Propagator {
   };
   Form& form(bool first, bool blocking);
   void transmit(const Volume& geometry);
-  void run_step(Form& form, bool blocking, const cl::Memory& source, const cl::Memory& target,
-                const cl::Memory& sum_so_far, const cl::Memory& sum);
-  void run_expand(Form& form, const cl::Memory& base, const cl::Memory& sum, const cl::Memory& accumulated);
-  cl::NDRange per_channel() const;
+  void run_step(Form& form, bool blocking, const Volume& source, const Volume& target,
+                const Volume& sum_so_far, const Volume& sum);
+  struct Sums {
+    RunningSum early;
+    std::optional<RunningSum> late;
+  };
+  Sums prepare_sums(const PropagateVolumes& volumes, int early_steps, int late_steps);
+  /// Where the sum without the late steps waits to be expanded into `accumulated`: there, or where that cannot be both
+  /// read and written, in the spare one.
+  Volume& before_late(const PropagateVolumes& volumes);
+  void expand(Form& form, const PropagateVolumes& volumes, bool late);
+  void run_expand(Form& form, const Volume& base, const Volume& sum, const Volume& accumulated);
 
   Session& session_;
   const Basis& basis_;
   const Transport& transport_;
   PropagateOptions options_;
+  Stencil stencil_;
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<Transmitter> transmitter_;
-  std::unique_ptr<Volume> sum_, late_sum_;  ///< of the six fluxes, or of late coefficients
+  std::unique_ptr<Volume> sum_, late_sum_;  ///< of the six fluxes
+  /// Of the light's shape and of what travels; for images alone, which are not updated in place.
+  std::unique_ptr<Volume> spare_, travelling_spare_;
 };
 
 }  // namespace clpv

@@ -108,24 +108,22 @@ std::string way_macros(int ways) {
   return fmt::format("#define CLPV_WAYS {}\n", ways) + cell_macros("Ways", "WAY", ways);
 }
 
-Transmitter::Transmitter(Session& session, const Basis& basis, const Transport& transport, int grid,
-                         const std::array<std::size_t, 2>& local)
-    : session_(session), grid_(grid), local_(local) {
+Transmitter::Transmitter(Session& session, const Basis& basis, const Transport& transport,
+                         const StencilOptions& options)
+    : session_(session), stencil_(session.device(), options) {
   const TransmitSource source = transmit_source(basis, transport);
   operations_ = source.operations;
-  transmittance_ = std::make_unique<Volume>(session, VolumeShape{grid, source.ways, 1}, "transmittance");
+  transmittance_ = std::make_unique<Volume>(session, VolumeShape{options.grid, source.ways, 1},
+                                            "transmittance", options.format);
   ProgramSource program{"transmit.cl", {}, source.text};
-  program.literals = {{"CLPV_GRID", std::to_string(grid)},
-                      {"CLPV_LOCAL_X", std::to_string(local[0])},
-                      {"CLPV_LOCAL_Y", std::to_string(local[1])}};
+  stencil_.add_literals(program.literals);
   kernel_ = session.kernel(program, "transmit");
 }
 
 void Transmitter::transmit(const Volume& geometry) {
   kernel_.setArg(0, geometry.memory());
   kernel_.setArg(1, transmittance_->memory());
-  const auto n = static_cast<std::size_t>(grid_);
-  session_.launch(kernel_, {n, n, n}, {local_[0], local_[1], 1});
+  stencil_.launch(session_, kernel_, 1);
 }
 
 }  // namespace clpv

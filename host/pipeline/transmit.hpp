@@ -1,7 +1,6 @@
 // What blockers let through: a cascade's geometry volume as the share of light that each way into a cell passes.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "pipeline/linear_code.hpp"
+#include "pipeline/stencil.hpp"
 #include "pipeline/volume.hpp"
 
 namespace clpv {
@@ -30,9 +30,8 @@ std::string way_macros(int ways);
 /// costs the same whatever the basis that blocks.
 class Transmitter {
  public:
-  /// `local`: work-group size along x, y.
-  Transmitter(Session& session, const Basis& basis, const Transport& transport, int grid,
-              const std::array<std::size_t, 2>& local);
+  Transmitter(Session& session, const Basis& basis, const Transport& transport,
+              const StencilOptions& options);
 
   void transmit(const Volume& geometry);  ///< (grid + 1)^3 corners, one channel
 
@@ -42,8 +41,7 @@ class Transmitter {
 
  private:
   Session& session_;
-  int grid_;
-  std::array<std::size_t, 2> local_;
+  Stencil stencil_;
   OperationCount operations_;
   cl::Kernel kernel_;
   std::unique_ptr<Volume> transmittance_;

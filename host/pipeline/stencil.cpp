@@ -1,0 +1,38 @@
+#include "pipeline/stencil.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace clpv {
+namespace {
+
+// Enough to fill 16-wide vectors; wider groups gain nothing on a CPU.
+constexpr std::size_t kWidestGroup = 64;
+
+std::size_t items_per_row(int grid, int lanes) {
+  return static_cast<std::size_t>((grid + lanes - 1) / lanes);
+}
+
+}  // namespace
+
+Stencil::Stencil(const Device& device, const StencilOptions& options) : options_(options) {
+  if (options_.lanes == 0) options_.lanes = preferred_lanes(device, options.format);
+  if (options_.local[0] == 0)
+    options_.local[0] = std::min(items_per_row(options.grid, options_.lanes), kWidestGroup);
+}
+
+void Stencil::add_literals(Literals& literals) const {
+  literals["CLPV_GRID"] = std::to_string(options_.grid);
+  literals["CLPV_LOCAL_X"] = std::to_string(options_.local[0]);
+  literals["CLPV_LOCAL_Y"] = std::to_string(options_.local[1]);
+  add_format_literals(literals, options_.format, options_.lanes);
+}
+
+void Stencil::launch(Session& session, const cl::Kernel& kernel, int channels) const {
+  const auto n = static_cast<std::size_t>(options_.grid);
+  session.launch(kernel,
+                 {items_per_row(options_.grid, options_.lanes), n, n * static_cast<std::size_t>(channels)},
+                 {options_.local[0], options_.local[1], 1});
+}
+
+}  // namespace clpv
