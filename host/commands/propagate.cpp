@@ -27,6 +27,7 @@ struct Source {
 
 struct Options {
   std::string basis = "sh2", transport = "sampled", state = "coefficients", preset;
+  std::string layout = "soa", storage = "float";
   double lambda = kDefaultLambda;
   int grid = 32, iterations = 8;
   std::vector<Source> sources;
@@ -125,6 +126,8 @@ nlohmann::json options_json(const Options& options) {
           {"lambda", options.lambda},
           {"transport", options.transport},
           {"state", options.state},
+          {"layout", options.layout},
+          {"storage", options.storage},
           {"grid", options.grid},
           {"iterations", options.iterations},
           {"sources", sources},
@@ -151,15 +154,17 @@ void run(const Options& options, const Shared& shared) {
   }
   const auto basis = make_basis(options.basis, options.lambda);
   const Transport transport = make_transport(options.transport, *basis);
+  const VolumeFormat format = volume_format(options.layout, options.storage);
   const State state = options.state == "fluxes" ? State::fluxes : State::coefficients;
   const reference::Volume light = injected_light(*basis, options);
   Session session(choose_device(shared.device));
   const VolumeShape shape{options.grid, basis->size(), 3};
-  Volume injected(session, shape, "injected light"), accumulated(session, shape, "accumulated light");
+  Volume injected(session, shape, "injected light", format),
+      accumulated(session, shape, "accumulated light", format);
   injected.write(session, to_float(light.values));
   std::optional<Volume> corners;
   if (!options.blocks.empty()) {
-    corners.emplace(session, VolumeShape{options.grid + 1, basis->size(), 1}, "geometry volume");
+    corners.emplace(session, VolumeShape{options.grid + 1, basis->size(), 1}, "geometry volume", format);
     corners->write(session, to_float(blocked_corners(*basis, options).values));
   }
 
@@ -167,7 +172,7 @@ void run(const Options& options, const Shared& shared) {
   std::array<double, 3> total = reference::energy(*basis, light), lost{};
   steps.push_back({{"step", 0}, {"travelling", total}, {"accumulated", total}, {"lost", lost}});
   reference::Volume before = light;
-  Propagator propagator(session, *basis, transport, {.grid = options.grid, .state = state});
+  Propagator propagator(session, *basis, transport, {.grid = options.grid, .state = state, .format = format});
   propagator.propagate(
       {injected, corners ? &*corners : nullptr, accumulated}, options.iterations,
       [&](int step, const Volume& travelling) {
@@ -210,6 +215,12 @@ void add_propagate(CLI::App& app, Shared& shared) {
   command->add_option("--state", options->state, "what travels")
       ->capture_default_str()
       ->check(CLI::IsMember({"coefficients", "fluxes"}));
+  command->add_option("--layout", options->layout, "how volumes lie in memory")
+      ->capture_default_str()
+      ->check(CLI::IsMember(layout_names()));
+  command->add_option("--storage", options->storage, "numbers of the volumes")
+      ->capture_default_str()
+      ->check(CLI::IsMember(storage_names()));
   command->add_option("--grid", options->grid, "cells along each axis")
       ->capture_default_str()
       ->check(CLI::Range(1, 512));

@@ -15,7 +15,8 @@ InjectOptions inject_options(const RenderOptions& options, const Transport& tran
           .two_sided = options.blocking == "two-sided",
           .unit_flux_lobes = transport.unit_flux_lobes,
           .lobes = options.lobes(),
-          .table = options.table_storage()};
+          .table = options.table_storage(),
+          .format = options.format()};
 }
 
 GatherOptions gather_options(const RenderOptions& options) {
@@ -24,23 +25,39 @@ GatherOptions gather_options(const RenderOptions& options) {
           .late_light = options.late_light,
           .floor = options.gather_floor,
           .lobes = options.lobes(),
-          .table = options.table_storage()};
+          .table = options.table_storage(),
+          .format = options.format()};
+}
+
+VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
+  return {options.grid, basis.size(), 3};
+}
+
+VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis) {
+  return {options.grid + 1, basis.size(), 1};
 }
 
 /// Bytes of the volumes of a frame at this grid.
 double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) {
-  const double plane = std::pow(grid + 2.0, 3) * sizeof(float);
-  const double carried = options.travelling() == State::fluxes ? 6.0 : basis.size();
-  const double per_cascade = 3.0 * basis.size() * (options.late_light ? 2 : 1);
-  return plane * (3.0 * basis.size() + 3 * 3 * carried + per_cascade * options.cascades + 2.0 * basis.size());
+  RenderOptions tried = options;
+  tried.grid = grid;
+  const auto bytes = [&](const VolumeShape& shape) {
+    return static_cast<double>(stored_bytes(options.format(), shape));
+  };
+  const double light = bytes(light_shape(tried, basis));
+  const double carried = bytes({grid, options.travelling() == State::fluxes ? 6 : basis.size(), 3});
+  // Images, which are not updated in place, come with spare ones, and with planes to inject into.
+  const double spare = options.format().layout == Layout::image ? 2 * light + carried : 0.0;
+  return light * (1 + options.cascades * (options.late_light ? 2 : 1)) + 3 * carried +
+         2 * bytes(geometry_shape(tried, basis)) + spare;
 }
 
 /// Refuses a grid whose volumes exceed the device, naming the largest that fits.
 void require_memory(const Session& session, const RenderOptions& options, const Basis& basis) {
   const Device& device = session.device();
   const auto fits = [&](int grid) {
-    const double one = std::pow(grid + 2.0, 3) * sizeof(float) * 3.0 * std::max(6, basis.size());
-    return one <= static_cast<double>(device.max_alloc_bytes) &&
+    const std::size_t one = stored_bytes(options.format(), {grid, std::max(6, basis.size()), 3});
+    return one <= device.max_alloc_bytes &&
            volume_bytes(options, basis, grid) <= static_cast<double>(device.memory_bytes);
   };
   if (fits(options.grid)) return;
@@ -54,11 +71,8 @@ void require_memory(const Session& session, const RenderOptions& options, const 
               device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
 }
 
-VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
-  return {options.grid, basis.size(), 3};
-}
-
 const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis) {
+  require_supported(session.device(), options.format(), light_shape(options, basis));
   require_memory(session, options, basis);
   return options;
 }
@@ -74,19 +88,21 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_)),
-      propagator_(session, *basis_, transport_, {.grid = options.grid, .state = options.travelling()}),
+      propagator_(session, *basis_, transport_,
+                  {.grid = options.grid, .state = options.travelling(), .format = options.format()}),
       gatherer_(session, *basis_, transport_, gather_options(options)),
       shader_(session),
-      injected_(session, light_shape(options, *basis_), "injected light") {
+      injected_(session, light_shape(options, *basis_), "injected light", options.format()) {
   for (int c = 0; c < options.cascades; ++c) {
-    accumulated_.push_back(
-        std::make_unique<Volume>(session, light_shape(options, *basis_), "accumulated light"));
+    accumulated_.push_back(std::make_unique<Volume>(session, light_shape(options, *basis_),
+                                                    "accumulated light", options.format()));
     if (options.late_light)
-      late_.push_back(std::make_unique<Volume>(session, light_shape(options, *basis_), "late light"));
+      late_.push_back(
+          std::make_unique<Volume>(session, light_shape(options, *basis_), "late light", options.format()));
   }
   if (options.occlusion) {
-    geometry_ = std::make_unique<Volume>(session, VolumeShape{options.grid + 1, basis_->size(), 1},
-                                         "geometry volume");
+    geometry_ = std::make_unique<Volume>(session, geometry_shape(options, *basis_), "geometry volume",
+                                         options.format());
   }
   const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "basis/table_kernel.hpp"
+#include "device/arguments.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -11,6 +12,7 @@ namespace {
 
 // Neighbours in a row share cells. Of 64 x 1, 64 x 4, 32 x 8, 16 x 16 and 8 x 8 none was faster on a CPU.
 constexpr std::size_t kLocalX = 64, kLocalY = 1;
+constexpr cl_uint kVolumeArgument = 6;  // of kernel gather: the packed volumes, or the first image
 constexpr double kNegligible =
     1e-12;  // quadrature's noise in a matrix whose entry is 0; the others are near 1
 
@@ -67,6 +69,12 @@ LobeOptions looked_up(const Transport& transport, const GatherOptions& options) 
   return lobes;
 }
 
+std::string cascade_macro(std::size_t cascades) {
+  std::string text = "#define CLPV_EACH_CASCADE(DO)";
+  for (std::size_t c = 0; c < cascades; ++c) text += fmt::format(" DO({})", c);
+  return text + "\n";
+}
+
 ProgramSource source_of(const Basis& basis, const Transport& transport, const GatherOptions& options,
                         const LookupTable& table) {
   ProgramSource source;
@@ -77,6 +85,8 @@ ProgramSource source_of(const Basis& basis, const Transport& transport, const Ga
                      {"CLPV_INVERSE_BLEND", float_literal(1 / options.blend_cells)},
                      {"CLPV_LATE", options.late_light ? "1" : "0"},
                      {"CLPV_FLOORED", options.floor > 0 ? "1" : "0"}};
+  add_format_literals(source.literals, options.format);
+  if (options.format.layout == Layout::image) source.literals["CLPV_FILTERED"] = options.filtered ? "1" : "0";
   source.generated =
       table.macros() + coefficient_macros(basis.size()) + pair_macros(basis.size()) + basis.kernel_source();
   if (table.exists()) source.generated += table_basis_source(basis, options.lobes.table_size);
@@ -111,11 +121,22 @@ Gatherer::Gatherer(Session& session, const Basis& basis, const Transport& transp
     : session_(session),
       options_(options),
       coefficients_(basis.size()),
-      table_(session, basis, looked_up(transport, options), options.table, TableUse::functions) {
+      table_(session, basis, looked_up(transport, options), options.table, TableUse::functions),
+      source_(source_of(basis, transport, options, table_)) {
   require_sound(options);
-  const ProgramSource source = source_of(basis, transport, options, table_);
-  pack_ = session.kernel(source, "pack");
-  gather_ = session.kernel(source, "gather");
+  if (reads_images()) return;
+  pack_ = session.kernel(source_, "pack");
+  gather_[0] = session.kernel(source_, "gather");
+}
+
+cl::Kernel& Gatherer::gather_kernel(std::size_t cascades) {
+  const auto [found, made] = gather_.try_emplace(reads_images() ? cascades : 0);
+  if (made) {
+    ProgramSource source = source_;
+    source.generated += cascade_macro(cascades);
+    found->second = session_.kernel(source, "gather");
+  }
+  return found->second;
 }
 
 void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
@@ -133,12 +154,16 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
                   "gather: volume of {}^3 cells, {} coefficients, {} channels; made for {}^3, {}, 3", shape.n,
                   shape.coefficients, shape.channels, options_.grid, coefficients_);
     }
+    if (volume->format() != options_.format) {
+      throw Error(ExitCode::run_time, "gather: a volume of {}; made for {}", format_name(volume->format()),
+                  format_name(options_.format));
+    }
   }
 }
 
 void Gatherer::reserve(std::size_t volumes, std::size_t cascades) {
   const auto n = static_cast<std::size_t>(options_.grid);
-  if (volumes > reserved_volumes_) {
+  if (!reads_images() && volumes > reserved_volumes_) {
     packed_ = session_.buffer(volumes * n * n * n * pairs(coefficients_) * sizeof(cl_float8),
                               "gather's packed volumes");
     reserved_volumes_ = volumes;
@@ -165,19 +190,20 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   const std::size_t per_cascade = options_.late_light ? 2 : 1;
   reserve(grids.size() * per_cascade, grids.size());
   session_.write(grids_, grids);
-  for (std::size_t c = 0; c < grids.size(); ++c) {
-    pack(*accumulated[c], c * per_cascade);
-    if (options_.late_light) pack(*late[c], c * per_cascade + 1);
+  cl::Kernel& kernel = gather_kernel(grids.size());
+  set_arguments(kernel, camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()),
+                irradiance);
+  if (!reads_images()) kernel.setArg(kVolumeArgument, packed_);
+  for (std::size_t slot = 0; slot < grids.size() * per_cascade; ++slot) {
+    const Volume& volume = *(slot % per_cascade == 0 ? accumulated : late)[slot / per_cascade];
+    if (reads_images()) {
+      kernel.setArg(kVolumeArgument + static_cast<cl_uint>(slot), volume.memory());
+    } else {
+      pack(volume, slot);
+    }
   }
-  gather_.setArg(0, camera.view);
-  gather_.setArg(1, camera.depth);
-  gather_.setArg(2, camera.normal);
-  gather_.setArg(3, grids_);
-  gather_.setArg(4, static_cast<cl_uint>(grids.size()));
-  gather_.setArg(5, packed_);
-  gather_.setArg(6, irradiance);
-  table_.set(gather_);
-  session_.launch(gather_, cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocalX, kLocalY));
+  table_.set(kernel);
+  session_.launch(kernel, cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocalX, kLocalY));
 }
 
 }  // namespace clpv

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <map>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -22,6 +23,8 @@ struct GatherOptions {
   double floor = 0;            ///< E is at least so much of its value were the light isotropic, in [0, 1]
   LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
   TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};  ///< of the cascades' volumes
+  bool filtered = true;  ///< images: sampled by the device's filter; else from texels, in single precision
 };
 
 /// Isotropic light of energy Int I dw puts isotropic_share(...) Int I dw / s^2 on a surface, averaged over
@@ -50,6 +53,8 @@ class Gatherer {
               cl::Buffer& irradiance);
 
  private:
+  bool reads_images() const { return options_.format.layout == Layout::image; }
+  cl::Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes, std::size_t expected) const;
   void reserve(std::size_t volumes, std::size_t cascades);
@@ -59,7 +64,9 @@ class Gatherer {
   GatherOptions options_;
   int coefficients_;
   LookupTable table_;
-  cl::Kernel pack_, gather_;
+  ProgramSource source_;
+  cl::Kernel pack_;                           ///< of buffers
+  std::map<std::size_t, cl::Kernel> gather_;  ///< by number of cascades, of which only images take note
   cl::Buffer packed_, grids_;
   std::size_t reserved_volumes_ = 0, reserved_grids_ = 0;
 };

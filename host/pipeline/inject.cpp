@@ -37,9 +37,14 @@ std::size_t texel_count(const Surface& surface) {
   return std::size_t{surface.view.width} * surface.view.height;
 }
 
-void require_shape(const Volume& volume, const VolumeShape& wanted, const char* what) {
+void require_fit(const Volume& volume, const VolumeShape& wanted, const VolumeFormat& format,
+                 const char* what) {
   const VolumeShape& found = volume.shape();
-  if (found.n != wanted.n || found.coefficients != wanted.coefficients || found.channels != wanted.channels) {
+  if (volume.format() != format) {
+    throw Error(ExitCode::run_time, "{} volume of {}, injection is made for {}", what,
+                format_name(volume.format()), format_name(format));
+  }
+  if (found != wanted) {
     throw Error(ExitCode::run_time,
                 "{} volume has {}^3 x {} x {} values, injection is made for {}^3 x {} x {}", what, found.n,
                 found.coefficients, found.channels, wanted.n, wanted.coefficients, wanted.channels);
@@ -67,14 +72,17 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
                               {"CLPV_SURFACE_PAPER", paper},
                               {"CLPV_STRIP", fmt::format("{}u", strip_)}},
                              {}};
-    const ProgramSource sum{"inject.cl",
-                            {{"CLPV_GEOMETRY", flag(!light)},
-                             {"CLPV_TRILINEAR", flag(trilinear)},
-                             {"CLPV_SURFACE_PAPER", paper},
-                             {"CLPV_GRID", std::to_string(options_.grid)},
-                             {"CLPV_TWO_SIDED", flag(options_.two_sided)},
-                             {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
-                            table_.macros() + inject_source(basis_, options_.lobes, trilinear)};
+    ProgramSource sum{"inject.cl",
+                      {{"CLPV_GEOMETRY", flag(!light)},
+                       {"CLPV_TRILINEAR", flag(trilinear)},
+                       {"CLPV_SURFACE_PAPER", paper},
+                       {"CLPV_GRID", std::to_string(options_.grid)},
+                       {"CLPV_TWO_SIDED", flag(options_.two_sided)},
+                       {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
+                      table_.macros() + inject_source(basis_, options_.lobes, trilinear)};
+    const bool planes = options_.format.layout == Layout::image;
+    add_format_literals(sum.literals,
+                        {planes ? Layout::soa : options_.format.layout, options_.format.storage});
     found->second = {session_.kernel(find, "find_cells"), session_.kernel(sum, "sum_segments"),
                      session_.kernel(sum, "join_segments")};
   }
@@ -95,6 +103,18 @@ void Injector::reserve(std::size_t texels) {
 }
 
 void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume) {
+  if (volume.updates_in_place()) {
+    inject_in_place(kind, surface, grid, volume);
+    return;
+  }
+  PlaneStage& stage =
+      stages_.try_emplace(kind, session_, volume.shape(), volume.format().storage).first->second;
+  stage.take(volume);
+  inject_in_place(kind, surface, grid, stage.planes());
+  stage.give(volume);
+}
+
+void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume) {
   const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
   const std::size_t texels = texel_count(surface);
   if (texels == 0) return;
@@ -122,12 +142,12 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, V
 }
 
 void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
-  require_shape(light, {options_.grid, basis_.size(), 3}, "light");
+  require_fit(light, {options_.grid, basis_.size(), 3}, options_.format, "light");
   inject(Kind::light, rsm, grid, light);
 }
 
 void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry) {
-  require_shape(geometry, {options_.grid + 1, basis_.size(), 1}, "geometry");
+  require_fit(geometry, {options_.grid + 1, basis_.size(), 1}, options_.format, "geometry");
   inject(Kind::geometry, surface, grid, geometry);
 }
 

@@ -8,6 +8,7 @@
 #include "basis/basis.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "pipeline/convert.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/sort_by_cell.hpp"
 #include "pipeline/surface.hpp"
@@ -22,6 +23,7 @@ struct InjectOptions {
   bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
   LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
   TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};  ///< of the volumes injected into
 };
 
 /// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own
@@ -46,6 +48,7 @@ class Injector {
   Kernels& kernels(Kind kind, RsmFormat format);
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);
+  void inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);
 
   Session& session_;
   const Basis& basis_;
@@ -54,6 +57,7 @@ class Injector {
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;
+  std::map<Kind, PlaneStage> stages_;  ///< of images: a launch cannot both read and write one
   std::size_t capacity_ = 0;
   cl::Buffer details_, partials_, firsts_;
 };

@@ -56,6 +56,10 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("transport", o.transport, "how light moves from cell to cell", transport_names());
   visit("state", o.state, "what travels: the basis's coefficients, or six fluxes a cell",
         std::vector<std::string>{"coefficients", "fluxes"});
+  visit("layout", o.layout,
+        "how volumes lie in memory: 3-D images, or buffers by cell, by coefficient, by blocks",
+        layout_names());
+  visit("storage", o.storage, "numbers of the volumes; all arithmetic is float", storage_names());
   visit("iterations", o.iterations, "propagation steps a cascade", Range{0, kMostSteps});
   visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMostCells});
   visit("cascades", o.cascades, "cascades, each twice the size of the one before", Range{1, kMostCascades});

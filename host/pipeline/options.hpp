@@ -11,6 +11,7 @@
 #include "basis/rotated_lobe.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/transport_source.hpp"
+#include "pipeline/volume_format.hpp"
 
 namespace clpv {
 
@@ -31,6 +32,7 @@ struct RenderOptions {
   std::string evaluate = "exact";
   std::string transport = "upwind";
   std::string state = "coefficients";
+  std::string layout = "soa", storage = "float";
   int iterations = 8;
   int grid = 32;
   int cascades = 3;
@@ -47,6 +49,7 @@ struct RenderOptions {
   int width = 960, height = 540;
 
   RsmFormat rsm() const { return rsm_format == "paper" ? RsmFormat::paper : RsmFormat::float32; }
+  VolumeFormat format() const { return volume_format(layout, storage); }
   LobeOptions lobes() const { return {lobe_kind(lobe), table_size, evaluate == "table"}; }
   TableStorage table_storage() const { return table == "image" ? TableStorage::image : TableStorage::buffer; }
   State travelling() const { return state == "fluxes" ? State::fluxes : State::coefficients; }

@@ -5,7 +5,7 @@
 //   CLPV_NEXT, CLPV_LANE                      from there to the next coefficient; to the cell right of it
 //   CLPV_LOAD_LANES(volume, at, x)            one coefficient of 8 cells, the first at x
 //   CLPV_STORE_LANES(volume, at, value)       the same of 8 cells inside the grid, as statements
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volume, const int channel, const int x,
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume, const int channel, const int x,
                                                            const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
   CLPV_VOLUME_CELL cell;
@@ -19,7 +19,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volume
   return cell;
 }
 
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_VOLUME_OUT volume, const int channel, const int x, const int y,
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const int channel, const int x, const int y,
                                                 const int z, const CLPV_VOLUME_CELL cell) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
 #if CLPV_LANES == 8

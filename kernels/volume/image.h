@@ -6,15 +6,18 @@
 #ifndef CLPV_VOLUME_IMAGE_ONCE
 #define CLPV_VOLUME_IMAGE_ONCE
 #pragma OPENCL EXTENSION cl_khr_3d_image_writes : enable
-#define CLPV_VOLUME_IN __read_only image3d_t
-#define CLPV_VOLUME_OUT __write_only image3d_t
+#define CLPV_IMAGE_IN __read_only image3d_t
+#define CLPV_IMAGE_OUT __write_only image3d_t
 __constant sampler_t clpv_texels = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_NEAREST;
+#ifdef CLPV_FILTERED
+__constant sampler_t clpv_filter = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
+#endif
 #endif
 
 #define CLPV_STEP (CLPV_VOLUME_N + 1)                // from a channel, or from four coefficients, to the next
 #define CLPV_FOURS ((CLPV_VOLUME_COUNT + 3) / 4)
 
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volume, const int channel, const int x,
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_IMAGE_IN volume, const int channel, const int x,
                                                            const int y, const int z) {
   float4 texels[CLPV_FOURS];
   for (int four = 0; four < CLPV_FOURS; ++four) {
@@ -27,7 +30,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_VOLUME_IN volume
   return cell;
 }
 
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_VOLUME_OUT volume, const int channel, const int x, const int y,
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_IMAGE_OUT volume, const int channel, const int x, const int y,
                                                 const int z, const CLPV_VOLUME_CELL cell) {
   float4 texels[CLPV_FOURS];
   texels[CLPV_FOURS - 1] = 0.0f;
@@ -38,6 +41,41 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_VOLUME_OUT volume, const in
     write_imagef(volume, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0), texels[four]);
   }
 }
+
+#ifdef CLPV_FILTERED
+// Trilinear at a point in units of samples, sample 0 at 0.0; points beyond the outermost samples take their value.
+// CLPV_FILTERED 1: by the device's own filter, one read for each four coefficients; 0: from eight texels.
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volume, const int channel, const float x,
+                                                             const float y, const float z) {
+  const float top = (float)(CLPV_VOLUME_N - 1);
+  const float px = clamp(x, 0.0f, top), py = clamp(y, 0.0f, top), pz = clamp(z, 0.0f, top);
+  float4 texels[CLPV_FOURS];
+#if CLPV_FILTERED
+  for (int four = 0; four < CLPV_FOURS; ++four) {
+    texels[four] = read_imagef(volume, clpv_filter,
+                               (float4)(px + 0.5f, py + (channel * CLPV_STEP + 0.5f), pz + (four * CLPV_STEP + 0.5f), 0.0f));
+  }
+#else
+  const float fx = floor(px), fy = floor(py), fz = floor(pz);
+  const float4 tx = px - fx, ty = py - fy, tz = pz - fz;
+  const int ix = (int)fx, iy = (int)fy + channel * CLPV_STEP;
+  for (int four = 0; four < CLPV_FOURS; ++four) {
+    const int iz = (int)fz + four * CLPV_STEP;
+    // At the last sample the neighbour beyond is zero, with weight 0.
+#define CLPV_AT(dx, dy, dz) read_imagef(volume, clpv_texels, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
+#define CLPV_ROW(dy, dz) mix(CLPV_AT(0, dy, dz), CLPV_AT(1, dy, dz), tx)
+    texels[four] = mix(mix(CLPV_ROW(0, 0), CLPV_ROW(1, 0), ty), mix(CLPV_ROW(0, 1), CLPV_ROW(1, 1), ty), tz);
+#undef CLPV_ROW
+#undef CLPV_AT
+  }
+#endif
+  CLPV_VOLUME_CELL cell;
+#define CLPV_DO(i) cell.c##i = ((const float*)texels)[i];
+  CLPV_VOLUME_EACH(CLPV_DO)
+#undef CLPV_DO
+  return cell;
+}
+#endif
 
 #undef CLPV_FOURS
 #undef CLPV_STEP

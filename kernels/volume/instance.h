@@ -36,8 +36,12 @@
 
 #if CLPV_LAYOUT == CLPV_IMAGE
 #include "volume/image.h"
+#define CLPV_VOLUME_IN CLPV_IMAGE_IN
+#define CLPV_VOLUME_OUT CLPV_IMAGE_OUT
 #else
 #include "volume/numbers.h"
+#define CLPV_VOLUME_IN CLPV_BUFFER_IN
+#define CLPV_VOLUME_OUT CLPV_BUFFER_OUT
 #if CLPV_LAYOUT == CLPV_AOS
 #include "volume/aos.h"
 #elif CLPV_LAYOUT == CLPV_TILED

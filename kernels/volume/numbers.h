@@ -16,7 +16,7 @@
 #define CLPV_WRITE_ROW(to, at, value) vstore8(value, 0, (to) + (at))
 #endif
 
-#define CLPV_VOLUME_IN __global const CLPV_NUMBER*
-#define CLPV_VOLUME_OUT __global CLPV_NUMBER*
+#define CLPV_BUFFER_IN __global const CLPV_NUMBER*
+#define CLPV_BUFFER_OUT __global CLPV_NUMBER*
 
 #endif

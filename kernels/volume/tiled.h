@@ -13,7 +13,7 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
 }
 
 // x is a multiple of 8, one less, or one more, which the compiler knows of a literal step from such a multiple.
-CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_VOLUME_IN volume, const int at, const int x) {
+CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int at, const int x) {
   const int block = at - (x & 7);
   const float8 row = CLPV_READ_ROW(volume, block);
   if ((x & 7) == 0) return row;

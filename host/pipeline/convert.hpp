@@ -1,0 +1,26 @@
+// A volume in an image as planes in a buffer, for stages that change cells in place (kernels/convert.cl).
+#pragma once
+
+#include "device/session.hpp"
+#include "pipeline/volume.hpp"
+
+namespace clpv {
+
+/// Planes (`soa`, the image's own storage) beside image volumes of one shape.
+class PlaneStage {
+ public:
+  PlaneStage(Session& session, const VolumeShape& shape, Storage storage);
+
+  Volume& planes() { return planes_; }
+  void take(const Volume& image);  ///< planes become what the image holds
+  void give(Volume& image);        ///< and the other way round
+
+ private:
+  void launch(cl::Kernel& kernel, const Volume& from, const Volume& to);
+
+  Session& session_;
+  Volume planes_;
+  cl::Kernel from_image_, to_image_;
+};
+
+}  // namespace clpv
