@@ -61,7 +61,7 @@ static inline Lanes cell_weights(__global const float* details, const uint texel
 #if CLPV_TRILINEAR
   const float x = details[texel], y = details[texels + texel], z = details[2 * texels + texel];
   const float4 p = (float4)((1.0f - x) * (1.0f - y), x * (1.0f - y), (1.0f - x) * y, x * y);
-  const float far = 1.0f - z;  // spelt out as in gather.cl
+  const float far = 1.0f - z;  // spelt out as in gather_packed.h
   return (float8)(p.x, p.y, p.z, p.w, p.x, p.y, p.z, p.w) * (float8)(far, far, far, far, z, z, z, z);
 #else
   return 1.0f;

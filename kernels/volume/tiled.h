@@ -18,7 +18,9 @@ CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int
   const float8 row = CLPV_READ_ROW(volume, block);
   if ((x & 7) == 0) return row;
   const float8 next = CLPV_READ_ROW(volume, block + CLPV_BLOCK);
-  return (x & 7) == 1 ? (float8)(row.s1234, row.s567, next.s0) : (float8)(row.s7, next.s0123, next.s456);
+  // Spelt out as in gather_packed.h.
+  return (x & 7) == 1 ? (float8)(row.s1, row.s2, row.s3, row.s4, row.s5, row.s6, row.s7, next.s0)
+                      : (float8)(row.s7, next.s0, next.s1, next.s2, next.s3, next.s4, next.s5, next.s6);
 }
 
 #define CLPV_LOAD_LANES(volume, at, x) CLPV_PASTE(CLPV_VOLUME, row)(volume, at, x)
