@@ -41,6 +41,13 @@ CLPV_INLINE Target clpv_target_sum(const Target a, const Target b) {
 // What cell (x, y, z) gains in `channel`: loads a neighbour, then lets generated code do the rest.
 #define CLPV_LOAD_NEIGHBOUR(i, dx, dy, dz) const Source a##i = source_load(source, channel, x + (dx), y + (dy), z + (dz));
 
+#ifndef CLPV_LOBES_AT_RUN_TIME
+#define CLPV_LOBES_AT_RUN_TIME 0
+#endif
+#if CLPV_LOBES_AT_RUN_TIME
+#include "run_time_lobes.h"
+#endif
+
 #define CLPV_STEP_CHANNEL(CHANNEL)                                                                           \
   {                                                                                                          \
     const int channel = CHANNEL;                                                                             \
@@ -55,13 +62,18 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) vo
 #if CLPV_BLOCKING
     , CLPV_VOLUME_IN transmittance
 #endif
+#if CLPV_LOBES_AT_RUN_TIME
+    , __global const float4* normals CLPV_AND_TABLE
+#endif
 ) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;
   CLPV_RETURN_OUTSIDE(x, y);
 #if CLPV_BLOCKING
   const Ways t = transmittance_load(transmittance, 0, x, y, z);
 #endif
-#if CLPV_CHANNELS == 3
+#if CLPV_LOBES_AT_RUN_TIME
+  CLPV_STEP_WITH_LOBES
+#elif CLPV_CHANNELS == 3
   CLPV_STEP_CHANNEL(0)
   CLPV_STEP_CHANNEL(1)
   CLPV_STEP_CHANNEL(2)

@@ -12,7 +12,7 @@ constexpr double kPi = std::numbers::pi;
 
 Face face_of(const glm::ivec3& travel, const glm::ivec3& normal) {
   const bool far = travel == normal;
-  Face face{travel, normal, {}, far ? far_solid_angle() : side_solid_angle(), {}};
+  Face face{travel, normal, {}, far ? far_solid_angle() : side_solid_angle(), {}, {}};
   // Centre of the face: 3/2 k, or k + a/2.
   face.direction = glm::normalize(far ? glm::dvec3(travel) : glm::dvec3(2 * travel + normal));
   return face;

@@ -11,6 +11,21 @@ namespace clpv {
 const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0), glm::ivec3(0, 1, 0),
                                       glm::ivec3(0, -1, 0), glm::ivec3(0, 0, 1),  glm::ivec3(0, 0, -1)};
 
+namespace {
+
+void look_up_blockers(Transport& transport, const Basis& basis) {
+  if (auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
+    for (Face& face : faces->faces) face.against = evaluate(basis, transport.lobes, -face.direction);
+    return;
+  }
+  for (auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
+    if (neighbour.offset != glm::ivec3(0))
+      neighbour.against = evaluate(basis, transport.lobes, -neighbour.direction);
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> transport_names() {
   return {"sampled", "exact", "upwind", "semi-lagrangian"};
 }
@@ -18,6 +33,7 @@ std::vector<std::string> transport_names() {
 Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes) {
   Transport transport;
   transport.name = name;
+  transport.lobes = lobes;
   transport.gather = Matrix::identity(basis.size());
   if (name == "sampled") {
     transport.scheme = make_face_transport(basis, FaceFlux::sampled, lobes);
@@ -34,6 +50,7 @@ Transport make_transport(const std::string& name, const Basis& basis, const Lobe
     throw Error(ExitCode::usage, "there is no transport '{}'; there are {}", name,
                 fmt::join(transport_names(), ", "));
   }
+  look_up_blockers(transport, basis);
   return transport;
 }
 

@@ -22,6 +22,7 @@ struct Face {
   glm::dvec3 direction;      ///< w_f, unit: from the source's centre to the face's centre
   double solid_angle;        ///< Omega_f, seen from the source's centre [sr]
   std::vector<double> flux;  ///< N: flux through the face [W] = flux . c, before blocking and clamping
+  std::vector<double> against;  ///< N: b(-direction), what a blocker on the way is looked up by
 };
 
 /// Fluxes through faces, clamped at 0, re-emitted as lobes: `sampled` (the paper) and `exact`.
@@ -37,12 +38,14 @@ struct OperatorTransport {
     glm::dvec3
         direction;   ///< unit; the blocker of the shared face (or corner) is looked up against it; zero: none
     Matrix weights;  ///< R_k, N x N
+    std::vector<double> against = {};  ///< as in Face; empty where nothing blocks
   };
   std::vector<Neighbour> neighbours;
 };
 
 struct Transport {
   std::string name;
+  LobeOptions lobes;  ///< that it was made with
   std::variant<FaceTransport, OperatorTransport> scheme;
   /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2],
   /// where gather(n) = 4 b(-n) for face transports (the convention of MATH section 4), alpha(-n) K for

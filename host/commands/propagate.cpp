@@ -28,6 +28,8 @@ struct Source {
 struct Options {
   std::string basis = "sh2", transport = "sampled", state = "coefficients", preset;
   std::string layout = "soa", storage = "float";
+  std::string centres, lobe = "exact", lobe_time = "host", evaluate = "exact", table = "buffer";
+  int table_size = LobeOptions{}.table_size;
   double lambda = kDefaultLambda;
   int grid = 32, iterations = 8;
   std::vector<Source> sources;
@@ -124,6 +126,12 @@ nlohmann::json options_json(const Options& options) {
   return {{"preset", options.preset.empty() ? nlohmann::json() : nlohmann::json(options.preset)},
           {"basis", options.basis},
           {"lambda", options.lambda},
+          {"centres", options.centres},
+          {"lobe", options.lobe},
+          {"lobe-time", options.lobe_time},
+          {"evaluate", options.evaluate},
+          {"table-size", options.table_size},
+          {"table", options.table},
           {"transport", options.transport},
           {"state", options.state},
           {"layout", options.layout},
@@ -144,18 +152,33 @@ void take_preset(const CLI::App& command, Options& options) {
   };
   take("--basis", options.basis, preset.basis);
   take("--lambda", options.lambda, preset.lambda);
+  take("--lobe", options.lobe, preset.lobe);
+  take("--lobe-time", options.lobe_time, preset.lobe_time);
+  take("--evaluate", options.evaluate, preset.evaluate);
+  take("--table-size", options.table_size, preset.table_size);
+  take("--table", options.table, preset.table);
   take("--transport", options.transport, preset.transport);
   take("--state", options.state, preset.state);
+}
+
+/// The same choices as a frame's.
+RenderOptions as_frame(const Options& options) {
+  RenderOptions frame;
+  frame.basis = options.basis, frame.centres = options.centres, frame.lambda = options.lambda;
+  frame.lobe = options.lobe, frame.lobe_time = options.lobe_time, frame.evaluate = options.evaluate;
+  frame.table_size = options.table_size, frame.table = options.table;
+  frame.state = options.state;
+  return frame;
 }
 
 void run(const Options& options, const Shared& shared) {
   for (const std::string& path : {options.npy, options.vti}) {
     if (!path.empty()) check_writable(path);
   }
-  const auto basis = make_basis(options.basis, options.lambda);
-  const Transport transport = make_transport(options.transport, *basis);
+  const RenderOptions frame = as_frame(options);
+  const auto basis = make_basis(frame);
+  const Transport transport = make_transport(options.transport, *basis, frame.lobes());
   const VolumeFormat format = volume_format(options.layout, options.storage);
-  const State state = options.state == "fluxes" ? State::fluxes : State::coefficients;
   const reference::Volume light = injected_light(*basis, options);
   Session session(choose_device(shared.device));
   const VolumeShape shape{options.grid, basis->size(), 3};
@@ -172,7 +195,12 @@ void run(const Options& options, const Shared& shared) {
   std::array<double, 3> total = reference::energy(*basis, light), lost{};
   steps.push_back({{"step", 0}, {"travelling", total}, {"accumulated", total}, {"lost", lost}});
   reference::Volume before = light;
-  Propagator propagator(session, *basis, transport, {.grid = options.grid, .state = state, .format = format});
+  Propagator propagator(session, *basis, transport,
+                        {.grid = options.grid,
+                         .state = frame.travelling(),
+                         .lobe_time = frame.lobes_made(),
+                         .table = frame.table_storage(),
+                         .format = format});
   propagator.propagate(
       {injected, corners ? &*corners : nullptr, accumulated}, options.iterations,
       [&](int step, const Volume& travelling) {
@@ -206,8 +234,26 @@ void add_propagate(CLI::App& app, Shared& shared) {
           "--preset", options->preset,
           "basis, lambda, transport and state of that preset of clpv render, where not given themselves")
       ->check(CLI::IsMember(preset_names()));
-  command->add_option("--basis", options->basis, "basis of the sphere (clpv basis lists them)")
-      ->capture_default_str();
+  CLI::Option* basis =
+      command->add_option("--basis", options->basis, "basis of the sphere (clpv basis lists them)")
+          ->capture_default_str();
+  command->add_option("--centres", options->centres, "an SRBF set of your own (JSON), in place of a basis")
+      ->type_name("FILE")
+      ->excludes(basis);
+  const auto choice = [&](const char* name, std::string& member, const char* help,
+                          const std::vector<std::string>& allowed) {
+    command->add_option(name, member, help)->capture_default_str()->check(CLI::IsMember(allowed));
+  };
+  choice("--lobe", options->lobe, "cosine lobes: projected each, or that along +z turned through a table",
+         {"exact", "rotate"});
+  choice("--lobe-time", options->lobe_time, "lobes: constants, or made in the kernel as the paper does",
+         {"host", "kernel"});
+  choice("--evaluate", options->evaluate, "SRBF functions: computed, or read from a table",
+         {"exact", "table"});
+  choice("--table", options->table, "what kernels read tables as", {"buffer", "image"});
+  command->add_option("--table-size", options->table_size, "entries of those tables")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 65536));
   command->add_option("--lambda", options->lambda, "SRBF bandwidth, in (0, 1)")->capture_default_str();
   command->add_option("--transport", options->transport, "how light moves")
       ->capture_default_str()

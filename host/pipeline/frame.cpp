@@ -89,7 +89,11 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_)),
       propagator_(session, *basis_, transport_,
-                  {.grid = options.grid, .state = options.travelling(), .format = options.format()}),
+                  {.grid = options.grid,
+                   .state = options.travelling(),
+                   .lobe_time = options.lobes_made(),
+                   .table = options.table_storage(),
+                   .format = options.format()}),
       gatherer_(session, *basis_, transport_, gather_options(options)),
       shader_(session),
       injected_(session, light_shape(options, *basis_), "injected light", options.format()) {

@@ -74,10 +74,10 @@ std::string projection(const Basis& basis, bool trilinear) {
 
 }  // namespace
 
-std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
+std::string lobe_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
   // The flux of c = A^-1 alpha is integrals . A^-1 alpha, and A is symmetric.
   const std::vector<double> flux = basis.gram_inverse() * std::span<const double>(basis.integrals());
-  std::string text = coefficient_macros(basis.size()) + basis.kernel_source();
+  std::string text = basis.kernel_source();
   if (lobes.kind == LobeKind::rotate && !basis.centres().empty()) {
     text += rotated_integrals_source(basis, lobes.table_size);
     text += "#define clpv_lobe_integrals clpv_rotated_integrals\n";
@@ -88,6 +88,10 @@ std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool tri
   text += weighted_sum("clpv_mean", basis.integrals(), 0.25 * std::numbers::inv_pi);
   text += projection(basis, trilinear);
   return text;
+}
+
+std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
+  return coefficient_macros(basis.size()) + lobe_source(basis, lobes, trilinear);
 }
 
 std::size_t inject_keys(int grid, bool trilinear, bool geometry) {

@@ -48,6 +48,8 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
   visit("lobe", o.lobe, "cosine lobes: projected each, or that along +z turned through a table",
         std::vector<std::string>{"exact", "rotate"});
+  visit("lobe-time", o.lobe_time, "propagation's lobes: constants, or made in the kernel as the paper does",
+        std::vector<std::string>{"host", "kernel"});
   visit("evaluate", o.evaluate, "SRBF functions: computed, or read from a table",
         std::vector<std::string>{"exact", "table"});
   visit("table-size", o.table_size, "entries of those tables", Range{2, kMostEntries});

@@ -10,6 +10,7 @@
 
 #include "basis/rotated_lobe.hpp"
 #include "pipeline/lookup_table.hpp"
+#include "pipeline/run_time_lobes.hpp"
 #include "pipeline/transport_source.hpp"
 #include "pipeline/volume_format.hpp"
 
@@ -27,6 +28,7 @@ struct RenderOptions {
   std::string centres;  ///< file of an SRBF set that replaces `basis`; none: empty
   double lambda = 0.25;
   std::string lobe = "exact";
+  std::string lobe_time = "host";
   int table_size = 256;
   std::string table = "buffer";
   std::string evaluate = "exact";
@@ -51,6 +53,7 @@ struct RenderOptions {
   RsmFormat rsm() const { return rsm_format == "paper" ? RsmFormat::paper : RsmFormat::float32; }
   VolumeFormat format() const { return volume_format(layout, storage); }
   LobeOptions lobes() const { return {lobe_kind(lobe), table_size, evaluate == "table"}; }
+  LobeTime lobes_made() const { return lobe_time == "kernel" ? LobeTime::kernel : LobeTime::host; }
   TableStorage table_storage() const { return table == "image" ? TableStorage::image : TableStorage::buffer; }
   State travelling() const { return state == "fluxes" ? State::fluxes : State::coefficients; }
 };

@@ -20,6 +20,8 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
       transport_(transport),
       options_(options),
       stencil_(session.device(), options.stencil()) {
+  if (options.lobe_time == LobeTime::kernel)
+    lobes_.emplace(session, basis, transport, options.state, options.table);
   const bool fluxes = options.state == State::fluxes;
   const VolumeShape light{options.grid, basis.size(), 3};
   const VolumeShape shape{options.grid, fluxes ? 6 : basis.size(), 3};
@@ -39,13 +41,16 @@ Propagator::Form& Propagator::form(bool first, bool blocking) {
   if (!slot) {
     slot.emplace();
     const State source = first ? State::coefficients : options_.state;
-    slot->source = transport_source(basis_, transport_, {source, options_.state, blocking});
-    slot->channels = blocking && slot->source.arrive.flops() <= kLargestShared ? 3 : 1;
+    slot->source =
+        transport_source(basis_, transport_, {source, options_.state, blocking, lobes_.has_value()});
+    slot->channels = lobes_ || (blocking && slot->source.arrive.flops() <= kLargestShared) ? 3 : 1;
     ProgramSource program{"propagate.cl", {}, slot->source.text};
+    if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
     if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
     program.literals = {{"CLPV_BLOCKING", blocking ? "1" : "0"},
                         {"CLPV_CHANNELS", std::to_string(slot->channels)}};
     stencil_.add_literals(program.literals);
+    if (lobes_) lobes_->add_literals(program.literals);
     slot->step = session_.kernel(program, "propagate_step");
     slot->expand = session_.kernel(program, "propagate_expand");
   }
@@ -65,6 +70,7 @@ void Propagator::run_step(Form& form, bool blocking, const Volume& source, const
   form.step.setArg(2, sum_so_far.memory());
   form.step.setArg(3, sum.memory());
   if (blocking) form.step.setArg(4, transmitter_->transmittance().memory());
+  if (lobes_) lobes_->set(form.step);
   stencil_.launch(session_, form.step, form.channels == 3 ? 1 : 3);
 }
 

@@ -10,6 +10,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
+#include "pipeline/run_time_lobes.hpp"
 #include "pipeline/running_sum.hpp"
 #include "pipeline/stencil.hpp"
 #include "pipeline/transmit.hpp"
@@ -21,11 +22,14 @@ namespace clpv {
 struct PropagateOptions {
   int grid = 32;  ///< cells along each axis
   State state = State::coefficients;
-  VolumeFormat format = {};  ///< of all volumes
-  int lanes = 0;             ///< as in StencilOptions, and so is `local`
+  LobeTime lobe_time = LobeTime::host;
+  TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
+  VolumeFormat format = {};                   ///< of all volumes
+  int lanes = 0;                              ///< as in StencilOptions, and so is `local`
   std::array<std::size_t, 2> local = {0, 1};
 
-  StencilOptions stencil() const { return {grid, format, lanes, local}; }
+  /// Lobes made in the kernel are those of one cell.
+  StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes, local}; }
 };
 
 /// What a propagation reads and writes. The caller owns the volumes; all have `grid` cells, geometry one more
@@ -81,6 +85,7 @@ class Propagator {
   const Transport& transport_;
   PropagateOptions options_;
   Stencil stencil_;
+  std::optional<RunTimeLobes> lobes_;      ///< none: they are constants
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<Transmitter> transmitter_;

@@ -42,16 +42,16 @@ std::vector<std::string> mean_blocker(LinearCode& code, const glm::ivec3& normal
   return means;
 }
 
-/// Gives ways.c<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker looked up in its direction
-/// in the mean over the corners towards `normal`.
+/// Gives ways.c<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker the mean over the corners
+/// towards `normal`, looked up `against` the light.
 void add_ways(Generated& out, const Basis& basis, const Mirrors& mirrors, const glm::ivec3& normal,
-              const std::vector<glm::dvec3>& directions, const std::vector<int>& ways) {
+              const std::vector<std::vector<double>>& against, const std::vector<int>& ways) {
   LinearCode& code = out.code;
   const auto corners = static_cast<double>(corners_towards(normal).size());
-  Matrix rows(static_cast<int>(directions.size()), basis.size());
+  Matrix rows(static_cast<int>(against.size()), basis.size());
   for (int r = 0; r < rows.rows(); ++r) {
-    basis.evaluate(directions[static_cast<std::size_t>(r)], rows.row(r));
-    for (double& value : rows.row(r)) value *= 0.5 / corners;
+    for (int i = 0; i < basis.size(); ++i)
+      rows(r, i) = against[static_cast<std::size_t>(r)][static_cast<std::size_t>(i)] * (0.5 / corners);
   }
   const int moving = (normal.x != 0) + (normal.y != 0) + (normal.z != 0);
   const auto symmetries = moving == 1 ? mirrors.across(axis_of(normal)) : std::vector<SignedPermutation>{};
@@ -67,14 +67,14 @@ void add_ways(Generated& out, const Basis& basis, const Mirrors& mirrors, const 
 int add_faces(Generated& out, const Basis& basis, const FaceTransport& scheme) {
   const Mirrors mirrors = mirrors_of(basis);
   for (const glm::ivec3& normal : kAxes) {
-    std::vector<glm::dvec3> directions;
+    std::vector<std::vector<double>> against;
     std::vector<int> ways;
     for (std::size_t f = 0; f < scheme.faces.size(); ++f) {
       if (scheme.faces[f].normal != normal) continue;
-      directions.push_back(-scheme.faces[f].direction);
+      against.push_back(scheme.faces[f].against);
       ways.push_back(static_cast<int>(f));
     }
-    add_ways(out, basis, mirrors, normal, directions, ways);
+    add_ways(out, basis, mirrors, normal, against, ways);
   }
   return static_cast<int>(scheme.faces.size());
 }
@@ -85,7 +85,7 @@ int add_neighbours(Generated& out, const Basis& basis, const OperatorTransport& 
   int way = 0;
   for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
     if (neighbour.offset == glm::ivec3(0)) continue;
-    add_ways(out, basis, mirrors, -neighbour.offset, {-neighbour.direction}, {way++});
+    add_ways(out, basis, mirrors, -neighbour.offset, {neighbour.against}, {way++});
   }
   return way;
 }

@@ -21,7 +21,8 @@ struct Generated {
   std::string neighbours;  // body of CLPV_EACH_NEIGHBOUR
   LinearCode arrive;
   std::vector<std::string> gains;
-  int count = 0;  // neighbours
+  int count = 0;       // neighbours
+  bool apart = false;  // gains are the fluxes through each face, not yet what the cell gains
 };
 
 void add_neighbour(Generated& out, const glm::ivec3& travel) {
@@ -60,6 +61,12 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
       const int way = 5 * k + f;
       const std::string& half = fluxes[static_cast<std::size_t>(f)];
       std::string flux = out.arrive.name(fmt::format("{0} + fabs({0})", half), {.additions = 1});
+      if (form.lobes_at_run_time) {
+        if (form.blocking)
+          flux = out.arrive.name(fmt::format("{} * t.c{}", flux, way), {.multiplications = 1});
+        out.gains.push_back(flux);
+        continue;
+      }
       std::string& sum =
           through[static_cast<std::size_t>(axis_index(faces.faces[static_cast<std::size_t>(way)].normal))];
       if (!form.blocking) {
@@ -71,6 +78,10 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
       }
     }
     add_neighbour(out, travel);
+  }
+  if (form.lobes_at_run_time) {
+    out.apart = true;
+    return;
   }
   const std::vector<std::string> received(through.begin(), through.end());
   if (form.target == State::fluxes) {
@@ -157,9 +168,10 @@ std::string expand_function(const Transport& transport, const Basis& basis, Stat
 }
 
 std::string arrive_macro(const Generated& out) {
-  std::string gained = "\n" + out.arrive.text() + "  Target gained;\n";
+  std::string gained = "\n" + out.arrive.text() + (out.apart ? "" : "  Target gained;\n");
   for (std::size_t i = 0; i < out.gains.size(); ++i)
-    gained += fmt::format("  gained.c{} = {};\n", i, out.gains[i]);
+    gained += fmt::format("  {}{}{} = {};\n", out.apart ? "through[" : "gained.c", i, out.apart ? "]" : "",
+                          out.gains[i]);
   return macro_text("CLPV_ARRIVE", gained);
 }
 

@@ -19,13 +19,16 @@ struct StepForm {
   State source = State::coefficients;
   State target = State::coefficients;
   bool blocking = false;
+  bool lobes_at_run_time =
+      false;  ///< CLPV_ARRIVE gives the fluxes of all faces, as the kernel makes their lobes
 };
 
 /// Generated text and its cost. The text defines, for kernels/propagate.cl, the structs Source, Target and Coefficients
 /// with their counts and CLPV_EACH_ macros (cell_macros), and
 ///   CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz): light arrives from the cell at (x + dx, y + dy, z + dz)
 ///   CLPV_ARRIVE               declares `gained`, what the cell gains from its neighbours a0, a1, ... ; with blocking
-///                             through what lets light pass, t.c0, t.c1, ... (transmit.hpp)
+///                             through what lets light pass, t.c0, t.c1, ... (transmit.hpp); with lobes at run time it
+///                             sets `through[face]` instead, the flux through each face [W]
 ///   clpv_expand(sum)          the coefficients of a sum of gains
 struct TransportSource {
   std::string text;

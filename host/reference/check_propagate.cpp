@@ -76,8 +76,8 @@ CheckResult compare(const std::vector<float>& device, const Volume& twin, const 
   return result;
 }
 
-CheckResult check_one(Session& session, const Basis& basis, const Transport& transport, State state,
-                      bool blockers) {
+CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
+                      const PropagateOptions& options, bool blockers) {
   std::mt19937 random(7);
   const Volume light = random_light(basis, random);
   const Volume geometry = random_blockers(basis, random);
@@ -86,13 +86,50 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   clpv::Volume corners(session, {kGrid + 1, basis.size(), 1}, "check: geometry");
   injected.write(session, to_float(light.values));
   corners.write(session, to_float(geometry.values));
-  Propagator propagator(session, basis, transport, {.grid = kGrid, .state = state});
+  Propagator propagator(session, basis, transport, options);
   propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
   const Propagation twin = propagate(basis, transport, light, blockers ? &geometry : nullptr, kSteps);
   return compare(
       accumulated.read(session), twin.accumulated,
-      fmt::format("{}/{}/{}/{}", basis.name(), transport.name,
-                  state == State::fluxes ? "fluxes" : "coefficients", blockers ? "blockers" : "free"));
+      fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
+                  options.state == State::fluxes ? "fluxes" : "coefficients", blockers ? "blockers" : "free",
+                  transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
+                  options.lobe_time == LobeTime::host     ? ""
+                  : options.table == TableStorage::buffer ? "/kernel"
+                                                          : "/kernel image"));
+}
+
+/// `full`: every transport in both states, with and without blockers.
+void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
+                     CheckResults& results) {
+  for (const std::string& name : transport_names()) {
+    if (!full && name != "sampled" && name != "upwind") continue;
+    const Transport transport = make_transport(name, basis, lobes);
+    const bool faces = std::holds_alternative<FaceTransport>(transport.scheme);
+    if (!faces && lobes.kind == LobeKind::rotate) continue;  // has no lobes
+    const auto add = [&](State state, bool blockers) {
+      results.push_back(check_one(session, basis, transport, {.grid = kGrid, .state = state}, blockers));
+    };
+    // The first step never blocks, so a run with blockers has run both of its kernels. Not so with fluxes, whose first
+    // step is a kernel of its own.
+    if (full || !faces) add(State::coefficients, true);
+    if (faces) add(State::fluxes, true);
+    if (faces && full) add(State::fluxes, false);
+  }
+}
+
+/// Lobes made in the kernel: exact and rotated ones, the table as a buffer and as an image.
+void check_run_time_lobes(Session& session, const Basis& basis, bool full, CheckResults& results) {
+  const auto add = [&](const char* transport, LobeKind kind, TableStorage table) {
+    if (table == TableStorage::image && !session.device().images) return;
+    const LobeOptions lobes{.kind = kind, .table_functions = kind == LobeKind::rotate};
+    results.push_back(check_one(session, basis, make_transport(transport, basis, lobes),
+                                {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}, true));
+  };
+  add("sampled", LobeKind::rotate, TableStorage::buffer);
+  if (!full) return;
+  add("exact", LobeKind::exact, TableStorage::buffer);
+  add("exact", LobeKind::rotate, TableStorage::image);
 }
 
 }  // namespace
@@ -102,19 +139,13 @@ CheckResults check_propagate(Session& session, bool thorough) {
   // each transport, not each pair: building kernels is what takes the time.
   const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
   CheckResults results;
-  for (const std::string& basis_name : basis_names()) {
-    const std::unique_ptr<Basis> basis = make_basis(basis_name);
-    const bool full = thorough || in_full.count(basis_name) > 0;
-    for (const std::string& transport_name : transport_names()) {
-      if (!full && transport_name != "sampled" && transport_name != "upwind") continue;
-      const Transport transport = make_transport(transport_name, *basis);
-      const bool faces = std::holds_alternative<FaceTransport>(transport.scheme);
-      // The first step never blocks, so a run with blockers has run both of its kernels. Not so with fluxes, whose first
-      // step is a kernel of its own.
-      if (full || !faces) results.push_back(check_one(session, *basis, transport, State::coefficients, true));
-      if (!faces) continue;
-      results.push_back(check_one(session, *basis, transport, State::fluxes, true));
-      if (full) results.push_back(check_one(session, *basis, transport, State::fluxes, false));
+  for (const std::string& name : basis_names()) {
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    const bool full = thorough || in_full.count(name) > 0;
+    check_constants(session, *basis, {}, full, results);
+    check_run_time_lobes(session, *basis, thorough || name == "srbf4", results);
+    if (!basis->centres().empty() && thorough) {
+      check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
     }
   }
   return results;

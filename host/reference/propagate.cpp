@@ -13,9 +13,9 @@ std::vector<double> cell(const Volume& volume, int channel, const glm::ivec3& p)
   return c;
 }
 
-/// 1 - B, B the mean blocker over those corners of cell p that lie towards `side`, looked up in `direction`.
+/// 1 - B, B the mean blocker over those corners of cell p that lie towards `side`, looked up `against` the light.
 double transmitted(const Basis& basis, const Volume& geometry, const glm::ivec3& p, const glm::ivec3& side,
-                   const glm::dvec3& direction) {
+                   const std::vector<double>& against) {
   std::vector<double> mean(static_cast<std::size_t>(basis.size()), 0.0);
   int corners = 0;
   for (int c = 0; c < 8; ++c) {
@@ -29,8 +29,9 @@ double transmitted(const Basis& basis, const Volume& geometry, const glm::ivec3&
     const std::vector<double> g = cell(geometry, 0, p + corner);
     for (std::size_t i = 0; i < g.size(); ++i) mean[i] += g[i];
   }
-  for (double& value : mean) value /= corners;
-  return 1.0 - std::clamp(basis.value(mean, direction), 0.0, 1.0);
+  double blocked = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) blocked += mean[i] / corners * against[i];
+  return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
 double flux_through(const Face& face, const std::vector<double>& c, bool clamp) {
@@ -47,7 +48,7 @@ void add_faces(const Basis& basis, const FaceTransport& scheme, const Volume& fr
                bool clamp, const glm::ivec3& p, Volume& to) {
   for (const Face& face : scheme.faces) {
     const double open =
-        geometry == nullptr ? 1.0 : transmitted(basis, *geometry, p, face.normal, -face.direction);
+        geometry == nullptr ? 1.0 : transmitted(basis, *geometry, p, face.normal, face.against);
     for (int channel = 0; channel < from.channels; ++channel) {
       const double flux = open * flux_through(face, cell(from, channel, p - face.travel), clamp);
       for (int i = 0; i < from.coefficients; ++i)
@@ -60,8 +61,7 @@ void add_operators(const Basis& basis, const OperatorTransport& scheme, const Vo
                    const Volume* geometry, const glm::ivec3& p, Volume& to) {
   for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
     const bool blocks = geometry != nullptr && neighbour.offset != glm::ivec3(0);
-    const double open =
-        blocks ? transmitted(basis, *geometry, p, -neighbour.offset, -neighbour.direction) : 1.0;
+    const double open = blocks ? transmitted(basis, *geometry, p, -neighbour.offset, neighbour.against) : 1.0;
     for (int channel = 0; channel < from.channels; ++channel) {
       const std::vector<double> arrived = neighbour.weights * cell(from, channel, p - neighbour.offset);
       for (int i = 0; i < from.coefficients; ++i)

@@ -1,0 +1,54 @@
+#include "pipeline/run_time_lobes.hpp"
+
+#include <vector>
+
+#include "pipeline/inject_source.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+std::vector<cl_float4> normals_of(const Transport& transport) {
+  const auto* scheme = std::get_if<FaceTransport>(&transport.scheme);
+  if (scheme == nullptr) {
+    throw Error(ExitCode::usage, "--lobe-time kernel: transport '{}' has no lobes; allowed: host",
+                transport.name);
+  }
+  std::vector<cl_float4> normals;
+  for (const Face& face : scheme->faces) {
+    const glm::vec3 n(face.normal);
+    normals.push_back({{n.x, n.y, n.z, 0}});
+  }
+  return normals;
+}
+
+}  // namespace
+
+RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, State state,
+                           TableStorage storage)
+    : table_(session, basis, transport.lobes, storage, TableUse::lobes),
+      text_(lobe_source(basis, transport.lobes, false)),
+      unit_flux_(transport.unit_flux_lobes) {
+  if (state == State::fluxes) {
+    throw Error(
+        ExitCode::usage,
+        "--lobe-time kernel: with --state fluxes no step makes lobes; allowed: host, or coefficients");
+  }
+  const std::vector<cl_float4> normals = normals_of(transport);
+  faces_ = normals.size();
+  normals_ = session.upload(normals, "normals of faces");
+}
+
+void RunTimeLobes::add_literals(Literals& literals) const {
+  literals["CLPV_LOBES_AT_RUN_TIME"] = "1";
+  literals["CLPV_FACES"] = std::to_string(faces_);
+  literals["CLPV_UNIT_FLUX"] = unit_flux_ ? "1" : "0";
+}
+
+void RunTimeLobes::set(cl::Kernel& step) const {
+  const cl_uint arguments = step.getInfo<CL_KERNEL_NUM_ARGS>();
+  step.setArg(arguments - (table_.exists() ? 2 : 1), normals_);
+  table_.set(step);
+}
+
+}  // namespace clpv

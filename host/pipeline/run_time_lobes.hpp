@@ -1,0 +1,44 @@
+// Lobes that propagation makes in its kernel, thirty a cell and step, as the paper does (`--lobe-time kernel`): slow, and
+// the same light as lobes that are constants.
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <string>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "device/session.hpp"
+#include "pipeline/lookup_table.hpp"
+#include "pipeline/transport_source.hpp"
+
+namespace clpv {
+
+enum class LobeTime {
+  host,    ///< constants of the step's code
+  kernel,  ///< made from each face's normal, read from memory, and rotated ones from a table
+};
+
+/// What kernels/run_time_lobes.h needs.
+class RunTimeLobes {
+ public:
+  /// Throws Error(usage) for a transport without lobes, and for fluxes that travel, which leave none to the steps; and as
+  /// LookupTable does.
+  RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, State state,
+               TableStorage storage);
+
+  /// Before and after the text of the transport.
+  std::string macros() const { return table_.macros(); }
+  const std::string& text() const { return text_; }
+  void add_literals(Literals& literals) const;
+  /// Sets the last arguments of a step.
+  void set(cl::Kernel& step) const;
+
+ private:
+  LookupTable table_;
+  std::string text_;
+  std::size_t faces_ = 0;
+  bool unit_flux_;
+  cl::Buffer normals_;
+};
+
+}  // namespace clpv

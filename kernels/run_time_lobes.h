@@ -1,0 +1,69 @@
+// Propagation with lobes made at run time, as the paper has it: each of the faces of a cell turns (or projects) a lobe to
+// its normal and weighs it by the flux through it.
+//
+// Normals come from memory, so that no compiler does the work beforehand. Where lobes are rotated, the table is an
+// argument, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, and as text what host/pipeline/inject_source.hpp lists.
+#ifndef CLPV_RUN_TIME_LOBES_H
+#define CLPV_RUN_TIME_LOBES_H
+
+// What 1 W through a face of that normal adds to the cell's coefficients.
+CLPV_INLINE Sum clpv_run_time_lobe(const float4 normal CLPV_AND_TABLE) {
+  const Coefficients alpha = clpv_lobe_integrals(normal.x, normal.y, normal.z CLPV_PASS_TABLE);
+#if CLPV_UNIT_FLUX
+  const float scale = 1.0f / clpv_flux(alpha);
+#else
+  const float scale = M_1_PI_F;
+#endif
+  Sum scaled;
+#define CLPV_DO(i) scaled.c##i = scale * alpha.c##i;
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return clpv_project_sum(scaled);
+}
+
+CLPV_INLINE Target clpv_add_lobe(Target gained, const float flux, const Sum lobe) {
+#define CLPV_DO(i) gained.c##i = fma(flux, lobe.c##i, gained.c##i);
+  CLPV_EACH_TARGET(CLPV_DO)
+#undef CLPV_DO
+  return gained;
+}
+
+CLPV_INLINE Target clpv_no_gain(void) {
+  Target gained;
+#define CLPV_DO(i) gained.c##i = 0.0f;
+  CLPV_EACH_TARGET(CLPV_DO)
+#undef CLPV_DO
+  return gained;
+}
+
+// The fluxes that arrive at cell (x, y, z) in `channel`.
+#define CLPV_CHANNEL_FLUXES(CHANNEL)                  \
+  {                                                   \
+    const int channel = CHANNEL;                      \
+    float* through = fluxes + CHANNEL * CLPV_FACES;   \
+    CLPV_EACH_NEIGHBOUR(CLPV_LOAD_NEIGHBOUR)          \
+    CLPV_ARRIVE                                       \
+  }
+
+#define CLPV_STORE_CHANNEL(CHANNEL, gained)         \
+  target_store(target, CHANNEL, x, y, z, gained); \
+  target_store(sum, CHANNEL, x, y, z, clpv_target_sum(target_load(sum_so_far, CHANNEL, x, y, z), gained));
+
+// A step of all three channels: a lobe serves them all.
+#define CLPV_STEP_WITH_LOBES                                                        \
+  float fluxes[3 * CLPV_FACES];                                                     \
+  CLPV_CHANNEL_FLUXES(0)                                                            \
+  CLPV_CHANNEL_FLUXES(1)                                                            \
+  CLPV_CHANNEL_FLUXES(2)                                                            \
+  Target red = clpv_no_gain(), green = red, blue = red;                             \
+  for (int face = 0; face < CLPV_FACES; ++face) {                                   \
+    const Sum lobe = clpv_run_time_lobe(normals[face] CLPV_PASS_TABLE);             \
+    red = clpv_add_lobe(red, fluxes[face], lobe);                                   \
+    green = clpv_add_lobe(green, fluxes[CLPV_FACES + face], lobe);                  \
+    blue = clpv_add_lobe(blue, fluxes[2 * CLPV_FACES + face], lobe);                \
+  }                                                                                 \
+  CLPV_STORE_CHANNEL(0, red)                                                        \
+  CLPV_STORE_CHANNEL(1, green)                                                      \
+  CLPV_STORE_CHANNEL(2, blue)
+
+#endif

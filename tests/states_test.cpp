@@ -1,0 +1,139 @@
+// Identities between bases and states: six fluxes in place of coefficients, energy in single precision, sh4 as sh3.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "image/image_io.hpp"
+#include "pipeline/propagate.hpp"
+#include "run_program.hpp"
+
+namespace clpv {
+namespace {
+
+Session& session() {
+  static Session one(choose_device());
+  return one;
+}
+
+double largest(const std::vector<float>& values) {
+  double most = 0;
+  for (const float value : values) most = std::max(most, std::abs(static_cast<double>(value)));
+  return most;
+}
+
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
+  return most;
+}
+
+constexpr int kGrid = 7, kSteps = 6;
+
+// Volume values of `samples`^3 samples, a different direction in each; every third is empty.
+std::vector<float> lobes_everywhere(const Basis& basis, int samples, int channels, bool two_sided) {
+  const auto cells = static_cast<std::size_t>(samples) * samples * samples;
+  std::vector<float> values(cells * static_cast<std::size_t>(basis.size() * channels), 0.0f);
+  for (std::size_t cell = 0; cell < cells; cell += 1 + cell % 2) {
+    const double turn = 2.399963 * static_cast<double>(cell), z = std::cos(1.7 * static_cast<double>(cell));
+    const double radius = std::sqrt(1 - z * z);
+    const glm::dvec3 d(radius * std::cos(turn), radius * std::sin(turn), z);
+    const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
+    for (std::size_t plane = 0; plane < front.size() * static_cast<std::size_t>(channels); ++plane) {
+      const std::size_t i = plane % front.size(), channel = plane / front.size();
+      values[plane * cells + cell] = static_cast<float>((front[i] + (two_sided ? back[i] : 0)) *
+                                                        (0.4 + 0.3 * static_cast<double>(channel)));
+    }
+  }
+  return values;
+}
+
+std::vector<float> propagated(const Basis& basis, const Transport& transport, State state, bool blockers) {
+  Volume injected(session(), {kGrid, basis.size(), 3}, "injected"),
+      accumulated(session(), {kGrid, basis.size(), 3}, "accumulated"),
+      geometry(session(), {kGrid + 1, basis.size(), 1}, "geometry");
+  injected.write(session(), lobes_everywhere(basis, kGrid, 3, false));
+  geometry.write(session(), lobes_everywhere(basis, kGrid + 1, 1, true));
+  Propagator(session(), basis, transport, {.grid = kGrid, .state = state})
+      .propagate({injected, blockers ? &geometry : nullptr, accumulated}, kSteps);
+  return accumulated.read(session());
+}
+
+class EveryBasis : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Names, EveryBasis, ::testing::ValuesIn(basis_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
+  const auto basis = make_basis(GetParam());
+  for (const char* name : {"sampled", "exact"}) {
+    const Transport transport = make_transport(name, *basis);
+    std::vector<float> before;
+    for (const bool blockers : {false, true}) {
+      const std::vector<float> coefficients = propagated(*basis, transport, State::coefficients, blockers),
+                               fluxes = propagated(*basis, transport, State::fluxes, blockers);
+      EXPECT_LE(largest_difference(fluxes, coefficients), 1e-5 * largest(coefficients))
+          << name << (blockers ? ", blockers" : "");
+      if (blockers) EXPECT_GT(largest_difference(coefficients, before), 0.01 * largest(before)) << "blocked";
+      before = coefficients;
+    }
+  }
+}
+
+// Exact transport loses nothing: the share of an isotropic source's energy that travels after 24 steps, in a grid that
+// light does not leave.
+TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
+  const auto basis = make_basis(GetParam());
+  if (basis->name().starts_with("bins")) GTEST_SKIP() << "96 numbers a cell: gigabytes";
+  constexpr int kTravels = 24, kCells = 2 * kTravels + 1;
+  const Transport transport = make_transport("exact", *basis);
+  const std::size_t plane = static_cast<std::size_t>(kCells) * kCells * kCells;
+  std::vector<float> light(plane * static_cast<std::size_t>(basis->size()) * 3, 0.0f);
+  std::vector<double> source = basis->constant();
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    source[i] *= 0.25 / std::numbers::pi;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      light[(channel * source.size() + i) * plane + plane / 2] = static_cast<float>(source[i]);
+  }
+  const VolumeShape shape{kCells, basis->size(), 3};
+  Volume injected(session(), shape, "injected"), accumulated(session(), shape, "accumulated");
+  injected.write(session(), light);
+  double energy = 0;
+  Propagator(session(), *basis, transport, {.grid = kCells})
+      .propagate({injected, nullptr, accumulated}, kTravels, [&](int step, const Volume& travelling) {
+        if (step < kTravels) return;
+        const std::vector<float> values = travelling.read(session());
+        for (std::size_t i = 0; i < source.size(); ++i) {
+          double sum = 0;
+          for (std::size_t cell = 0; cell < plane; ++cell)
+            sum += static_cast<double>(values[i * plane + cell]);
+          energy += sum * basis->integrals()[i];
+        }
+      });
+  EXPECT_NEAR(energy / basis->energy(source), 1, 2e-5);
+}
+
+// Band 3 of a clamped cosine is 0, and face transports send nothing but clamped cosines.
+TEST(Sh4, GivesTheImageOfSh3) {
+  const test::TemporaryFolder folder;
+  for (const std::string transport : {"sampled", "exact"}) {
+    std::vector<Image> images;
+    for (const std::string basis : {"sh3", "sh4", "sh2"}) {
+      const std::string file = (folder.path() / (basis + transport + ".exr")).string();
+      const test::Outcome outcome =
+          test::run(std::string(CLPV_PROGRAM) + " render " + CLPV_SOURCE_DIR +
+                    "/scenes/cornell.json --view indirect --width 48 --height 48 --grid 12 --shadow-size 128 "
+                    "--rsm-size 64 --basis " +
+                    basis + " --transport " + transport + " -o " + file);
+      ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      images.push_back(read_image(file));
+    }
+    const double most = largest(images[0].pixels);
+    EXPECT_LE(largest_difference(images[1].pixels, images[0].pixels), 1e-5 * most) << transport;
+    EXPECT_GT(largest_difference(images[2].pixels, images[0].pixels), 1e-2 * most) << "sh2 is another image";
+  }
+}
+
+}  // namespace
+}  // namespace clpv
