@@ -61,8 +61,15 @@ std::vector<float> propagated(const Basis& basis, const Transport& transport, St
   return accumulated.read(session());
 }
 
+// Direction bins, N up to 96, take long to compile; the check of propagation has them.
+std::vector<std::string> names() {
+  std::vector<std::string> names = basis_names();
+  std::erase_if(names, [](const std::string& name) { return name.starts_with("bins"); });
+  return names;
+}
+
 class EveryBasis : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Names, EveryBasis, ::testing::ValuesIn(basis_names()),
+INSTANTIATE_TEST_SUITE_P(Names, EveryBasis, ::testing::ValuesIn(names()),
                          [](const auto& info) { return info.param; });
 
 TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
@@ -85,7 +92,6 @@ TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
 // light does not leave.
 TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
   const auto basis = make_basis(GetParam());
-  if (basis->name().starts_with("bins")) GTEST_SKIP() << "96 numbers a cell: gigabytes";
   constexpr int kTravels = 24, kCells = 2 * kTravels + 1;
   const Transport transport = make_transport("exact", *basis);
   const std::size_t plane = static_cast<std::size_t>(kCells) * kCells * kCells;
@@ -117,22 +123,20 @@ TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
 // Band 3 of a clamped cosine is 0, and face transports send nothing but clamped cosines.
 TEST(Sh4, GivesTheImageOfSh3) {
   const test::TemporaryFolder folder;
-  for (const std::string transport : {"sampled", "exact"}) {
-    std::vector<Image> images;
-    for (const std::string basis : {"sh3", "sh4", "sh2"}) {
-      const std::string file = (folder.path() / (basis + transport + ".exr")).string();
-      const test::Outcome outcome =
-          test::run(std::string(CLPV_PROGRAM) + " render " + CLPV_SOURCE_DIR +
-                    "/scenes/cornell.json --view indirect --width 48 --height 48 --grid 12 --shadow-size 128 "
-                    "--rsm-size 64 --basis " +
-                    basis + " --transport " + transport + " -o " + file);
-      ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-      images.push_back(read_image(file));
-    }
-    const double most = largest(images[0].pixels);
-    EXPECT_LE(largest_difference(images[1].pixels, images[0].pixels), 1e-5 * most) << transport;
-    EXPECT_GT(largest_difference(images[2].pixels, images[0].pixels), 1e-2 * most) << "sh2 is another image";
+  std::vector<Image> images;
+  for (const std::string basis : {"sh3", "sh4", "sh2"}) {
+    const std::string file = (folder.path() / (basis + ".exr")).string();
+    const test::Outcome outcome =
+        test::run(std::string(CLPV_PROGRAM) + " render " + CLPV_SOURCE_DIR +
+                  "/scenes/cornell.json --view indirect --width 24 --height 24 --grid 10 --cascades 1 "
+                  "--iterations 4 --shadow-size 64 --rsm-size 48 --transport exact --basis " +
+                  basis + " -o " + file);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    images.push_back(read_image(file));
   }
+  const double most = largest(images[0].pixels);
+  EXPECT_LE(largest_difference(images[1].pixels, images[0].pixels), 1e-5 * most);
+  EXPECT_GT(largest_difference(images[2].pixels, images[0].pixels), 1e-2 * most) << "sh2 is another image";
 }
 
 }  // namespace

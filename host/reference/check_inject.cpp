@@ -165,6 +165,12 @@ void check_rotated(Session& session, const Basis& basis, bool thorough, CheckRes
   rotated.table = TableStorage::image;
   if (session.device().images && (thorough || basis.size() == 4))
     results.push_back(check_light(session, basis, rotated, false, RsmFormat::float32));
+  if (!thorough) return;
+  const InjectOptions spread{
+      .grid = kGrid, .trilinear = true, .unit_flux_lobes = true, .lobes = rotated.lobes};
+  const InjectOptions one_sided{.grid = kGrid, .two_sided = false, .lobes = rotated.lobes};
+  results.push_back(check_light(session, basis, spread, false, RsmFormat::float32));
+  results.push_back(check_geometry(session, basis, one_sided, false, RsmFormat::float32));
 }
 
 }  // namespace
