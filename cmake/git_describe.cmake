@@ -1,5 +1,6 @@
 # cmake -DGIT=git -DSOURCE=folder -DOUTPUT=file.h -P git_describe.cmake
 # Writes CLPV_GIT_DESCRIBE: "unknown" outside a repository.
+cmake_minimum_required(VERSION 3.22)
 set(described unknown)
 if(GIT)
   execute_process(COMMAND ${GIT} describe --always --dirty --tags WORKING_DIRECTORY ${SOURCE}
