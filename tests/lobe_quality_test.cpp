@@ -50,6 +50,18 @@ TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
   EXPECT_NEAR(highest, most, 1e-3);
 }
 
+TEST(MeanError, IsAsTabled) {
+  const auto mean = [](const char* name, LobeKind kind) {
+    const auto basis = make_basis(name);
+    return mean_relative_l2(*basis, Lobes(*basis, {.kind = kind, .table_size = 0}));
+  };
+  EXPECT_NEAR(mean("sh2", LobeKind::exact), std::sqrt(1.0 / 8), 1e-9) << "the same along every axis";
+  EXPECT_NEAR(mean("srbf4", LobeKind::exact), .399, .003);
+  EXPECT_NEAR(mean("srbf8v2", LobeKind::exact), .231, .003);
+  EXPECT_NEAR(mean("srbf8v2", LobeKind::rotate), .357, .003);
+  EXPECT_NEAR(mean("srbf14", LobeKind::rotate), .089, .003);
+}
+
 TEST(EnergyAfter, IsAsTabled) {
   const auto basis = make_basis("srbf14");
   const Transport sampled = make_transport("sampled", *basis), exact = make_transport("exact", *basis);

@@ -30,6 +30,9 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["preset"], "paper");
   EXPECT_EQ(json["basis"], "srbf8v2");
   EXPECT_EQ(json["lambda"], 0.25);
+  EXPECT_EQ(json["lobe"], "rotate");
+  EXPECT_EQ(json["evaluate"], "table");
+  EXPECT_EQ(json["table-size"], 256);
   EXPECT_EQ(json["transport"], "sampled");
   EXPECT_EQ(json["state"], "coefficients");
   EXPECT_EQ(json["rsm-format"], "paper");

@@ -12,6 +12,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kSpacing = kPi / 90;  // between starting points: finer than any lobe's bumps
 constexpr double kResolution = 1e-7;   // rad: where the search stops
+constexpr int kMeanAxes = 2000;        // the mean then is good to three digits
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -43,20 +44,36 @@ glm::dvec3 highest(const std::function<double(const glm::dvec3&)>& f) {
   return best;
 }
 
+// |f - max(0, w . d)| / |max(0, w . d)|
+double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
+  std::vector<double> alpha(c.size());
+  basis.cosine_integrals(d, alpha);
+  const double norm = 2 * kPi / 3;  // Int max(0, w . d)^2 dw
+  return std::sqrt(std::max(0.0, norm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / norm);
+}
+
 }  // namespace
 
 LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
-  std::vector<double> alpha(c.size()), b(c.size());
-  basis.cosine_integrals(d, alpha);
-  const double norm = 2 * kPi / 3;  // Int max(0, w . d)^2 dw
-  const double squared = norm + dot(c, basis.gram() * c) - 2 * dot(c, alpha);
+  std::vector<double> b(c.size());
   const auto value = [&](const glm::dvec3& w) {
     basis.evaluate(w, b);
     return dot(c, b);
   };
   const glm::dvec3 peak = highest(value), pit = highest([&](const glm::dvec3&w) { return -value(w); });
-  return {std::sqrt(std::max(0.0, squared) / norm), value(pit), basis.energy(c),
+  return {relative_l2(basis, c, d), value(pit), basis.energy(c),
           std::atan2(glm::length(glm::cross(peak, d)), glm::dot(peak, d)) * 180 / kPi};
+}
+
+double mean_relative_l2(const Basis& basis, const Lobes& lobes) {
+  double sum = 0;
+  for (int i = 0; i < kMeanAxes; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kMeanAxes, radius = std::sqrt(1 - z * z);
+    const double azimuth = kPi * (3 - std::sqrt(5.0)) * i;
+    const glm::dvec3 d(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+    sum += relative_l2(basis, lobes(d), d);
+  }
+  return sum / kMeanAxes;
 }
 
 double energy_after(const Basis& basis, const FaceTransport& transport, int steps) {

@@ -51,6 +51,7 @@ nlohmann::json describe(const Basis& basis, const Options& options, const glm::d
           {"axis", {axis.x, axis.y, axis.z}},
           {"coefficients", c},
           {"relative_l2", quality.relative_l2},
+          {"mean_relative_l2", mean_relative_l2(basis, Lobes(basis, lobes))},
           {"minimum", quality.minimum},
           {"flux", quality.flux},
           {"peak_error_degrees", quality.peak_error_degrees},
@@ -61,16 +62,17 @@ nlohmann::json describe(const Basis& basis, const Options& options, const glm::d
 }
 
 void print(const nlohmann::json& bases) {
-  fmt::print("{:8} {:>3} {:>6} {:>9} {:>8} {:>8} {:>7} {:>7} {:>9} {:>9} {:>8} {:>8}\n", "basis", "N",
-             "lambda", "condition", "L2 error", "minimum", "flux", "peak", "sampled 8", "sampled24",
-             "exact 8", "exact 24");
+  fmt::print("{:8} {:>3} {:>6} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>9} {:>8} {:>8}\n", "basis", "N",
+             "lambda", "condition", "L2 error", "mean L2", "minimum", "flux", "peak", "sampled 8",
+             "sampled24", "exact 8", "exact 24");
   for (const nlohmann::json& b : bases) {
     const auto number = [&](const char* key) { return b.at(key).get<double>(); };
-    fmt::print("{:8} {:3} {:6} {:9.4g} {:8.3f} {:8.3f} {:7.4f} {:6.2f}d {:9.3f} {:9.3f} {:8.3f} {:8.3f}\n",
-               b.at("name").get<std::string>(), b.at("n").get<int>(), number("lambda"), number("condition"),
-               number("relative_l2"), number("minimum"), number("flux"), number("peak_error_degrees"),
-               number("energy_sampled_8"), number("energy_sampled_24"), number("energy_exact_8"),
-               number("energy_exact_24"));
+    fmt::print(
+        "{:8} {:3} {:6} {:9.4g} {:8.3f} {:8.3f} {:8.3f} {:7.4f} {:6.2f}d {:9.3f} {:9.3f} {:8.3f} {:8.3f}\n",
+        b.at("name").get<std::string>(), b.at("n").get<int>(), number("lambda"), number("condition"),
+        number("relative_l2"), number("mean_relative_l2"), number("minimum"), number("flux"),
+        number("peak_error_degrees"), number("energy_sampled_8"), number("energy_sampled_24"),
+        number("energy_exact_8"), number("energy_exact_24"));
   }
 }
 
