@@ -35,6 +35,8 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["table-size"], 256);
   EXPECT_EQ(json["transport"], "sampled");
   EXPECT_EQ(json["state"], "coefficients");
+  EXPECT_EQ(json["layout"], "image");
+  EXPECT_EQ(json["storage"], "half");
   EXPECT_EQ(json["rsm-format"], "paper");
   EXPECT_EQ(json["blocking"], "one-sided");
   EXPECT_EQ(json["injection"], "nearest");

@@ -159,6 +159,8 @@ void take_preset(const CLI::App& command, Options& options) {
   take("--table", options.table, preset.table);
   take("--transport", options.transport, preset.transport);
   take("--state", options.state, preset.state);
+  take("--layout", options.layout, preset.layout);
+  take("--storage", options.storage, preset.storage);
 }
 
 /// The same choices as a frame's.

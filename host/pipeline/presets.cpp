@@ -17,7 +17,7 @@ const std::vector<std::pair<std::string, std::string>>& paper_options() {
       {"basis", "srbf8v2"},      {"lambda", "0.25"},       {"lobe", "rotate"},        {"evaluate", "table"},
       {"table-size", "256"},     {"transport", "sampled"}, {"state", "coefficients"}, {"rsm-format", "paper"},
       {"blocking", "one-sided"}, {"injection", "nearest"}, {"gather-offset", "0.5"},  {"gather-floor", "0"},
-      {"late-light", "off"},
+      {"late-light", "off"},     {"layout", "image"},      {"storage", "half"},
   };
   return options;
 }
