@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "image/image_io.hpp"
+#include "pipeline/frame.hpp"
 #include "pipeline/propagate.hpp"
-#include "run_program.hpp"
+#include "scene/load.hpp"
 
 namespace clpv {
 namespace {
@@ -82,7 +82,9 @@ TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
                                fluxes = propagated(*basis, transport, State::fluxes, blockers);
       EXPECT_LE(largest_difference(fluxes, coefficients), 1e-5 * largest(coefficients))
           << name << (blockers ? ", blockers" : "");
-      if (blockers) EXPECT_GT(largest_difference(coefficients, before), 0.01 * largest(before)) << "blocked";
+      if (blockers) {
+        EXPECT_GT(largest_difference(coefficients, before), 0.01 * largest(before)) << "blocked";
+      }
       before = coefficients;
     }
   }
@@ -122,21 +124,19 @@ TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
 
 // Band 3 of a clamped cosine is 0, and face transports send nothing but clamped cosines.
 TEST(Sh4, GivesTheImageOfSh3) {
-  const test::TemporaryFolder folder;
-  std::vector<Image> images;
-  for (const std::string basis : {"sh3", "sh4", "sh2"}) {
-    const std::string file = (folder.path() / (basis + ".exr")).string();
-    const test::Outcome outcome =
-        test::run(std::string(CLPV_PROGRAM) + " render " + CLPV_SOURCE_DIR +
-                  "/scenes/cornell.json --view indirect --width 24 --height 24 --grid 10 --cascades 1 "
-                  "--iterations 4 --shadow-size 64 --rsm-size 48 --transport exact --basis " +
-                  basis + " -o " + file);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    images.push_back(read_image(file));
-  }
-  const double most = largest(images[0].pixels);
-  EXPECT_LE(largest_difference(images[1].pixels, images[0].pixels), 1e-5 * most);
-  EXPECT_GT(largest_difference(images[2].pixels, images[0].pixels), 1e-2 * most) << "sh2 is another image";
+  const Scene scene = load_scene(CLPV_SOURCE_DIR "/scenes/cornell.json", {});
+  const auto indirect = [&](const char* basis) {
+    RenderOptions options;
+    options.basis = basis, options.transport = "exact";
+    options.width = options.height = 24, options.cascade_size = scene.cascade_size.value_or(2);
+    options.grid = 10, options.cascades = 1, options.shadow_size = 64, options.rsm_size = 48;
+    Frame frame(session(), scene, options);
+    frame.render(scene.cameras.front());
+    return frame.read(Show::indirect);
+  };
+  const std::vector<float> sh3 = indirect("sh3");
+  EXPECT_LE(largest_difference(indirect("sh4"), sh3), 1e-5 * largest(sh3));
+  EXPECT_GT(largest_difference(indirect("sh2"), sh3), 1e-2 * largest(sh3)) << "sh2 is another image";
 }
 
 }  // namespace
