@@ -31,6 +31,7 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["basis"], "srbf8v2");
   EXPECT_EQ(json["lambda"], 0.25);
   EXPECT_EQ(json["lobe"], "rotate");
+  EXPECT_EQ(json["lobe-time"], "kernel");
   EXPECT_EQ(json["evaluate"], "table");
   EXPECT_EQ(json["table-size"], 256);
   EXPECT_EQ(json["transport"], "sampled");
