@@ -26,9 +26,14 @@ struct Gathering {
   Gathering(Session& session, const Variant& v)
       : basis(make_basis(v.basis, v.lambda)),
         transport(make_transport(v.transport, *basis, lobe_options(v))),
-        options{.grid = v.grid},
+        options{.grid = v.grid, .format = format_of(v), .filtered = v.filtered},
         gatherer(session, *basis, transport, options) {}
 };
+
+/// Whether the device's filter interpolates.
+bool filters(const Variant& v) {
+  return v.layout == "image" && v.filtered;
+}
 
 /// Where a pixel's surface lies [m].
 glm::dvec3 position(const ClpvView& view, std::size_t pixel, double depth) {
@@ -62,8 +67,8 @@ std::vector<double> twin_of(const Gathering& p, Inputs& inputs, const SurfaceIma
   return values;
 }
 
-Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& twin) {
-  Deviation deviation{0, reference::tolerance("gather"), {}};
+Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& twin, double tolerance) {
+  Deviation deviation{0, tolerance, {}};
   double largest = 0;
   for (const double value : twin) largest = std::max(largest, std::abs(value));
   for (std::size_t i = 0; i < twin.size(); ++i) {
@@ -82,14 +87,14 @@ Deviation compare(const std::vector<cl_float4>& device, const std::vector<double
 Job gather_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
   const auto p = std::make_shared<Gathering>(session, variant);
-  p->grids = bench.inputs->grids();
+  p->grids = bench.inputs().grids();
   for (std::size_t c = 0; c < p->grids.size(); ++c) {
     p->volumes.push_back(std::make_unique<Volume>(session, VolumeShape{variant.grid, p->basis->size(), 3},
-                                                  "bench: accumulated light"));
-    p->volumes.back()->write(session, bench.inputs->light(*p->basis, static_cast<int>(c)));
+                                                  "bench: accumulated light", format_of(variant)));
+    p->volumes.back()->write(session, bench.inputs().light(*p->basis, static_cast<int>(c)));
     p->accumulated.push_back(p->volumes.back().get());
   }
-  const Inputs::Seen& seen = bench.inputs->seen(0);
+  const Inputs::Seen& seen = bench.inputs().seen(0);
   const std::size_t pixels = seen.camera_image.depth.size(), bytes = pixels * sizeof(cl_float4);
   p->irradiance = session.buffer(bytes, "bench: irradiance");
   Job job;
@@ -98,18 +103,25 @@ Job gather_job(Bench& bench, const Variant& variant) {
   job.verify = [p, &bench, &seen, variant, pixels] {
     const std::string key = fmt::format("gather {} {} {} {} {}", variant.basis, variant.lambda,
                                         variant.transport, variant.lobe, variant.grid);
-    const auto twin = bench.twin(key, [&] { return twin_of(*p, *bench.inputs, seen.camera_image); });
-    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin);
+    const auto twin = bench.twin(key, [&] { return twin_of(*p, bench.inputs(), seen.camera_image); });
+    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
+                   tolerance_of(filters(variant) ? "gather-filtered" : "gather", variant.storage));
   };
-  // Depth and normal of a pixel in, irradiance out; every volume read once, and packed: written and read again.
-  const double n = p->basis->size();
-  double volumes = 0;
-  for (const auto& volume : p->volumes) volumes += 3.0 * static_cast<double>(volume->bytes());
+  const VolumeFormat format = format_of(variant);
+  const int n = p->basis->size();
+  double volumes = 0;  // read once; buffers are packed first: read, written and read again
+  for (const auto& volume : p->volumes)
+    volumes += static_cast<double>(volume->bytes()) * (format.layout == Layout::image ? 1 : 3);
   job.cost.bytes = static_cast<double>(pixels) * (sizeof(float) + 2 * sizeof(cl_float4)) + volumes;
   job.cost.working_set = job.cost.bytes;
-  job.cost.reads_per_cell = 8 * 3 * n;  // of a pixel, in its cascade
-  // Trilinear weights once, then 8 multiply-adds a coefficient and channel, and the product with g(n).
-  job.cost.flops = static_cast<double>(pixels) * 3 * n * (2 * 8 + 2);
+  // Of a pixel within one cascade: eight cells, or one filtered texel in their place. Buffers are read packed, two
+  // coefficients of three channels at once.
+  const double texels = 3.0 * accesses_per_cell(format, n);
+  job.cost.reads_per_cell = format.layout != Layout::image ? 8.0 * ((n + 1) / 2)
+                            : variant.filtered             ? texels
+                                                           : 8 * texels;
+  // Trilinear weights once, then 8 multiply-adds a coefficient and channel unless the filter does them, and g(n) . c.
+  job.cost.flops = static_cast<double>(pixels) * 3 * n * (filters(variant) ? 2 : 2 * 8 + 2);
   return job;
 }
 

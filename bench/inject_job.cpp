@@ -20,11 +20,16 @@ struct Injection {
 
   Injection(Session& session, const Variant& v)
       : basis(make_basis(v.basis, v.lambda)),
-        light(session, {v.grid, basis->size(), 3}, "bench: injected light"),
-        injector(session, *basis, Inputs::published_injection(v.grid)) {
+        light(session, {v.grid, basis->size(), 3}, "bench: injected light", format_of(v)),
+        injector(session, *basis, options_of(v)) {
     if (v.occlusion)
       geometry = std::make_unique<Volume>(session, VolumeShape{v.grid + 1, basis->size(), 1},
-                                          "bench: geometry volume");
+                                          "bench: geometry volume", format_of(v));
+  }
+  static InjectOptions options_of(const Variant& v) {
+    InjectOptions options = Inputs::published_injection(v.grid);
+    options.format = format_of(v);
+    return options;
   }
 };
 
@@ -94,7 +99,7 @@ void compare(const Basis& basis, const std::vector<float>& device, const double*
 Job inject_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
   const auto p = std::make_shared<Injection>(session, variant);
-  const Inputs::Seen& seen = bench.inputs->seen(variant.cascade.value_or(0));
+  const Inputs::Seen& seen = bench.inputs().seen(variant.cascade.value_or(0));
   Job job;
   job.reset = [p, &session] {
     p->light.clear(session);
@@ -110,7 +115,7 @@ Job inject_job(Bench& bench, const Variant& variant) {
     const std::string key = fmt::format("inject {} {} {} {} {}", variant.basis, variant.lambda,
                                         variant.occlusion, variant.grid, variant.cascade.value_or(0));
     const auto twin = bench.twin(key, [&] { return twin_of(*p, seen); });
-    Deviation deviation{0, reference::tolerance("inject"), {}};
+    Deviation deviation{0, tolerance_of("inject", variant.storage), {}};
     const std::vector<float> light = p->light.read(bench.session);
     compare(*p->basis, light, twin->data(), variant.grid, "light", deviation);
     if (p->geometry)

@@ -23,7 +23,9 @@ struct Job {
   std::function<Deviation()> verify;  ///< of the last repetition's output; none: nothing to compare
   Cost cost;
   bool own_stages = false;  ///< `run` marks stages on the timeline itself; its time is then wall time
-  std::function<void(const std::vector<StageTime>&)> after_run;  ///< of each repetition; may be none
+  std::function<void(const std::vector<StageTime>&)>
+      after_run;                                          ///< of each run, warm-up included; may be none
+  std::function<std::vector<Row>(const Row&)> more_rows;  ///< to stand after the job's own; may be none
 };
 
 /// A row to be: its identity, and how to set up its work.

@@ -28,47 +28,80 @@ struct Propagation {
       : variant(v),
         basis(make_basis(v.basis, v.lambda)),
         transport(make_transport(v.transport, *basis, lobe_options(v))),
-        injected(session, {v.grid, basis->size(), 3}, "bench: injected light"),
-        accumulated(session, {v.grid, basis->size(), 3}, "bench: accumulated light"),
-        propagator(session, *basis, transport, {.grid = v.grid, .state = state_of(v)}) {
+        injected(session, {v.grid, basis->size(), 3}, "bench: injected light", format_of(v)),
+        accumulated(session, {v.grid, basis->size(), 3}, "bench: accumulated light", format_of(v)),
+        propagator(session, *basis, transport,
+                   {.grid = v.grid,
+                    .state = state_of(v),
+                    .format = format_of(v),
+                    .lanes = v.lanes,
+                    .local = v.local}) {
     if (v.occlusion)
       geometry = std::make_unique<Volume>(session, VolumeShape{v.grid + 1, basis->size(), 1},
-                                          "bench: geometry volume");
+                                          "bench: geometry volume", format_of(v));
   }
 };
 
-/// Adds what one launch per step moves: `values` a cell, of all channels.
-void add_step(Cost& cost, double cells, double values, double flops) {
-  cost.bytes += cells * values * sizeof(float);
-  cost.flops += cells * flops;
+/// What reading or writing `coefficients` numbers of a cell takes, in the variant's format.
+struct Access {
+  VolumeFormat format;
+  double bytes(int coefficients) const { return static_cast<double>(bytes_per_cell(format, coefficients)); }
+  double count(int coefficients) const { return accesses_per_cell(format, coefficients); }
+};
+
+/// A step's share of the cost. Values a cell needs are read once by count of bytes, however often by count of reads.
+void add_step(Cost& cost, Propagation& p, const TransportSource& source, bool apart, double blocker_bytes,
+              double blocker_reads) {
+  const double cells = std::pow(p.variant.grid, 3);
+  const Access access{format_of(p.variant)};
+  const int carried = source.target_count;
+  const double sum_in = apart ? access.bytes(carried) : 0.0;  // else the source is the sum so far
+  cost.bytes +=
+      cells *
+      (kChannels * (access.bytes(source.source_count) + sum_in + 2 * access.bytes(carried)) + blocker_bytes);
+  cost.flops += cells * kChannels * (source.arrive.flops() + carried);
+  cost.reads_per_cell =
+      kChannels * (source.neighbours * access.count(source.source_count) + access.count(carried)) +
+      blocker_reads;
+  cost.writes_per_cell = kChannels * 2 * access.count(carried);
 }
 
-/// Counted for the kernels as generated, after a run has made them.
+/// Counted for the kernels as generated, after a run has made them. Reads and writes are those of a later step.
 Cost cost_of(Propagation& p) {
-  const double cells = std::pow(p.variant.grid, 3), n = p.basis->size();
-  const bool fluxes = p.variant.state == "fluxes";
-  const double carried = fluxes ? 6 : n;
+  const Variant& v = p.variant;
+  const int n = p.basis->size();
+  const bool fluxes = v.state == "fluxes";
+  const int carried = fluxes ? 6 : n;
+  const double cells = std::pow(v.grid, 3), corners = std::pow((v.grid + 1.0) / v.grid, 3);
+  const Access access{format_of(v)};
+  // Blocking is evaluated once for all steps, as a number a way, or in each step from the eight corners.
   const Transmitter* transmitter = p.propagator.transmitter();
-  const double ways = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
+  const int ways = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
+  const double blocker_bytes = transmitter != nullptr ? access.bytes(ways) : corners * access.bytes(n);
+  const double blocker_reads = transmitter != nullptr ? access.count(ways) : 8 * access.count(n);
+  const OperationCount evaluation =
+      p.geometry ? transmit_source(*p.basis, p.transport).operations : OperationCount{};
   Cost cost;
-  for (int step = 1; step <= p.variant.iterations; ++step) {
-    const bool blocked = transmitter != nullptr && step > 1;
-    const TransportSource source =
-        step == 1 ? transport_source(*p.basis, p.transport, {State::coefficients, state_of(p.variant), false})
-                  : p.propagator.step_source(blocked);
-    // Travelling light and the sum in, both out; the first step of coefficients finds the sum where its source is.
-    const double in = source.source_count + (step == 1 && !fluxes ? 0.0 : carried);
-    add_step(cost, cells, kChannels * (in + 2 * carried) + (blocked ? ways : 0.0),
-             kChannels * (source.arrive.flops() + carried));
-    cost.reads_per_cell =
-        kChannels * (source.neighbours * source.source_count + carried) + (blocked ? ways : 0.0);
+  for (int step = 1; step <= v.iterations; ++step) {
+    const bool blocked = p.geometry && step > 1;
+    if (step == 1 && fluxes) {
+      add_step(cost, p, transport_source(*p.basis, p.transport, {State::coefficients, State::fluxes, false}),
+               true, 0, 0);
+      continue;
+    }
+    add_step(cost, p, p.propagator.step_source(blocked), step > 1, blocked ? blocker_bytes : 0,
+             blocked ? blocker_reads : 0);
+    if (blocked && transmitter == nullptr) cost.flops += cells * evaluation.flops();
   }
-  if (transmitter != nullptr)
-    add_step(cost, cells, n * std::pow((p.variant.grid + 1.0) / p.variant.grid, 3) + ways,
-             transmitter->operations().flops());
-  if (fluxes) add_step(cost, cells, kChannels * (2 * n + carried), kChannels * (2 * 6 * n + n));
-  cost.writes_per_cell = kChannels * 2 * carried;
-  cost.working_set = cells * sizeof(float) * (3 * kChannels * carried + ways);
+  if (transmitter != nullptr) {
+    cost.bytes += cells * (corners * access.bytes(n) + access.bytes(ways));
+    cost.flops += cells * evaluation.flops();
+  }
+  if (fluxes) {  // six fluxes back to coefficients: a product with the lobes, and a sum
+    cost.bytes += cells * kChannels * (2 * access.bytes(n) + access.bytes(carried));
+    cost.flops += cells * kChannels * (2.0 * carried * n + n);
+  }
+  cost.working_set = cells * (3 * kChannels * access.bytes(carried) + (p.geometry ? blocker_bytes : 0));
   return cost;
 }
 
@@ -77,8 +110,10 @@ std::string twin_key(const Variant& v) {
                      v.grid, v.iterations, v.cascade.value_or(0));
 }
 
-Deviation compare(const std::vector<float>& device, const std::vector<double>& twin, int n,
-                  double tolerance) {
+}  // namespace
+
+Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
+                          double tolerance) {
   Deviation deviation{0, tolerance, {}};
   double largest = 0;
   for (const double value : twin) largest = std::max(largest, std::abs(value));
@@ -94,14 +129,12 @@ Deviation compare(const std::vector<float>& device, const std::vector<double>& t
   return deviation;
 }
 
-}  // namespace
-
 Job propagate_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
   const auto p = std::make_shared<Propagation>(session, variant);
   const int cascade = variant.cascade.value_or(0);
-  p->injected.write(session, bench.inputs->light(*p->basis, cascade));
-  if (p->geometry) p->geometry->write(session, bench.inputs->geometry(*p->basis, cascade));
+  p->injected.write(session, bench.inputs().light(*p->basis, cascade));
+  if (p->geometry) p->geometry->write(session, bench.inputs().geometry(*p->basis, cascade));
   const PropagateVolumes volumes{p->injected, p->geometry.get(), p->accumulated};
   p->propagator.propagate(volumes, std::min(2, variant.iterations));  // makes the kernels that are counted
   Job job;
@@ -113,12 +146,13 @@ Job propagate_job(Bench& bench, const Variant& variant) {
   job.verify = [p, &bench, cascade] {
     const int grid = p->variant.grid, n = p->basis->size();
     const auto twin = bench.twin(twin_key(p->variant), [&] {
-      const auto light = to_reference(bench.inputs->light(*p->basis, cascade), grid, n, 3);
+      const auto light = to_reference(bench.inputs().light(*p->basis, cascade), grid, n, 3);
       if (!p->geometry) return propagated(*p->basis, p->transport, light, nullptr, p->variant.iterations);
-      const auto geometry = to_reference(bench.inputs->geometry(*p->basis, cascade), grid + 1, n, 1);
+      const auto geometry = to_reference(bench.inputs().geometry(*p->basis, cascade), grid + 1, n, 1);
       return propagated(*p->basis, p->transport, light, &geometry, p->variant.iterations);
     });
-    return compare(p->accumulated.read(bench.session), *twin, grid, reference::tolerance("propagate"));
+    return compare_volumes(p->accumulated.read(bench.session), *twin, grid,
+                           tolerance_of("propagate", p->variant.storage));
   };
   return job;
 }

@@ -24,10 +24,16 @@ std::string or_dash(bool there, const std::string& text) {
 
 }  // namespace
 
-nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows) {
-  nlohmann::json list = nlohmann::json::array();
+nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
+                           const std::vector<Row>& rows) {
+  nlohmann::json list = nlohmann::json::array(), bandwidths = nlohmann::json::array();
   for (std::size_t i = 0; i < rows.size(); ++i) list.push_back(to_json(rows[i], static_cast<int>(i)));
-  return {{"context", context}, {"benchmarks", list}};
+  for (const Bandwidth& bandwidth : ceilings.bandwidths)
+    bandwidths.push_back({{"working_set", bandwidth.working_set}, {"gbps", bandwidth.gbps}});
+  nlohmann::json all = context;
+  all["ceilings"] = {
+      {"gflops", ceilings.gflops}, {"bandwidths", bandwidths}, {"launch_ms", ceilings.launch_ms}};
+  return {{"context", all}, {"benchmarks", list}};
 }
 
 std::string report_csv(const std::vector<Row>& rows) {

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "bench/ceilings.hpp"
 #include "bench/row.hpp"
 
 namespace clpv::bench {
 
-/// {"context": ..., "benchmarks": [row, ...]}
-nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows);
+/// {"context": ..., "benchmarks": [row, ...]}; the context with the ceilings: gflops, bandwidths[], launch_ms.
+nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
+                           const std::vector<Row>& rows);
 
 /// A line a row under a line of keys, the same for every row (Google Benchmark's own CSV gives up where rows differ);
 /// samples are left to JSON. By RFC 4180.

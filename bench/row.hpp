@@ -1,6 +1,7 @@
 // One row of a benchmark's results: what was timed, and what came of it.
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct Variant {
   int grid = 32;
   int iterations = 8;
   std::optional<int> cascade;
+  bool filtered = true;  ///< gathering from images: by the device's filter, else from texels
+  int lanes = 0;         ///< of propagation's kernels, as is `local` (pipeline/propagate.hpp); 0: as usual
+  std::array<std::size_t, 2> local = {0, 1};
 };
 
 /// What the timed work comes to, counted rather than measured.

@@ -151,7 +151,9 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
   std::vector<Row> rows;
   for (Running& done : running) {
     if (done.row.status == Status::ok) conclude(done, collector.cpu_ms[done.row.name], options);
-    rows.push_back(std::move(done.row));
+    rows.push_back(done.row);
+    if (done.row.status != Status::ok || !done.job.more_rows) continue;
+    for (Row& row : done.job.more_rows(done.row)) rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -6,6 +6,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "reference/tolerances.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -26,8 +27,17 @@ Row make_row(const std::string& suite, const std::string& stage, const Variant& 
   }
   if (variant.occlusion) row.name += "/occlusion";
   if (variant.cascade) row.name += fmt::format("/cascade:{}", *variant.cascade);
+  if (!variant.filtered) row.name += "/texels";
   row.name += more;
   return row;
+}
+
+VolumeFormat format_of(const Variant& variant) {
+  return volume_format(variant.layout, variant.storage);
+}
+
+double tolerance_of(const std::string& stage, const std::string& storage) {
+  return reference::tolerance(storage == "half" ? stage + "-half" : stage);
 }
 
 LobeOptions lobe_options(const Variant& variant) {

@@ -1,6 +1,7 @@
 // The pipeline's stages as jobs: inject, propagate, gather, each with its cost and its twin.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,15 +11,22 @@
 #include "bench/inputs.hpp"
 #include "bench/job.hpp"
 #include "pipeline/transport_source.hpp"
+#include "scene/scene.hpp"
 
 namespace clpv::bench {
 
 /// What the jobs of a suite share.
 struct Bench {
   Session& session;
-  std::shared_ptr<Inputs> inputs;
+  std::function<std::shared_ptr<Inputs>()> see;  ///< makes the inputs, at their first use
   /// Twins' results by what they depend on: variants that should agree share one. In double, Volume's host order.
   std::map<std::string, std::shared_ptr<const std::vector<double>>> twins;
+
+  Inputs& inputs() {
+    if (!seen) seen = see();
+    return *seen;
+  }
+  std::shared_ptr<Inputs> seen;
 
   /// The twin's result under `key`, made by `make` the first time.
   template <typename Make>
@@ -42,7 +50,19 @@ Job propagate_job(Bench& bench, const Variant& variant);
 Job gather_job(Bench& bench, const Variant& variant);
 inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
 
+/// RSM of a scene's cascade, or its G-buffer (kind "rasterize-rsm", "rasterize-camera").
+Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& kind,
+                  const Settings& settings);
+
+/// Light volumes of n^3 cells in Volume's host order: the largest difference, over the twin's largest value.
+Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
+                          double tolerance);
+
+/// Tolerance of a stage's output kept in a storage ("float", "half").
+double tolerance_of(const std::string& stage, const std::string& storage);
+
 LobeOptions lobe_options(const Variant& variant);
+VolumeFormat format_of(const Variant& variant);
 State state_of(const Variant& variant);
 
 /// The job of that name: "inject", "propagate", "gather".

@@ -5,7 +5,8 @@
 namespace clpv::bench {
 
 const std::vector<Suite>& suites() {
-  static const std::vector<Suite> all = {table1_suite(), bases_suite(), ceilings_suite()};
+  static const std::vector<Suite> all = {table1_suite(),   layouts_suite(), bases_suite(),   scaling_suite(),
+                                         ceilings_suite(), frame_suite(),   baseline_suite()};
   return all;
 }
 
@@ -17,17 +18,17 @@ Variant plain_variant(const SuiteOptions& options, const std::string& basis) {
   return variant;
 }
 
-const Scene& scene_of(const SuiteOptions& options, Scene& hall) {
-  if (options.scene != nullptr) return *options.scene;
-  hall = make_hall(kHallTriangles);
-  return hall;
+std::shared_ptr<const Scene> scene_of(const SuiteOptions& options) {
+  if (options.scene) return options.scene;
+  return std::make_shared<const Scene>(make_hall(kHallTriangles));
 }
 
-std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options) {
-  Scene hall;
-  const Scene& scene = scene_of(options, hall);
-  return std::make_shared<Bench>(Bench{
-      session, std::make_shared<Inputs>(session, scene, scene.camera(options.camera), options.settings), {}});
+std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options, const Settings& settings) {
+  const auto see = [&session, options, settings] {
+    const auto scene = scene_of(options);
+    return std::make_shared<Inputs>(session, *scene, scene->camera(options.camera), settings);
+  };
+  return std::make_shared<Bench>(Bench{session, see, {}, {}});
 }
 
 }  // namespace clpv::bench

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace clpv::bench {
 
 /// What a suite is asked to do.
 struct SuiteOptions {
-  const Scene* scene = nullptr;  ///< none: the hall of hall.hpp
+  std::shared_ptr<const Scene> scene;  ///< none: the hall of hall.hpp
   std::string camera;
   std::vector<std::string> bases;  ///< named by the user; empty: the suite's own
   Settings settings;
@@ -35,15 +36,19 @@ struct Suite {
 const std::vector<Suite>& suites();
 
 // Each in suites/NAME.cpp.
-Suite ceilings_suite();
 Suite table1_suite();
+Suite layouts_suite();
 Suite bases_suite();
+Suite scaling_suite();
+Suite ceilings_suite();
+Suite frame_suite();
+Suite baseline_suite();
 
 /// A basis with all else as the options say or by default.
 Variant plain_variant(const SuiteOptions& options, const std::string& basis);
 
-/// The scene and camera a suite works on, from its options; `hall` holds the scene where none was given.
-const Scene& scene_of(const SuiteOptions& options, Scene& hall);
-std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options);
+/// The scene a suite works on: the one given, else the hall.
+std::shared_ptr<const Scene> scene_of(const SuiteOptions& options);
+std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options, const Settings& settings);
 
 }  // namespace clpv::bench

@@ -30,7 +30,7 @@ Suite bases_suite() {
   return {"bases",
           "every basis, both states, both lobes: injection, propagation, gathering",
           [](Session& session, const SuiteOptions& options) {
-            const auto bench = make_bench(session, options);
+            const auto bench = make_bench(session, options, options.settings);
             const auto names = options.bases.empty() ? basis_names() : options.bases;
             std::vector<Group> groups;  // one a basis: all of them at once would hold gigabytes
             for (const std::string& basis : names)

@@ -128,7 +128,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, bool occlusio
 Suite table1_suite() {
   return {"table1", "the paper's Table 1: injection and propagation a cascade, light buffer; ratios to sh2",
           [](Session& session, const SuiteOptions& options) {
-            const auto bench = make_bench(session, options);
+            const auto bench = make_bench(session, options, options.settings);
             std::vector<Group> groups;
             for (const std::string lobe : {"exact"}) {
               for (const bool occlusion : {false, true})

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
+#include "bench/compare_runs.hpp"
 #include "bench/context.hpp"
+#include "bench/plot.hpp"
 #include "bench/report.hpp"
 #include "commands/commands.hpp"
 #include "scene/load.hpp"
@@ -19,7 +22,7 @@ namespace clpv {
 namespace {
 
 struct Options {
-  std::string suite, scene, model, filter, format = "table", out;
+  std::string suite, scene, model, filter, format = "table", out, compare, plot;
   bench::BenchOptions bench;
 };
 
@@ -45,12 +48,31 @@ std::regex parse_filter(const std::string& text) {
   }
 }
 
+nlohmann::json report_of(const Session& session, const bench::Results& results) {
+  return bench::report_json(bench::context_json(session), results.ceilings, results.rows);
+}
+
 std::string as_text(const Options& options, const bench::Suite& suite, const Session& session,
                     const bench::Results& results) {
-  if (options.format == "json")
-    return bench::report_json(bench::context_json(session), results.rows).dump(2) + "\n";
+  if (options.format == "json") return report_of(session, results).dump(2) + "\n";
   if (options.format == "csv") return bench::report_csv(results.rows);
   return suite.table ? suite.table(results.rows) : bench::report_table(results.rows);
+}
+
+/// An earlier run's report, read before the work. Null where none is asked for.
+nlohmann::json earlier_run(const Options& options) {
+  if (options.compare.empty()) return nullptr;
+  if (options.format != "table" && options.out.empty()) {
+    throw Error(ExitCode::usage,
+                "--compare with --format {}: both would be on stdout; allowed: --format table, or --out",
+                options.format);
+  }
+  std::ifstream in(options.compare, std::ios::binary);
+  if (!in) throw Error(ExitCode::bad_input, "--compare {}: cannot be read", options.compare);
+  nlohmann::json report = nlohmann::json::parse(in, nullptr, false);
+  if (report.is_discarded()) throw Error(ExitCode::bad_input, "--compare {}: not JSON", options.compare);
+  bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
+  return report;
 }
 
 /// Tells of the rows that failed. Exit code 5 where an output was wrong.
@@ -68,11 +90,12 @@ void run(Options options, const Shared& shared) {
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   if (!options.out.empty()) check_writable(options.out);
+  if (!options.plot.empty()) bench::require_plots(options.plot);
+  const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = suite_named(options.suite);
-  std::optional<Scene> scene;
   if (!options.scene.empty()) {
-    scene = load_scene(options.scene, {options.model});
-    options.bench.suite.scene = &*scene;
+    const auto scene = std::make_shared<const Scene>(load_scene(options.scene, {options.model}));
+    options.bench.suite.scene = scene;
     if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
     if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
   } else if (!options.model.empty()) {
@@ -88,6 +111,12 @@ void run(Options options, const Shared& shared) {
   } else {
     write_file(options.out, text);
   }
+  if (!before.is_null()) {
+    fmt::print(
+        "{}{}", options.out.empty() ? "\n" : "",
+        bench::comparison_table(bench::compare_runs(before, report_of(session, results), options.compare)));
+  }
+  if (!options.plot.empty()) bench::plot(report_of(session, results), options.plot);
   session.store_programs();
   judge(results.rows);
 }
@@ -120,6 +149,12 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->capture_default_str()
       ->check(CLI::IsMember({"table", "json", "csv"}));
   command->add_option("-o,--out", options->out, "file to write in place of stdout")->type_name("FILE");
+  command
+      ->add_option("--compare", options->compare,
+                   "JSON of an earlier run: prints what changed, and by what spread")
+      ->type_name("OLD.json");
+  command->add_option("--plot", options->plot, "charts of the rows as SVG and PNG, by matplotlib")
+      ->type_name("DIR");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

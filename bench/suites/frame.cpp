@@ -1,0 +1,158 @@
+// Suite `frame`: whole frames along a camera path, and what each stage of them takes.
+#include "pipeline/frame.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+
+#include "bench/suites.hpp"
+#include "pipeline/presets.hpp"
+
+namespace clpv::bench {
+namespace {
+
+constexpr int kPathFrames = 24;
+constexpr double kTurn = 0.6, kSway = 0.5;  // [rad], [m]: to either side, once along the path
+
+/// A camera that looks round to either side and sways, back where it began after kPathFrames.
+Camera on_path(Camera camera, int frame) {
+  const double phase = 2 * 3.14159265358979 * frame / kPathFrames;
+  const glm::mat4 turn =
+      glm::rotate(glm::mat4(1.0f), static_cast<float>(kTurn * std::sin(phase)), glm::vec3(0, 1, 0));
+  camera.forward = glm::vec3(turn * glm::vec4(camera.forward, 0));
+  camera.up = glm::vec3(turn * glm::vec4(camera.up, 0));
+  const glm::vec3 right = glm::cross(camera.forward, camera.up);
+  camera.eye += right * static_cast<float>(kSway * std::sin(phase));
+  return camera;
+}
+
+/// A frame in use, and the stages' times of every one rendered.
+struct Path {
+  std::shared_ptr<const Scene> scene;
+  Camera start;
+  Frame frame;
+  int next = 0;
+  bool warm = false;
+  std::map<std::string, std::vector<double>> stage_ms;
+
+  Path(Session& session, std::shared_ptr<const Scene> lit, const std::string& camera,
+       const RenderOptions& options)
+      : scene(std::move(lit)), start(scene->camera(camera)), frame(session, *scene, options) {}
+
+  void add(const std::vector<StageTime>& times) {
+    std::map<std::string, double> sums;  // over cascades and lights
+    for (const StageTime& time : times) sums[time.mark.stage] += time.ms;
+    if (warm) {  // the first run compiles
+      for (const auto& [stage, ms] : sums) stage_ms[stage].push_back(ms);
+    }
+    warm = true;
+  }
+};
+
+std::vector<Row> stage_rows(const Path& path, const Row& frame) {
+  std::vector<Row> rows;
+  for (const auto& [stage, ms] : path.stage_ms) {
+    Row row = frame;
+    row.stage = stage;
+    row.name = stage + frame.name.substr(frame.name.find('/'));
+    row.samples_ms = ms;
+    row.times = statistics_of(ms);
+    row.wall_ms = row.cpu_ms = row.first_launch_ms = row.build_ms = 0;
+    row.from_events = true;
+    row.max_rel_error.reset();  // the frame's is of the whole image
+    row.cost = {};
+    row.ceiling.clear();
+    row.ceiling_share = 0;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// The last frame again: the same bytes, whatever was rendered before it.
+Deviation repeat(Path& path, Session& session) {
+  const std::vector<float> timed = path.frame.read(Show::full);
+  const Camera camera = on_path(path.start, path.next - 1);
+  path.frame.render(on_path(path.start, path.next + kPathFrames / 2));
+  path.frame.render(camera);
+  session.queue().finish();
+  const std::vector<float> again = path.frame.read(Show::full);
+  Deviation deviation{0, 0, {}};
+  double largest = 0;
+  for (const float value : again) largest = std::max(largest, static_cast<double>(std::abs(value)));
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    const double error = std::abs(static_cast<double>(timed[i]) - again[i]) / largest;
+    if (error <= deviation.worst) continue;
+    deviation.worst = error;
+    deviation.place =
+        fmt::format("pixel {} channel {}: {:.7g}, rendered again {:.7g}", i / 4, i % 4, timed[i], again[i]);
+    if (std::isnan(error)) break;
+  }
+  return deviation;
+}
+
+Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render) {
+  const auto path = std::make_shared<Path>(session, scene_of(options), options.camera, render);
+  Job job;
+  job.own_stages = true;
+  job.run = [path] { path->frame.render(on_path(path->start, path->next++)); };
+  job.after_run = [path](const std::vector<StageTime>& times) { path->add(times); };
+  job.more_rows = [path](const Row& row) { return stage_rows(*path, row); };
+  job.verify = [path, &session] { return repeat(*path, session); };
+  return job;
+}
+
+Case frame_case(Session& session, const SuiteOptions& options, const std::string& preset,
+                const std::string& basis) {
+  RenderOptions render;
+  apply_preset(render, preset);
+  render.basis = basis;
+  render.grid = options.settings.grid, render.iterations = options.iterations;
+  render.cascades = options.settings.cascades, render.cascade_size = options.settings.cascade_size;
+  render.rsm_size = options.settings.rsm_size;
+  render.width = options.settings.width, render.height = options.settings.height;
+  Variant variant = plain_variant(options, basis);
+  variant.transport = render.transport;
+  variant.state = render.state;
+  variant.occlusion = render.occlusion;
+  Case result;
+  result.row = make_row("frame", "frame", variant, "/" + preset);
+  result.make = [&session, options, render] { return frame_job(session, options, render); };
+  return result;
+}
+
+std::string table(const std::vector<Row>& rows) {
+  std::string text =
+      fmt::format("{:<62} {:>10} {:>9} {:>9} {:>9} {:>7}\n", "row", "median ms", "p95", "max", "mad", "fps");
+  for (const Row& row : rows) {
+    text += fmt::format("{:<62} {:>10.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>7}{}\n", row.name, row.times.median,
+                        row.times.p95, row.times.max, row.times.mad,
+                        row.stage == "frame" ? fmt::format("{:.1f}", 1e3 / row.times.median) : "",
+                        row.status == Status::wrong ? "  WRONG" : "");
+  }
+  return text;
+}
+
+}  // namespace
+
+Suite frame_suite() {
+  return {
+      "frame", "whole frames along a camera path: frames a second, median, 95th percentile, each stage",
+      [](Session& session, const SuiteOptions& options) {
+        const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
+        std::vector<Group> groups;
+        for (const std::string& preset : preset_names()) {
+          groups.push_back({[&session, options, bases, preset] {
+            std::vector<Case> cases;
+            for (const std::string& basis : bases)
+              cases.push_back(frame_case(session, options, preset, basis));
+            return cases;
+          }});
+        }
+        return groups;
+      },
+      table};
+}
+
+}  // namespace clpv::bench

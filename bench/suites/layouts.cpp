@@ -1,0 +1,93 @@
+// Suite `layouts`: every stage on every layout and storage of its volumes, and how often each reaches into them: the
+// paper's own argument is about texture reads.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/suites.hpp"
+#include "pipeline/volume_format.hpp"
+
+namespace clpv::bench {
+namespace {
+
+// As the paper has it: what the others' speed-up is told over.
+constexpr const char* kPaperLayout = "image";
+constexpr const char* kPaperStorage = "half";
+
+struct Timed {
+  std::string stage;
+  bool occlusion;
+};
+
+/// One stage of one basis in every format: timed interleaved.
+std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::string& basis,
+                        const Timed& timed) {
+  std::vector<Case> cases;
+  for (const VolumeFormat& format : all_formats()) {
+    Variant variant = plain_variant(options, basis);
+    variant.layout = layout_name(format.layout), variant.storage = storage_name(format.storage);
+    variant.occlusion = timed.occlusion;
+    cases.push_back(stage_case(bench, "layouts", timed.stage, variant));
+    if (timed.stage != "gather" || format.layout != Layout::image) continue;
+    variant.filtered = false;
+    cases.push_back(stage_case(bench, "layouts", timed.stage, variant));
+  }
+  return cases;
+}
+
+/// The row of half-float images that does the same work.
+const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
+  for (const Row& other : rows) {
+    const Variant &a = row.variant, &b = other.variant;
+    if (other.status == Status::ok && other.stage == row.stage && a.basis == b.basis &&
+        a.occlusion == b.occlusion && b.layout == kPaperLayout && b.storage == kPaperStorage && b.filtered)
+      return &other;
+  }
+  return nullptr;
+}
+
+std::string table(const std::vector<Row>& rows) {
+  std::size_t width = 4;
+  for (const Row& row : rows) width = std::max(width, row.name.size());
+  std::string text =
+      fmt::format("{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
+                  "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "over image/half", "error");
+  for (const Row& row : rows) {
+    if (row.status == Status::unsupported) {
+      text += fmt::format("{:<{}} unsupported: {}\n", row.name, width, row.reason);
+      continue;
+    }
+    const Row* paper = paper_row(rows, row);
+    text += fmt::format(
+        "{:<{}} {:>10.3f} {:>9.3f} {:>12.0f} {:>12.0f} {:>8.1f} {:>16} {:>16} {:>9.1e}{}\n", row.name, width,
+        row.times.median, row.times.mad, row.cost.reads_per_cell, row.cost.writes_per_cell, row.gbps(),
+        fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
+        paper != nullptr ? fmt::format("{:.1f}x", paper->times.median / row.times.median) : "-",
+        row.max_rel_error.value_or(0), row.status == Status::wrong ? "  WRONG" : "");
+  }
+  return text +
+         "\nreads and writes: of numbers, or of texels of four, by a cell in one later step (all channels); "
+         "of gather, by a pixel in one cascade.\n";
+}
+
+}  // namespace
+
+Suite layouts_suite() {
+  return {
+      "layouts", "each stage on each layout and storage of volumes; reads, writes, speed-up over half images",
+      [](Session& session, const SuiteOptions& options) {
+        const auto bench = make_bench(session, options, options.settings);
+        const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
+        std::vector<Group> groups;
+        for (const Timed& timed :
+             {Timed{"inject", false}, {"propagate", false}, {"propagate", true}, {"gather", false}}) {
+          for (const std::string& basis : bases)
+            groups.push_back(
+                {[bench, options, basis, timed] { return cases(*bench, options, basis, timed); }});
+        }
+        return groups;
+      },
+      table};
+}
+
+}  // namespace clpv::bench
