@@ -8,7 +8,9 @@
 #include "bench/propagate_twin.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pipeline/propagate.hpp"
+#include "pipeline/tuning.hpp"
 #include "reference/tolerances.hpp"
+#include "support/log.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -110,6 +112,19 @@ std::string twin_key(const Variant& v) {
                      v.grid, v.iterations, v.cascade.value_or(0));
 }
 
+/// The variant with the user's tuning for it, where it names no shape itself.
+Variant tuned(const Device& device, Variant v) {
+  if (v.lanes != 0 || v.local[0] != 0) return v;
+  const auto cache = TuningCache::of_user();
+  if (!cache) return v;
+  const auto tuning = cache->load(device, {v.basis, v.transport, v.state, v.grid, v.storage, v.layout});
+  if (!tuning) return v;
+  spdlog::debug("tuned: {} cells a work-item, work-groups of {} x {}", tuning->lanes, tuning->local[0],
+                tuning->local[1]);
+  v.lanes = tuning->lanes, v.local = tuning->local;
+  return v;
+}
+
 }  // namespace
 
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
@@ -131,7 +146,8 @@ Deviation compare_volumes(const std::vector<float>& device, const std::vector<do
 
 Job propagate_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
-  const auto p = std::make_shared<Propagation>(session, variant);
+  const auto p =
+      std::make_shared<Propagation>(session, bench.tuned ? tuned(session.device(), variant) : variant);
   const int cascade = variant.cascade.value_or(0);
   p->injected.write(session, bench.inputs().light(*p->basis, cascade));
   if (p->geometry) p->geometry->write(session, bench.inputs().geometry(*p->basis, cascade));

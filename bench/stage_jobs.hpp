@@ -27,6 +27,7 @@ struct Bench {
     return *seen;
   }
   std::shared_ptr<Inputs> seen;
+  bool tuned = false;  ///< propagation takes the shapes that `clpv tune` found, where a variant names none
 
   /// The twin's result under `key`, made by `make` the first time.
   template <typename Make>

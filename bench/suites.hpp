@@ -19,6 +19,7 @@ struct SuiteOptions {
   std::vector<std::string> bases;  ///< named by the user; empty: the suite's own
   Settings settings;
   int iterations = 8;  ///< propagation steps
+  bool tuned = false;  ///< propagation takes the shapes that `clpv tune` found
 };
 
 /// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.

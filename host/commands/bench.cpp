@@ -23,6 +23,7 @@ namespace {
 
 struct Options {
   std::string suite, scene, model, filter, format = "table", out, compare, plot;
+  bool no_tune = false;
   bench::BenchOptions bench;
 };
 
@@ -89,6 +90,7 @@ void judge(const std::vector<bench::Row>& rows) {
 void run(Options options, const Shared& shared) {
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
+  options.bench.suite.tuned = !options.no_tune;
   if (!options.out.empty()) check_writable(options.out);
   if (!options.plot.empty()) bench::require_plots(options.plot);
   const nlohmann::json before = earlier_run(options);
@@ -153,6 +155,7 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->add_option("--compare", options->compare,
                    "JSON of an earlier run: prints what changed, and by what spread")
       ->type_name("OLD.json");
+  command->add_flag("--no-tune", options->no_tune, "leave what clpv tune found aside");
   command->add_option("--plot", options->plot, "charts of the rows as SVG and PNG, by matplotlib")
       ->type_name("DIR");
   command->callback([options, &shared] { run(*options, shared); });

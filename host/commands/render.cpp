@@ -28,6 +28,7 @@ struct Options {
   std::vector<std::string> views;
   std::optional<float> exposure;
   GivenOptions frame;
+  bool no_tune = false;
 };
 
 /// FILE.png, or FILE.VIEW.png where there are several.
@@ -104,12 +105,14 @@ void run(const Options& options, const Shared& shared) {
   const Scene scene = load_scene(options.scene, {options.model});
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const Camera& camera = scene.camera(options.camera);
-  const RenderOptions resolved = resolve_options(options.frame, scene);
+  RenderOptions resolved = resolve_options(options.frame, scene);
   progress.advance();
 
   stats.begin_startup();
   Session session(choose_device(shared.device), ProgramCache::of_user());
-  Frame frame(session, scene, resolved);
+  const Tuning tuning =
+      options.no_tune ? Tuning{} : tuning_for(session.device(), resolved, !options.frame.contains("layout"));
+  Frame frame(session, scene, resolved, tuning);
   stats.end_startup(session);
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
                 session.device().driver);
@@ -177,6 +180,7 @@ void add_render(CLI::App& app, Shared& shared) {
       ->add_option("--dump-volume", options->dump,
                    "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]")
       ->type_name("DIR");
+  command->add_flag("--no-tune", options->no_tune, "leave what clpv tune found aside");
   add_frame_options(*command, options->frame);
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -79,7 +79,7 @@ const RenderOptions& checked(const Session& session, const RenderOptions& option
 
 }  // namespace
 
-Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
+Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options, const Tuning& tuning)
     : session_(session),
       scene_(scene),
       basis_(make_basis(options)),
@@ -93,7 +93,9 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
                    .state = options.travelling(),
                    .lobe_time = options.lobes_made(),
                    .table = options.table_storage(),
-                   .format = options.format()}),
+                   .format = options.format(),
+                   .lanes = tuning.lanes,
+                   .local = tuning.local}),
       gatherer_(session, *basis_, transport_, gather_options(options)),
       shader_(session),
       injected_(session, light_shape(options, *basis_), "injected light", options.format()) {

@@ -17,6 +17,7 @@
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/shade.hpp"
+#include "pipeline/tuning.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -35,7 +36,8 @@ using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 class Frame {
  public:
   /// Throws Error(run_time) where the device's memory does not suffice, naming a grid that would fit.
-  Frame(Session& session, const Scene& scene, const RenderOptions& options);
+  /// `tuning`: launch shapes of propagation, for options.layout; by default the usual ones.
+  Frame(Session& session, const Scene& scene, const RenderOptions& options, const Tuning& tuning = {});
 
   /// Enqueues all stages, marked on the session's timeline; shaded views are there once the queue is finished.
   /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).

@@ -24,6 +24,7 @@ class Stencil {
   Stencil(const Device& device, const StencilOptions& options);
 
   int lanes() const { return options_.lanes; }
+  const std::array<std::size_t, 2>& local() const { return options_.local; }
   /// CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X, CLPV_LOCAL_Y and the format's.
   void add_literals(Literals& literals) const;
   /// Once through the grid for each of `channels`, which are stacked along z.

@@ -1,0 +1,32 @@
+// Finds the launch shapes and the layout that propagate fastest on a device.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/suites.hpp"
+#include "pipeline/tuning.hpp"
+
+namespace clpv::bench {
+
+struct TuneOptions {
+  SuiteOptions suite;  ///< bases: those to tune
+  std::string transport = "upwind", state = "coefficients", storage = "float";
+  bool occlusion = true;
+  int repetitions = 7;
+};
+
+/// One subject's outcome: the shape that is used without tuning, and the best.
+struct Tuned {
+  TuningSubject subject;
+  Tuning best;
+  double usual_ms = 0, best_ms = 0;
+};
+
+/// For each basis: every layout with every candidate shape, then the layout that is fastest (subject.layout empty, its
+/// usual_ms that of `soa`). The usual shape stays where none is faster by kLeastGain. Shapes whose output was wrong, or
+/// that the device refuses, do not count. Reports come as work goes on, on the log.
+std::vector<Tuned> tune(Session& session, const TuneOptions& options);
+inline constexpr double kLeastGain = 0.03;
+
+}  // namespace clpv::bench

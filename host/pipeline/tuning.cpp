@@ -1,0 +1,98 @@
+#include "pipeline/tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/options.hpp"
+#include "pipeline/volume_format.hpp"
+#include "scene/json_schema.hpp"
+#include "support/cache_folder.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kWidestGroup = 4096;  // work-items along an axis; devices refuse more than they have anyway
+
+/// Everything a tuning depends on, this version of the kernels included.
+std::string key_of(const Device& device, const TuningSubject& s) {
+  return fmt::format("{}\n{}\n{}\n{}\n{}\npropagate {} {} {} {} {} {}", device.platform,
+                     device.platform_version, device.name, device.driver, CLPV_VERSION, s.basis, s.transport,
+                     s.state, s.grid, s.storage, s.layout);
+}
+
+void require_sound(const nlohmann::json& entry, const std::string& file) {
+  const std::vector<Rule> rules = {rule::object(""),
+                                   rule::integer("/schema", 1, 1).must(),
+                                   rule::text("/key").must(),
+                                   rule::text("/layout", layout_names()).must(),
+                                   rule::choice("/lanes", {1, 8}).must(),
+                                   rule::list("/local", 2, 2).must(),
+                                   rule::integer("/local/*", 1, kWidestGroup)};
+  check_rules(entry, rules, file);
+}
+
+}  // namespace
+
+std::optional<TuningCache> TuningCache::of_user() {
+  if (const auto folder = user_cache_folder()) return TuningCache(*folder);
+  return std::nullopt;
+}
+
+std::filesystem::path TuningCache::file_of(const Device& device, const TuningSubject& subject) const {
+  return folder_ / (Fingerprint().add(key_of(device, subject)).hex() + ".tuning");
+}
+
+std::optional<Tuning> TuningCache::load(const Device& device, const TuningSubject& subject) const {
+  const std::filesystem::path file = file_of(device, subject);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  const nlohmann::json entry = nlohmann::json::parse(in, nullptr, false);
+  try {
+    if (entry.is_discarded()) throw Error(ExitCode::bad_input, "{}: not JSON", file.string());
+    require_sound(entry, file.string());
+  } catch (const Error& error) {
+    spdlog::warn("tuning ignored: {}; clpv tune makes it anew", error.what());
+    return std::nullopt;
+  }
+  if (entry.at("key") != key_of(device, subject)) return std::nullopt;
+  return Tuning{{entry.at("local")[0], entry.at("local")[1]}, entry.at("lanes"), entry.at("layout")};
+}
+
+void TuningCache::store(const Device& device, const TuningSubject& subject, const Tuning& tuning) const {
+  const std::filesystem::path file = file_of(device, subject);
+  std::error_code failed;
+  std::filesystem::create_directories(folder_, failed);
+  if (failed) throw Error(ExitCode::run_time, "{}: {}", folder_.string(), failed.message());
+  const nlohmann::json entry = {{"schema", 1},
+                                {"key", key_of(device, subject)},
+                                {"layout", tuning.layout},
+                                {"lanes", tuning.lanes},
+                                {"local", tuning.local}};
+  write_file(file, entry.dump(2) + "\n");
+}
+
+Tuning tuning_for(const Device& device, RenderOptions& options, bool choose_layout) {
+  const auto cache = TuningCache::of_user();
+  if (!cache) return {};
+  TuningSubject subject{options.basis, options.transport, options.state, options.grid, options.storage, {}};
+  if (choose_layout) {
+    if (const auto best = cache->load(device, subject)) options.layout = best->layout;
+  }
+  subject.layout = options.layout;
+  const auto tuning = cache->load(device, subject);
+  if (!tuning) {
+    spdlog::debug("propagation of {} is not tuned for {}", options.basis, device.name);
+    return {};
+  }
+  spdlog::debug("tuned: layout {}, {} cells a work-item, work-groups of {} x {}", tuning->layout,
+                tuning->lanes, tuning->local[0], tuning->local[1]);
+  return *tuning;
+}
+
+}  // namespace clpv

@@ -1,0 +1,275 @@
+// Benchmarks: statistics, the fast twin and the baseline against the plain twin, reports, comparison of runs, and what
+// `clpv bench` and `clpv tune` do as a user meets them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "bench/baseline/propagate_avx2.hpp"
+#include "bench/ceilings.hpp"
+#include "bench/compare_runs.hpp"
+#include "bench/propagate_twin.hpp"
+#include "bench/report.hpp"
+#include "bench/statistics.hpp"
+#include "reference/propagate.hpp"
+#include "scene/json_schema.hpp"
+#include "support/error.hpp"
+#include "tests/run_program.hpp"
+
+namespace clpv::bench {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kProgram = CLPV_PROGRAM;
+
+TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
+  const Statistics s = statistics_of({5, 1, 4, 2, 103});
+  EXPECT_EQ(s.min, 1);
+  EXPECT_EQ(s.median, 4);
+  EXPECT_EQ(s.max, 103);
+  EXPECT_EQ(s.mad, 2);                     // of 3 2 0 1 99
+  EXPECT_NEAR(s.p95, 5 + 0.8 * 98, 1e-9);  // between the 4th and the 5th, at 3.8
+  EXPECT_EQ(statistics_of({}).median, 0);
+}
+
+TEST(BenchStatistics, ExponentOfAPower) {
+  EXPECT_NEAR(growth_exponent({16, 32, 64}, {3 * 16.0 * 16 * 16, 3 * 32.0 * 32 * 32, 3 * 64.0 * 64 * 64}), 3,
+              1e-9);
+}
+
+/// Light in some cells, blockers at some corners, both at random.
+struct Scene {
+  reference::Volume light, geometry;
+  Scene(const Basis& basis, int n) : light(n, basis.size()), geometry(n + 1, basis.size(), 1) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    for (double& value : light.values) value = std::max(0.0f, uniform(random));
+    for (double& value : geometry.values) value = 0.3f * uniform(random);
+  }
+};
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = a.size() == b.size() ? 0 : INFINITY;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    worst = std::max(worst, std::abs(a[i] - b[i]));
+  return worst;
+}
+
+class FastTwin : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(FastTwin, IsThePlainTwin) {
+  const auto& [name, transport_name] = GetParam();
+  const auto basis = make_basis(name);
+  const Transport transport = make_transport(transport_name, *basis);
+  const Scene scene(*basis, 5);
+  for (const reference::Volume* geometry :
+       {static_cast<const reference::Volume*>(nullptr), &scene.geometry}) {
+    const auto plain = reference::propagate(*basis, transport, scene.light, geometry, 3);
+    double most = 0;
+    for (const double value : plain.accumulated.values) most = std::max(most, std::abs(value));
+    EXPECT_LT(
+        largest_difference(propagated(*basis, transport, scene.light, geometry, 3), plain.accumulated.values),
+        1e-12 * most);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Transports, FastTwin,
+                         ::testing::Values(std::pair{"sh2", "sampled"}, std::pair{"srbf4", "exact"},
+                                           std::pair{"srbf8v2", "upwind"},
+                                           std::pair{"sh2", "semi-lagrangian"}));
+
+TEST(BenchBaseline, IsThePlainTwin) {
+  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+  const auto basis = make_basis("sh2");
+  const Transport transport = make_transport("sampled", *basis);
+  const Scene scene(*basis, 8);
+  Baseline baseline(*basis, transport, 8);
+  const std::vector<float> light(scene.light.values.begin(), scene.light.values.end());
+  const std::vector<float> corners(scene.geometry.values.begin(), scene.geometry.values.end());
+  for (const bool blocked : {false, true}) {
+    baseline.set(light, blocked ? &corners : nullptr);
+    baseline.propagate(4);
+    const std::vector<float> found = baseline.accumulated();
+    const auto plain =
+        reference::propagate(*basis, transport, scene.light, blocked ? &scene.geometry : nullptr, 4);
+    double most = 0;
+    for (const double value : plain.accumulated.values) most = std::max(most, std::abs(value));
+    EXPECT_LT(largest_difference({found.begin(), found.end()}, plain.accumulated.values), 2e-6 * most)
+        << (blocked ? "blocked" : "free");
+  }
+  EXPECT_THROW(Baseline(*basis, transport, 12), Error);
+}
+
+TEST(BenchCeilings, TheLongestOfTheLeastTimesBinds) {
+  Ceilings ceilings{100, {{1e6, 50}, {1e9, 10}}, 0.001};
+  Row row;
+  row.times.median = 4;
+  row.cost = {.flops = 1e8, .bytes = 5e6, .working_set = 5e5};  // 1 ms, 0.1 ms in cache
+  bind(ceilings, row);
+  EXPECT_EQ(row.ceiling, "fma");
+  EXPECT_NEAR(row.ceiling_share, 0.25, 1e-9);
+  row.cost.working_set = 2e6, row.cost.bytes = 2e7;  // out of the cache: 2 ms
+  bind(ceilings, row);
+  EXPECT_EQ(row.ceiling, "bandwidth");
+  EXPECT_NEAR(row.ceiling_share, 0.5, 1e-9);
+  EXPECT_EQ(ceilings.gbps(1e12), 10);
+}
+
+TEST(BenchReport, CsvQuotesWhatItMustAndKeepsColumns) {
+  Row plain, odd;
+  plain.name = "a", odd.name = "b";
+  odd.status = Status::unsupported;
+  odd.reason = "no \"images\", none";
+  const std::string csv = report_csv({plain, odd});
+  EXPECT_THAT(csv, HasSubstr("\"no \"\"images\"\", none\""));
+  std::istringstream lines(csv);
+  std::string head, first;
+  std::getline(lines, head);
+  std::getline(lines, first);
+  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(first.begin(), first.end(), ','));
+}
+
+nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>& rows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [name, median, mad] : rows)
+    list.push_back({{"name", name}, {"status", "ok"}, {"median", median}, {"mad", mad}});
+  return {{"context", {{"schema", 1}}}, {"benchmarks", list}};
+}
+
+TEST(BenchCompare, TellsAChangeFromTheSpread) {
+  const auto before =
+      report({{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
+  const auto after =
+      report({{"same", 10.05, 0.1}, {"slow", 13, 0.1}, {"noisy", 13, 2}, {"fast", 5, 0}, {"new", 1, 0}});
+  const Comparison found = compare_runs(before, after, "old.json");
+  ASSERT_EQ(found.changes.size(), 4u);
+  EXPECT_FALSE(found.changes[0].clear);
+  EXPECT_TRUE(found.changes[1].clear);
+  EXPECT_NEAR(found.changes[1].ratio(), 1.3, 1e-12);
+  EXPECT_FALSE(found.changes[2].clear);
+  EXPECT_TRUE(found.changes[3].clear);
+  EXPECT_EQ(found.only_before, std::vector<std::string>{"gone"});
+  EXPECT_EQ(found.only_after, std::vector<std::string>{"new"});
+  const std::string table = comparison_table(found);
+  EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 SLOWER"));
+  EXPECT_THAT(table, HasSubstr("0.500 faster"));
+}
+
+TEST(BenchCompare, RefusesWhatIsNoReport) {
+  EXPECT_THROW(compare_runs(nlohmann::json::array(), report({}), "old.json"), Error);
+  EXPECT_THROW(
+      compare_runs({{"context", {{"schema", 2}}}, {"benchmarks", nlohmann::json::array()}}, report({}), "o"),
+      Error);
+}
+
+/// Every key of docs/benchmarks.md, in its range.
+std::vector<Rule> row_schema() {
+  std::vector<Rule> rules = {rule::object(""),
+                             rule::object("/context").must(),
+                             rule::list("/benchmarks", 1, 1000).must(),
+                             rule::integer("/context/schema", 1, 1).must(),
+                             rule::number("/context/ceilings/gflops", 1e-3, 1e9).must(),
+                             rule::object("/benchmarks/*")};
+  for (const char* key : {"date", "host_name", "device", "driver", "platform", "build_options", "kernel_hash",
+                          "git_describe", "host_cpu", "clpv_version", "executable", "library_build_type"})
+    rules.push_back(rule::text(std::string("/context/") + key).must());
+  const std::string row = "/benchmarks/*/";
+  for (const char* key :
+       {"name", "run_name", "suite", "stage", "basis", "layout", "storage", "state", "lobe", "transport"})
+    rules.push_back(rule::text(row + key).must());
+  rules.push_back(rule::text(row + "run_type", {"iteration"}).must());
+  rules.push_back(rule::text(row + "status", {"ok", "unsupported", "wrong"}).must());
+  rules.push_back(rule::text(row + "time_unit", {"ms"}).must());
+  rules.push_back(rule::text(row + "ceiling", {"fma", "bandwidth", "launch"}).must());
+  rules.push_back(rule::flag(row + "occlusion").must());
+  rules.push_back(rule::list(row + "samples_ms", 3, 3).must());
+  for (const char* key : {"n", "grid", "iterations", "repetitions", "threads", "family_index"})
+    rules.push_back(rule::integer(row + key, 0, 1e6).must());
+  for (const char* key : {"min", "median", "p95", "max", "mad", "real_time", "cpu_time", "wall_ms",
+                          "first_launch_ms", "build_ms", "flops", "bytes", "reads_per_cell",
+                          "writes_per_cell", "gflops", "gbps", "max_rel_error", "tolerance"})
+    rules.push_back(rule::number(row + key, 0, 1e15).must());
+  rules.push_back(rule::number(row + "ceiling_share", 0, 2).must());
+  return rules;
+}
+
+const std::string kOneRow = " bench bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";
+
+TEST(BenchProgram, JsonHasEveryKeyAndComparesWithItself) {
+  const test::TemporaryFolder folder;
+  const std::string old = (folder.path() / "old.json").string();
+  const auto out = test::run(kProgram + kOneRow + " --format json --out " + old);
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_EQ(out.out, "");
+  nlohmann::json document = nlohmann::json::parse(test::read_file(old));
+  EXPECT_NO_THROW(check_rules(document, row_schema(), old));
+  const nlohmann::json& row = document["benchmarks"][0];
+  EXPECT_EQ(row["name"], "propagate/sh2/soa/float");
+  EXPECT_EQ(row["status"], "ok");
+  EXPECT_LE(row["max_rel_error"], row["tolerance"]);
+  EXPECT_GT(row["flops"], 32.0 * 32 * 32 * 3 * 8 * 36);  // at least the multiply-adds of docs/method.md
+
+  document["benchmarks"][0]["median"] = 1e-3 * row["median"].get<double>();
+  std::ofstream(old) << document.dump();
+  const auto compared = test::run(kProgram + kOneRow + " --compare " + old);
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("SLOWER"));
+}
+
+TEST(BenchProgram, AnAlteredLiteralIsCaught) {
+  const test::TemporaryFolder folder;
+  std::string text = test::read_file(std::string(CLPV_SOURCE_DIR) + "/kernels/propagate.cl");
+  const std::string sum = "r.c##i = a.c##i + b.c##i;";
+  const auto at = text.find(sum);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, sum.size(), "r.c##i = a.c##i + 1.0001f * b.c##i;");
+  std::ofstream(folder.path() / "propagate.cl") << text;
+  const auto out = test::run("CLPV_KERNEL_DIR=" + folder.path().string() + " CLPV_PROGRAM_CACHE=off " +
+                             kProgram + kOneRow);
+  EXPECT_EQ(out.exit_code, static_cast<int>(ExitCode::validation)) << out.out << out.err;
+  EXPECT_THAT(out.out, HasSubstr("WRONG"));
+  EXPECT_THAT(out.err, HasSubstr("propagate/sh2/soa/float"));
+}
+
+TEST(BenchProgram, RefusesBadUsage) {
+  const auto code = [](const std::string& arguments) {
+    return test::run(kProgram + " bench " + arguments).exit_code;
+  };
+  EXPECT_EQ(code("nothing"), 2);
+  EXPECT_EQ(code("bases --filter '['"), 2);
+  EXPECT_EQ(code("ceilings --filter nothing-of-that-name"), 2);
+  EXPECT_EQ(code("bases --repetitions 0"), 2);
+  EXPECT_EQ(code("bases --basis sh17"), 2);
+  EXPECT_EQ(code("bases --format xml"), 2);
+  EXPECT_EQ(code("bases --model x.gltf"), 2);
+  EXPECT_EQ(code("ceilings --format json --compare old.json"), 2);
+  EXPECT_EQ(code("ceilings --compare /nowhere/old.json"), 3);
+  EXPECT_EQ(code("ceilings --out /nowhere/new.json"), 1);
+}
+
+TEST(BenchProgram, PlotSaysWhatIsMissing) {
+  const test::TemporaryFolder folder;
+  const auto out = test::run("PATH=/nowhere " + kProgram + " bench ceilings --filter launch --plot " +
+                             folder.path().string());
+  EXPECT_EQ(out.exit_code, 1);
+  EXPECT_THAT(out.err, HasSubstr("python3"));
+}
+
+TEST(BenchProgram, PlotDrawsTheRoofline) {
+  if (test::run("python3 -c 'import matplotlib'").exit_code != 0) GTEST_SKIP() << "no matplotlib";
+  const test::TemporaryFolder folder;
+  const auto out = test::run(kProgram + kOneRow + " --plot " + folder.path().string());
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(test::read_file(folder.path() / "roofline.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(test::read_file(folder.path() / "roofline.png"), HasSubstr("PNG"));
+}
+
+}  // namespace
+}  // namespace clpv::bench

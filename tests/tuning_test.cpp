@@ -1,0 +1,119 @@
+// Tunings: kept, found again, ignored where they are damaged; and `clpv tune` with the program that uses them.
+#include "pipeline/tuning.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/error.hpp"
+#include "tests/run_program.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Device some_device() {
+  Device device;
+  device.platform = "Platform", device.name = "Device", device.driver = "1.0";
+  return device;
+}
+
+const TuningSubject kSubject{"sh2", "sampled", "coefficients", 32, "float", "soa"};
+const Tuning kTuning{{16, 2}, 8, "soa"};
+
+TEST(Tuning, IsFoundAgainForItsOwnDeviceAndSubject) {
+  const test::TemporaryFolder folder;
+  const TuningCache cache(folder.path() / "not" / "yet");
+  EXPECT_FALSE(cache.load(some_device(), kSubject));
+  cache.store(some_device(), kSubject, kTuning);
+  ASSERT_TRUE(cache.load(some_device(), kSubject));
+  EXPECT_EQ(*cache.load(some_device(), kSubject), kTuning);
+  Device other = some_device();
+  other.driver = "1.1";
+  EXPECT_FALSE(cache.load(other, kSubject));
+  TuningSubject bigger = kSubject;
+  bigger.grid = 64;
+  EXPECT_FALSE(cache.load(some_device(), bigger));
+}
+
+TEST(Tuning, DamageIsIgnored) {
+  const test::TemporaryFolder folder;
+  const TuningCache cache(folder.path());
+  cache.store(some_device(), kSubject, kTuning);
+  const auto file = cache.file_of(some_device(), kSubject);
+  const std::string whole = test::read_file(file);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  for (const std::string& text :
+       {std::string(), whole.substr(0, whole.size() / 2), with("\"lanes\": 8", "\"lanes\": 7"),
+        with("\"lanes\": 8", "\"lanes\": \"x\""), with("16", "0"), with("\"soa\"", "\"sao\""),
+        std::string("[1, 2]")}) {
+    std::ofstream(file, std::ios::trunc) << text;
+    EXPECT_FALSE(cache.load(some_device(), kSubject)) << text;
+  }
+  std::ofstream(file, std::ios::trunc) << whole;
+  EXPECT_TRUE(cache.load(some_device(), kSubject));
+}
+
+/// A program with a cache of its own.
+struct User {
+  test::TemporaryFolder home;
+  test::Outcome run(const std::string& arguments) const {
+    return test::run("XDG_CACHE_HOME=" + home.path().string() + " " + CLPV_PROGRAM + " " + arguments);
+  }
+};
+
+TEST(TuneProgram, RenderUsesWhatWasFoundUnlessToldNotTo) {
+  const User user;
+  const auto tuned = user.run("tune --basis sh2 --grid 8 --repetitions 1 --json");
+  ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
+  EXPECT_THAT(tuned.out, HasSubstr("\"chosen\": true"));
+  const std::string render = std::string(" render ") + CLPV_SOURCE_DIR +
+                             "/scenes/cornell.json --basis sh2 --grid 8 --width 32 --height 24 -o " +
+                             (user.home.path() / "a.exr").string();
+  const auto used = user.run("-v" + render);
+  ASSERT_EQ(used.exit_code, 0) << used.err;
+  EXPECT_THAT(used.err, HasSubstr("tuned: layout"));
+  EXPECT_THAT(user.run("-v" + render + " --no-tune").err, Not(HasSubstr("tuned")));
+
+  for (const auto& entry : std::filesystem::directory_iterator(user.home.path() / "clpv")) {
+    if (entry.path().extension() == ".tuning") std::ofstream(entry.path(), std::ios::trunc) << "{";
+  }
+  const auto damaged = user.run(render);
+  EXPECT_EQ(damaged.exit_code, 0) << damaged.err;
+  EXPECT_THAT(damaged.err, HasSubstr("tuning ignored"));
+}
+
+TEST(TuneProgram, RefusesBadUsage) {
+  const User user;
+  EXPECT_EQ(user.run("tune --basis sh17").exit_code, 2);
+  EXPECT_EQ(user.run("tune --state fluxes").exit_code, 2);
+  EXPECT_EQ(user.run("tune --grid 0").exit_code, 2);
+}
+
+TEST(ProgramCache, TwoProcessesAtOnceShareAnEmptyCache) {
+  const User user;
+  const auto render = [&](const std::string& image) {
+    return "XDG_CACHE_HOME=" + user.home.path().string() + " " + CLPV_PROGRAM + " -vv render " +
+           CLPV_SOURCE_DIR +
+           "/scenes/cornell.json --preset paper --basis sh2 --grid 8 --width 16 --height 12 -o " +
+           (user.home.path() / image).string();
+  };
+  const auto both = test::run(render("a.png") + " & first=$!; " + render("b.png") + " && wait $first");
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  const auto third = test::run(render("c.png"));
+  EXPECT_EQ(third.exit_code, 0) << third.err;
+  EXPECT_THAT(third.err, HasSubstr("from the cache"));
+  EXPECT_THAT(third.err, Not(HasSubstr("compiled in")));
+  for (const char* image : {"b.png", "c.png"})
+    EXPECT_EQ(test::read_file(user.home.path() / image), test::read_file(user.home.path() / "a.png"));
+}
+
+}  // namespace
+}  // namespace clpv
