@@ -29,14 +29,15 @@ struct Injection {
   static InjectOptions options_of(const Variant& v) {
     InjectOptions options = Inputs::published_injection(v.grid);
     options.format = format_of(v);
+    options.lobes = lobe_options(v);
     return options;
   }
 };
 
 /// Both volumes, one after the other.
-std::vector<double> twin_of(const Injection& injection, const Inputs::Seen& seen) {
+std::vector<double> twin_of(const Injection& injection, const Inputs::Seen& seen,
+                            const InjectOptions& options) {
   const int grid = static_cast<int>(seen.grid.n), n = injection.basis->size();
-  const InjectOptions options = Inputs::published_injection(grid);
   reference::Volume light(grid, n, 3);
   reference::inject_light(seen.rsm_image, seen.grid, *injection.basis, options, light);
   std::vector<double> values = std::move(light.values);
@@ -112,9 +113,10 @@ Job inject_job(Bench& bench, const Variant& variant) {
     p->injector.inject_geometry(seen.camera, seen.grid, *p->geometry);
   };
   job.verify = [p, &bench, &seen, variant] {
-    const std::string key = fmt::format("inject {} {} {} {} {}", variant.basis, variant.lambda,
-                                        variant.occlusion, variant.grid, variant.cascade.value_or(0));
-    const auto twin = bench.twin(key, [&] { return twin_of(*p, seen); });
+    const std::string key =
+        fmt::format("inject {} {} {} {} {} {}", variant.basis, variant.lambda, variant.lobe,
+                    variant.occlusion, variant.grid, variant.cascade.value_or(0));
+    const auto twin = bench.twin(key, [&] { return twin_of(*p, seen, Injection::options_of(variant)); });
     Deviation deviation{0, tolerance_of("inject", variant.storage), {}};
     const std::vector<float> light = p->light.read(bench.session);
     compare(*p->basis, light, twin->data(), variant.grid, "light", deviation);

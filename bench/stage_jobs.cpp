@@ -41,7 +41,9 @@ double tolerance_of(const std::string& stage, const std::string& storage) {
 }
 
 LobeOptions lobe_options(const Variant& variant) {
-  return {.kind = variant.lobe == "exact" ? LobeKind::exact : LobeKind::rotate};
+  LobeOptions options;
+  options.kind = variant.lobe == "exact" ? LobeKind::exact : LobeKind::rotate;
+  return options;
 }
 
 State state_of(const Variant& variant) {
