@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <vector>
 
 #include "support/error.hpp"
@@ -57,10 +59,22 @@ class Scratch {
   int handle_;
 };
 
-/// Runs `python3 arguments...`, its output into `said`. -1 where there is no python3.
-int run_python(std::vector<std::string> arguments, std::string& said) {
+/// Every python3 in the path: the first need not be the one that has matplotlib.
+std::vector<std::string> pythons() {
+  const char* path = std::getenv("PATH");
+  std::vector<std::string> found;
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string candidate = folder + "/python3";
+    if (access(candidate.c_str(), X_OK) == 0) found.push_back(candidate);
+  }
+  return found;
+}
+
+/// Runs `python arguments...`, its output into `said`.
+int run_python(const std::string& python, std::vector<std::string> arguments, std::string& said) {
   const Scratch output;
-  arguments.insert(arguments.begin(), "python3");
+  arguments.insert(arguments.begin(), python);
   std::vector<char*> raw;
   for (std::string& argument : arguments) raw.push_back(argument.data());
   raw.push_back(nullptr);
@@ -69,7 +83,7 @@ int run_python(std::vector<std::string> arguments, std::string& said) {
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.name().c_str(), O_WRONLY | O_TRUNC, 0600);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, "python3", &actions, nullptr, raw.data(), environ);
+  const int failed = posix_spawn(&child, python.c_str(), &actions, nullptr, raw.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) return -1;
   int status = 0;
@@ -79,17 +93,23 @@ int run_python(std::vector<std::string> arguments, std::string& said) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// The first python3 with matplotlib.
+std::string drawing_python() {
+  const std::vector<std::string> all = pythons();
+  if (all.empty()) throw Error(ExitCode::run_time, "--plot needs python3, which is not in the path");
+  std::string said;
+  for (const std::string& python : all) {
+    if (run_python(python, {"-c", "import matplotlib"}, said) == 0) return python;
+  }
+  throw Error(ExitCode::run_time,
+              "--plot needs matplotlib (Debian's python3-matplotlib), which {} does not find", all.front());
+}
+
 }  // namespace
 
 void require_plots(const fs::path& folder) {
   script();
-  std::string said;
-  const int code = run_python({"-c", "import matplotlib"}, said);
-  if (code < 0) throw Error(ExitCode::run_time, "--plot needs python3, which is not in the path");
-  if (code != 0) {
-    throw Error(ExitCode::run_time,
-                "--plot needs matplotlib (Debian's python3-matplotlib), which python3 does not find");
-  }
+  drawing_python();
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) throw Error(ExitCode::run_time, "--plot {}: {}", folder.string(), failed.message());
@@ -100,7 +120,7 @@ void plot(const nlohmann::json& report, const fs::path& folder) {
   const Scratch input;
   std::ofstream(input.name()) << report.dump();
   std::string said;
-  const int code = run_python({script().string(), input.name(), folder.string()}, said);
+  const int code = run_python(drawing_python(), {script().string(), input.name(), folder.string()}, said);
   if (code != 0)
     throw Error(ExitCode::run_time, "--plot: {} ended with {}: {}", script().string(), code, said);
 }

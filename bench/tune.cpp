@@ -22,8 +22,8 @@ std::vector<Tuning> candidates(const Device& device, const Variant& variant) {
     if (variant.layout == "soa" && variant.storage == "float" && lanes != usual_lanes && device.type == "cpu")
       continue;
     const std::size_t row = static_cast<std::size_t>((variant.grid + lanes - 1) / lanes);
-    for (const std::size_t x : {row, row / 2, row / 4}) {
-      for (const std::size_t y : {1u, 2u, 4u}) {
+    for (const std::size_t x : {row, row / 2}) {
+      for (const std::size_t y : {1u, 4u}) {
         if (x == 0 || x > limits[0] || y > limits[1] || x * y > most) continue;
         const Tuning shape{{x, y}, lanes, variant.layout};
         if (std::count(shapes.begin(), shapes.end(), shape) == 0) shapes.push_back(shape);
@@ -80,8 +80,8 @@ std::optional<Tuned> best_shape(Bench& bench, const Variant& variant, const Tune
 
 std::vector<Tuned> tune(Session& session, const TuneOptions& options) {
   constexpr std::size_t kMostShapes =
-      19;  // of candidates(): progress counts those that are not tried as done at once
-  const std::vector<std::string> layouts = layout_names();
+      9;  // of candidates(): progress counts those that are not tried as done at once
+  const std::vector<std::string> layouts = options.layouts.empty() ? layout_names() : options.layouts;
   Progress progress("tune", options.suite.bases.size() * layouts.size() * kMostShapes *
                                 static_cast<std::size_t>(options.repetitions + 1));
   std::vector<Tuned> all;

@@ -10,7 +10,8 @@
 namespace clpv::bench {
 
 struct TuneOptions {
-  SuiteOptions suite;  ///< bases: those to tune
+  SuiteOptions suite;                ///< bases: those to tune
+  std::vector<std::string> layouts;  ///< to choose from; empty: all
   std::string transport = "upwind", state = "coefficients", storage = "float";
   bool occlusion = true;
   int repetitions = 7;

@@ -71,7 +71,8 @@ struct User {
 
 TEST(TuneProgram, RenderUsesWhatWasFoundUnlessToldNotTo) {
   const User user;
-  const auto tuned = user.run("tune --basis sh2 --grid 8 --repetitions 1 --json");
+  const auto tuned =
+      user.run("tune --basis sh2 --grid 8 --layout soa --occlusion off --repetitions 1 --json");
   ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
   EXPECT_THAT(tuned.out, HasSubstr("\"chosen\": true"));
   const std::string render = std::string(" render ") + CLPV_SOURCE_DIR +

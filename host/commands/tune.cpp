@@ -97,6 +97,10 @@ void add_tune(CLI::App& app, Shared& shared) {
   command->add_option("--storage", options->tune.storage, "of volumes")
       ->capture_default_str()
       ->check(CLI::IsMember(storage_names()));
+  command
+      ->add_option("--layout", options->tune.layouts, "layouts to choose from, between commas; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(layout_names()));
   command->add_option("--occlusion", options->occlusion, "whether something blocks in what is timed")
       ->capture_default_str()
       ->check(CLI::IsMember({"on", "off"}));
