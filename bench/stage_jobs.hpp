@@ -15,6 +15,9 @@
 
 namespace clpv::bench {
 
+/// Variant::lobe of lobes that are rotated in propagation's kernel, as the paper does.
+inline constexpr const char* kRunTimeLobes = "rotate-kernel";
+
 /// What the jobs of a suite share.
 struct Bench {
   Session& session;

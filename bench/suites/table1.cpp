@@ -130,7 +130,7 @@ Suite table1_suite() {
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
             std::vector<Group> groups;
-            for (const std::string lobe : {"exact"}) {
+            for (const std::string lobe : {kRunTimeLobes, "exact"}) {
               for (const bool occlusion : {false, true})
                 groups.push_back(
                     {[bench, options, occlusion, lobe] { return cases(*bench, options, occlusion, lobe); }});
