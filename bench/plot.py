@@ -21,6 +21,7 @@ matplotlib.rcParams.update({"svg.hashsalt": "clpv", "axes.spines.top": False, "a
 # Told apart by colour-blind eyes as well (Okabe and Ito).
 COLOURS = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#F0E442", "#000000"]
 DEVICE_CHARS = 70
+CLOSEST_LABELS = 0.7  # of the bandwidth before: nearer ones would overlap
 
 
 def save(figure, folder, name, context):
@@ -77,11 +78,15 @@ def draw_roofline(rows, folder, context):
     figure, axis = plt.subplots(figsize=(7.5, 5))
     lowest = min(0.1, min(r["flops"] / r["bytes"] for r in points) / 2)
     highest = max(50.0, max(r["flops"] / r["bytes"] for r in points) * 2)
-    for bandwidth in ceilings["bandwidths"]:
+    labelled = math.inf
+    for bandwidth in sorted(ceilings["bandwidths"], key=lambda b: -b["gbps"]):
         knee = ceilings["gflops"] / bandwidth["gbps"]
         size = bandwidth["working_set"] / 2**20
         label = f"{bandwidth['gbps']:.0f} GB/s at {size:.3g} MiB"
         axis.plot([lowest, knee], [lowest * bandwidth["gbps"], ceilings["gflops"]], color="#999999", lw=0.8)
+        if bandwidth["gbps"] > CLOSEST_LABELS * labelled:
+            continue
+        labelled = bandwidth["gbps"]
         axis.annotate(label, (lowest, lowest * bandwidth["gbps"]), size=6, color="#666666", rotation=30,
                       rotation_mode="anchor", textcoords="offset points", xytext=(2, 2))
     axis.axhline(ceilings["gflops"], color="#444444", lw=1)

@@ -115,6 +115,7 @@ Case frame_case(Session& session, const SuiteOptions& options, const std::string
   Variant variant = plain_variant(options, basis);
   variant.transport = render.transport;
   variant.state = render.state;
+  variant.layout = render.layout, variant.storage = render.storage;
   variant.occlusion = render.occlusion;
   Case result;
   result.row = make_row("frame", "frame", variant, "/" + preset);
