@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "device/session.hpp"
+#include "pipeline/volume_format.hpp"
 
 namespace clpv::reference {
 
@@ -20,6 +22,11 @@ struct CheckResult {
 };
 
 using CheckResults = std::vector<CheckResult>;
+
+/// Formats beside the default soa/float in which the device can hold volumes of this shape.
+std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape);
+/// tolerance(stage), or that of half storage.
+double tolerance_in(std::string_view stage, const VolumeFormat& format);
 
 // One a stage, in reference/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device.
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes

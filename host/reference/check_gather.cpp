@@ -10,6 +10,7 @@
 #include "reference/check.hpp"
 #include "reference/check_surfaces.hpp"
 #include "reference/gather.hpp"
+#include "reference/tolerances.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -31,14 +32,17 @@ struct Variant {
   double floor = 0;
   LobeOptions lobes = {};
   TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};
+  bool filtered = true;  ///< images alone
 };
 
 /// One cascade's sums, on the device and for the twin.
 struct Lit {
   Volume twin;
   clpv::Volume device;
-  Lit(Session& session, int coefficients, std::mt19937& random)
-      : twin(random_light(coefficients, random)), device(session, {kGrid, coefficients, 3}, "check: light") {
+  Lit(Session& session, int coefficients, const VolumeFormat& format, std::mt19937& random)
+      : twin(random_light(coefficients, random)),
+        device(session, {kGrid, coefficients, 3}, "check: light", format) {
     device.write(session, {twin.values.begin(), twin.values.end()});
   }
 };
@@ -55,11 +59,13 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
                               .late_light = variant.late_light,
                               .floor = variant.floor,
                               .lobes = variant.lobes,
-                              .table = variant.table};
+                              .table = variant.table,
+                              .format = variant.format,
+                              .filtered = variant.filtered};
   std::vector<Lit> full, late;
   for (int c = 0; c < kCascades; ++c) {
-    full.emplace_back(session, basis.size(), random);
-    if (variant.late_light) late.emplace_back(session, basis.size(), random);
+    full.emplace_back(session, basis.size(), variant.format, random);
+    if (variant.late_light) late.emplace_back(session, basis.size(), variant.format, random);
   }
   std::vector<const clpv::Volume*> full_volumes, late_volumes;
   std::vector<Cascade> cascades;
@@ -73,8 +79,28 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   Gatherer(session, basis, transport, options).gather(camera, grids, full_volumes, late_volumes, irradiance);
   std::vector<glm::dvec4> twin;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
-  return compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
-                        "gather", fmt::format("{}/{}/{}", basis.name(), transport.name, variant.name));
+  CheckResult result =
+      compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
+                     "gather", fmt::format("{}/{}/{}", basis.name(), transport.name, variant.name));
+  const bool by_filter = variant.format.layout == Layout::image && variant.filtered;
+  result.allowed = by_filter ? tolerance("gather-filter") : tolerance_in("gather", variant.format);
+  return result;
+}
+
+/// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
+void check_formats(Session& session, CheckResults& results) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const Transport transport = make_transport("upwind", *basis);
+  for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
+    Variant variant{.name = format_name(format), .late_light = true, .format = format};
+    if (format.layout == Layout::image) {
+      variant.name += " filter";
+      results.push_back(check_one(session, *basis, transport, variant));
+      variant.name = format_name(format) + " texels";
+      variant.filtered = false;
+    }
+    results.push_back(check_one(session, *basis, transport, variant));
+  }
 }
 
 }  // namespace
@@ -95,6 +121,7 @@ CheckResults check_gather(Session& session, bool thorough) {
     results.push_back(check_one(session, *basis, make_transport("sampled", *basis),
                                 {"table image", false, 0, functions, TableStorage::image}));
   }
+  check_formats(session, results);
   return results;
 }
 

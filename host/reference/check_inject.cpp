@@ -89,10 +89,14 @@ std::vector<glm::dvec3> directions() {
 
 /// The functions, not their coefficients, are compared: where the Gram matrix is ill-conditioned coefficients
 /// differ in directions in which functions hardly do.
-CheckResult compare(const Basis& basis, LobeKind lobes, const std::vector<float>& device, const Volume& twin,
-                    const std::string& variant) {
-  CheckResult result{
-      "inject", variant, 0, tolerance(lobes == LobeKind::rotate ? "inject-rotated" : "inject"), {}};
+CheckResult compare(const Basis& basis, const InjectOptions& options, const std::vector<float>& device,
+                    const Volume& twin, const std::string& variant) {
+  const bool rotated = options.lobes.kind == LobeKind::rotate;
+  CheckResult result{"inject",
+                     variant,
+                     0,
+                     rotated ? tolerance("inject-rotated") : tolerance_in("inject", options.format),
+                     {}};
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
   const auto size = static_cast<std::size_t>(basis.size());
   double largest = 0, worst = 0;
@@ -124,25 +128,26 @@ std::string name_of(const Basis& basis, const char* stage, bool orthographic, Rs
                      format == RsmFormat::paper ? "/paper" : "", options.trilinear ? "/trilinear" : "",
                      options.two_sided ? "" : "/one-sided", options.unit_flux_lobes ? "/unit-flux" : "") +
          (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
-         (options.table == TableStorage::buffer ? "" : "/image");
+         (options.table == TableStorage::buffer ? "" : "/image") +
+         (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format));
 }
 
 CheckResult check_light(Session& session, const Basis& basis, const InjectOptions& options, bool orthographic,
                         RsmFormat format) {
   const Surface surface =
       upload_surface(session, random_surface(basis, options.lobes, orthographic, true, format, 11), format);
-  clpv::Volume light(session, {kGrid, basis.size(), 3}, "check: light");
+  clpv::Volume light(session, {kGrid, basis.size(), 3}, "check: light", options.format);
   Injector(session, basis, options).inject_light(surface, kCells, light);
   Volume twin(kGrid, basis.size(), 3);
   inject_light(read_surface(session, surface), kCells, basis, options, twin);
-  return compare(basis, options.lobes.kind, light.read(session), twin,
+  return compare(basis, options, light.read(session), twin,
                  name_of(basis, "light", orthographic, format, options));
 }
 
 /// Two surfaces, so that they are merged.
 CheckResult check_geometry(Session& session, const Basis& basis, const InjectOptions& options,
                            bool orthographic, RsmFormat format) {
-  clpv::Volume geometry(session, {kGrid + 1, basis.size(), 1}, "check: geometry");
+  clpv::Volume geometry(session, {kGrid + 1, basis.size(), 1}, "check: geometry", options.format);
   Volume twin(kGrid + 1, basis.size(), 1);
   Injector injector(session, basis, options);
   for (const unsigned seed : {12u, 13u}) {
@@ -152,7 +157,7 @@ CheckResult check_geometry(Session& session, const Basis& basis, const InjectOpt
     injector.inject_geometry(surface, kCells, geometry);
     inject_geometry(read_surface(session, surface), kCells, basis, options, twin);
   }
-  return compare(basis, options.lobes.kind, geometry.read(session), twin,
+  return compare(basis, options, geometry.read(session), twin,
                  name_of(basis, "geometry", orthographic, format, options));
 }
 
@@ -173,6 +178,16 @@ void check_rotated(Session& session, const Basis& basis, bool thorough, CheckRes
   results.push_back(check_geometry(session, basis, one_sided, false, RsmFormat::float32));
 }
 
+/// Every other way for volumes to lie in memory. Trilinear injection adds to a cell up to eight times.
+void check_formats(Session& session, CheckResults& results) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  for (const VolumeFormat& format : other_formats(session.device(), {kGrid + 1, basis->size(), 3})) {
+    const InjectOptions options{.grid = kGrid, .trilinear = true, .format = format};
+    results.push_back(check_light(session, *basis, options, false, RsmFormat::float32));
+    results.push_back(check_geometry(session, *basis, options, true, RsmFormat::float32));
+  }
+}
+
 }  // namespace
 
 CheckResults check_inject(Session& session, bool thorough) {
@@ -191,6 +206,7 @@ CheckResults check_inject(Session& session, bool thorough) {
     results.push_back(check_light(session, *basis, plain, false, RsmFormat::paper));
     results.push_back(check_geometry(session, *basis, one_sided, false, RsmFormat::paper));
   }
+  check_formats(session, results);
   return results;
 }
 

@@ -15,15 +15,16 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kGrid = 7;   // no multiple of anything: borders, partial work-groups
-constexpr int kSteps = 5;  // light crosses the grid and meets blockers
+constexpr int kGrid = 7;         // no multiple of anything: borders, partial work-groups
+constexpr int kFormatGrid = 17;  // whole blocks of 8 cells and one cell more
+constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
 /// Lobes of random direction and colour in a third of the cells; what injection leaves.
-Volume random_light(const Basis& basis, std::mt19937& random) {
+Volume random_light(const Basis& basis, int n, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  Volume volume(kGrid, basis.size());
-  for (int cell = 0; cell < kGrid * kGrid * kGrid; ++cell) {
-    const int x = cell % kGrid, y = cell / kGrid % kGrid, z = cell / kGrid / kGrid;
+  Volume volume(n, basis.size());
+  for (int cell = 0; cell < n * n * n; ++cell) {
+    const int x = cell % n, y = cell / n % n, z = cell / n / n;
     const glm::dvec3 d = glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
     if (uniform(random) > -0.33) continue;
     const std::vector<double> lobe = basis.clamped_cosine(d);
@@ -37,12 +38,12 @@ Volume random_light(const Basis& basis, std::mt19937& random) {
 }
 
 /// Two-sided surfels of random direction and cover on half the corners.
-Volume random_blockers(const Basis& basis, std::mt19937& random) {
+Volume random_blockers(const Basis& basis, int n, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  Volume volume(kGrid + 1, basis.size(), 1);
-  for (int z = 0; z <= kGrid; ++z) {
-    for (int y = 0; y <= kGrid; ++y) {
-      for (int x = 0; x <= kGrid; ++x) {
+  Volume volume(n + 1, basis.size(), 1);
+  for (int z = 0; z <= n; ++z) {
+    for (int y = 0; y <= n; ++y) {
+      for (int x = 0; x <= n; ++x) {
         const glm::dvec3 d =
             glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
         const double cover = std::max(0.0, 1.5 * uniform(random));
@@ -80,11 +81,12 @@ CheckResult compare(const std::vector<float>& device, const Volume& twin, double
 CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
                       const PropagateOptions& options, bool blockers) {
   std::mt19937 random(7);
-  const Volume light = random_light(basis, random);
-  const Volume geometry = random_blockers(basis, random);
-  clpv::Volume injected(session, {kGrid, basis.size(), 3}, "check: injected light");
-  clpv::Volume accumulated(session, {kGrid, basis.size(), 3}, "check: accumulated light");
-  clpv::Volume corners(session, {kGrid + 1, basis.size(), 1}, "check: geometry");
+  const int n = options.grid;
+  const Volume light = random_light(basis, n, random);
+  const Volume geometry = random_blockers(basis, n, random);
+  clpv::Volume injected(session, {n, basis.size(), 3}, "check: injected light", options.format);
+  clpv::Volume accumulated(session, {n, basis.size(), 3}, "check: accumulated light", options.format);
+  clpv::Volume corners(session, {n + 1, basis.size(), 1}, "check: geometry", options.format);
   injected.write(session, to_float(light.values));
   corners.write(session, to_float(geometry.values));
   Propagator propagator(session, basis, transport, options);
@@ -92,13 +94,15 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   const Propagation twin = propagate(basis, transport, light, blockers ? &geometry : nullptr, kSteps);
   return compare(
       accumulated.read(session), twin.accumulated,
-      tolerance(options.lobe_time == LobeTime::kernel ? "propagate-run-time-lobes" : "propagate"),
+      options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
+                                            : tolerance_in("propagate", options.format),
       fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
                   options.state == State::fluxes ? "fluxes" : "coefficients", blockers ? "blockers" : "free",
                   transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
                   options.lobe_time == LobeTime::host     ? ""
                   : options.table == TableStorage::buffer ? "/kernel"
-                                                          : "/kernel image"));
+                                                          : "/kernel image") +
+          (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format)));
 }
 
 /// `full`: every transport in both states, with and without blockers.
@@ -134,6 +138,16 @@ void check_run_time_lobes(Session& session, const Basis& basis, bool full, Check
   add("exact", LobeKind::rotate, TableStorage::image);
 }
 
+/// Every other way for volumes to lie in memory: one basis and transport, since these have no part in it.
+void check_formats(Session& session, CheckResults& results) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const Transport transport = make_transport("upwind", *basis);
+  const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
+  for (const VolumeFormat& format : other_formats(session.device(), corners)) {
+    results.push_back(check_one(session, *basis, transport, {.grid = kFormatGrid, .format = format}, true));
+  }
+}
+
 }  // namespace
 
 CheckResults check_propagate(Session& session, bool thorough) {
@@ -153,6 +167,7 @@ CheckResults check_propagate(Session& session, bool thorough) {
       check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
     }
   }
+  check_formats(session, results);
   return results;
 }
 

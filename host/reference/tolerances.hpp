@@ -35,6 +35,16 @@ inline constexpr Tolerance kTolerances[] = {
      "of coefficients, as propagate; lobes made in float32 err in coefficients that hardly change the "
      "function where the "
      "Gram matrix is ill-conditioned; measured 1.1e-7 (sh2), 3.8e-6 (srbf8v3), 6.1e-5 (srbf14)"},
+    {"propagate-half", 4e-3,
+     "numbers of 11 bits: each step rounds what travels and the sum by up to 2^-12 of themselves; measured "
+     "1.4e-3"},
+    {"inject-half", 4e-3,
+     "numbers of 11 bits, rounded once a phase of trilinear injection, times the square root of the Gram "
+     "matrix's condition number; measured 5e-4"},
+    {"gather-half", 2e-3, "numbers of 11 bits, rounded once, N of mixed sign a direction; measured 4e-4"},
+    {"gather-filter", 2e-2,
+     "a device's image filter may keep 8 bits of a weight, along each of three axes, between neighbours as "
+     "far apart as random ones are; PoCL, which filters in float, measured 1e-6"},
     {"shade", 5e-6,
      "float32 light angles and distances; a shadow filter weighs texels by coordinates good to 1e-6 of its "
      "side"},
@@ -55,6 +65,14 @@ inline constexpr Tolerance kTolerances[] = {
 constexpr double tolerance(std::string_view stage) {
   for (const Tolerance& entry : kTolerances) {
     if (entry.stage == stage) return entry.allowed;
+  }
+  return 0.0;
+}
+
+/// The same for volumes of numbers in half.
+constexpr double half_tolerance(std::string_view stage) {
+  for (const Tolerance& entry : kTolerances) {
+    if (entry.stage.starts_with(stage) && entry.stage.substr(stage.size()) == "-half") return entry.allowed;
   }
   return 0.0;
 }

@@ -8,17 +8,21 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   return (((channel * CLPV_PITCH + (z + 1)) * CLPV_PITCH + (y + 1)) * CLPV_PITCH + (x + 1)) * CLPV_VOLUME_COUNT;
 }
 
-#define CLPV_LOAD_LANES(volume, at, x)                                                                  \
-  ((float8)(CLPV_READ(volume, at), CLPV_READ(volume, (at) + CLPV_LANE),                                 \
-            CLPV_READ(volume, (at) + 2 * CLPV_LANE), CLPV_READ(volume, (at) + 3 * CLPV_LANE),           \
-            CLPV_READ(volume, (at) + 4 * CLPV_LANE), CLPV_READ(volume, (at) + 5 * CLPV_LANE),           \
-            CLPV_READ(volume, (at) + 6 * CLPV_LANE), CLPV_READ(volume, (at) + 7 * CLPV_LANE)))
-#define CLPV_STORE_LANES(volume, at, value)             \
-  CLPV_WRITE(volume, at, (value).s0);                   \
-  CLPV_WRITE(volume, (at) + CLPV_LANE, (value).s1);     \
-  CLPV_WRITE(volume, (at) + 2 * CLPV_LANE, (value).s2); \
-  CLPV_WRITE(volume, (at) + 3 * CLPV_LANE, (value).s3); \
-  CLPV_WRITE(volume, (at) + 4 * CLPV_LANE, (value).s4); \
-  CLPV_WRITE(volume, (at) + 5 * CLPV_LANE, (value).s5); \
-  CLPV_WRITE(volume, (at) + 6 * CLPV_LANE, (value).s6); \
-  CLPV_WRITE(volume, (at) + 7 * CLPV_LANE, (value).s7)
+// Eight samples are as many vectors of 8 as there are coefficients: loaded as they lie, then dealt out.
+#define CLPV_DEALT(from, i)                                                                         \
+  ((float8)((from)[i], (from)[CLPV_LANE + i], (from)[2 * CLPV_LANE + i], (from)[3 * CLPV_LANE + i], \
+            (from)[4 * CLPV_LANE + i], (from)[5 * CLPV_LANE + i], (from)[6 * CLPV_LANE + i],        \
+            (from)[7 * CLPV_LANE + i]))
+#define CLPV_LOAD_ROW(i) rows[i] = CLPV_READ_ROW(volume, at + 8 * i);
+#define CLPV_BEFORE_LOAD           \
+  float8 rows[CLPV_VOLUME_COUNT]; \
+  CLPV_VOLUME_EACH(CLPV_LOAD_ROW)
+#define CLPV_LOAD_LANES(i) CLPV_DEALT((const float*)rows, i)
+
+#define CLPV_STORE_ROW(i) CLPV_WRITE_ROW(volume, at + 8 * i, rows[i]);
+#define CLPV_STORE_LANES(i)                                                              \
+  for (int lane = 0; lane < 8; ++lane) {                                                 \
+    ((float*)rows)[lane * CLPV_LANE + i] = ((const float*)&cell.c##i)[lane];             \
+  }
+#define CLPV_BEFORE_STORE float8 rows[CLPV_VOLUME_COUNT];
+#define CLPV_AFTER_STORE CLPV_VOLUME_EACH(CLPV_STORE_ROW)

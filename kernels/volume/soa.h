@@ -8,5 +8,8 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   return channel * (CLPV_VOLUME_COUNT * CLPV_NEXT) + ((z + 1) * CLPV_PITCH + (y + 1)) * CLPV_PITCH + (x + 1);
 }
 
-#define CLPV_LOAD_LANES(volume, at, x) CLPV_READ_ROW(volume, at)
-#define CLPV_STORE_LANES(volume, at, value) CLPV_WRITE_ROW(volume, at, value)
+#define CLPV_BEFORE_LOAD
+#define CLPV_LOAD_LANES(i) CLPV_READ_ROW(volume, at + i * CLPV_NEXT)
+#define CLPV_BEFORE_STORE
+#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c##i);
+#define CLPV_AFTER_STORE

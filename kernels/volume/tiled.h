@@ -23,5 +23,8 @@ CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int
                       : (float8)(row.s7, next.s0, next.s1, next.s2, next.s3, next.s4, next.s5, next.s6);
 }
 
-#define CLPV_LOAD_LANES(volume, at, x) CLPV_PASTE(CLPV_VOLUME, row)(volume, at, x)
-#define CLPV_STORE_LANES(volume, at, value) CLPV_WRITE_ROW(volume, at, value)
+#define CLPV_BEFORE_LOAD
+#define CLPV_LOAD_LANES(i) CLPV_PASTE(CLPV_VOLUME, row)(volume, at + i * CLPV_NEXT, x)
+#define CLPV_BEFORE_STORE
+#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c##i);
+#define CLPV_AFTER_STORE

@@ -1,0 +1,228 @@
+// Volumes in every layout and storage: what is written is read back, what a device lacks is said, and every stage
+// gives the same numbers whatever way its volumes lie in memory.
+#include "pipeline/volume.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "pipeline/convert.hpp"
+#include "pipeline/propagate.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kHalf = 1.0 / 2048;  // half a unit in the last place of 11 bits, relative
+
+Session& session() {
+  static Session one(choose_device());
+  return one;
+}
+
+std::vector<float> random_values(std::size_t count) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<float> values(count);
+  for (float& value : values) value = uniform(random);
+  return values;
+}
+
+std::vector<float> random_values(const VolumeShape& shape) {
+  const auto n = static_cast<std::size_t>(shape.n);
+  return random_values(n * n * n * static_cast<std::size_t>(shape.coefficients * shape.channels));
+}
+
+/// Formats this device has, the default one among them.
+std::vector<VolumeFormat> formats(const VolumeShape& shape) {
+  std::vector<VolumeFormat> found;
+  for (const VolumeFormat& format : all_formats()) {
+    if (!unsupported(session().device(), format, shape)) found.push_back(format);
+  }
+  return found;
+}
+
+void expect_near(const std::vector<float>& found, const std::vector<float>& wanted, double allowed) {
+  ASSERT_EQ(found.size(), wanted.size());
+  double largest = 0;
+  for (const float value : wanted) largest = std::max(largest, std::abs(static_cast<double>(value)));
+  ASSERT_GT(largest, 0);
+  for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], wanted[i], allowed * largest) << i;
+}
+
+TEST(Volume, NamesOfFormatsAreReadBack) {
+  EXPECT_EQ(all_formats().size(), 8u);
+  for (const VolumeFormat& format : all_formats()) {
+    EXPECT_EQ(volume_format(layout_name(format.layout), storage_name(format.storage)), format);
+  }
+  EXPECT_EQ(format_name({}), "soa/float");
+  EXPECT_THROW(volume_format("soa", "double"), Error);
+  EXPECT_THROW(volume_format("planes", "half"), Error);
+}
+
+TEST(Volume, ReadsBackWhatWasWritten) {
+  // Coefficients that fill texels of four, and such that do not; blocks of eight samples, and one more.
+  for (const VolumeShape& shape : {VolumeShape{17, 4, 3}, {33, 1, 1}, {8, 9, 3}, {5, 14, 1}, {1, 25, 3}}) {
+    const std::vector<float> values = random_values(shape);
+    for (const VolumeFormat& format : formats(shape)) {
+      SCOPED_TRACE(format_name(format) + " n " + std::to_string(shape.n));
+      Volume volume(session(), shape, "test", format);
+      volume.write(session(), values);
+      const std::vector<float> found = volume.read(session());
+      if (format.storage == Storage::float32) {
+        EXPECT_EQ(found, values);
+      } else {
+        expect_near(found, values, kHalf);
+      }
+      Volume copy(session(), shape, "copy", format);
+      copy.copy_from(session(), volume);
+      EXPECT_EQ(copy.read(session()), found);
+      volume.clear(session());
+      for (const float value : volume.read(session())) ASSERT_EQ(value, 0.0f);
+    }
+  }
+}
+
+TEST(Volume, NoTwoCoefficientsShareAPlace) {
+  const VolumeShape shape{9, 5, 3};
+  for (const VolumeFormat& format : all_formats()) {
+    SCOPED_TRACE(format_name(format));
+    std::vector<bool> taken(stored_numbers(format, shape), false);
+    for (int at = 0; at < 9 * 9 * 9 * 5 * 3; ++at) {
+      const std::size_t index =
+          stored_index(format, shape, at / 3645, at / 729 % 5, at % 9, at / 9 % 9, at / 81 % 9);
+      ASSERT_LT(index, taken.size());
+      ASSERT_FALSE(taken[index]);
+      taken[index] = true;
+    }
+  }
+}
+
+TEST(Volume, WhatADeviceLacksIsSaid) {
+  Device device = session().device();
+  const VolumeFormat image{Layout::image, Storage::float16};
+  device.image3d_writes = false;
+  EXPECT_EQ(unsupported(device, image).value_or(""), "no 3-D image writes (cl_khr_3d_image_writes)");
+  EXPECT_FALSE(unsupported(device, VolumeFormat{}));
+  device.images = false;
+  EXPECT_EQ(unsupported(device, image).value_or(""), "no images");
+  try {
+    require_supported(device, image, {8, 4, 3});
+    FAIL() << "nothing thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::device);
+    EXPECT_NE(std::string(error.what()).find("unsupported: no images"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Volume, AnImageThatIsTooLargeIsUnsupported) {
+  const Device& device = session().device();
+  if (unsupported(device, {Layout::image})) GTEST_SKIP() << "no 3-D images to write on " << device.name;
+  EXPECT_TRUE(unsupported(device, {Layout::image}, {1 << 20, 4, 3}).has_value());
+  EXPECT_FALSE(unsupported(device, {Layout::image}, {16, 4, 3}).has_value());
+}
+
+TEST(Volume, BuffersBeyondWhatKernelsAddressAreUnsupported) {
+  EXPECT_TRUE(unsupported(session().device(), {}, {512, 25, 3}).has_value());
+  EXPECT_FALSE(unsupported(session().device(), {}, {128, 25, 3}).has_value());
+}
+
+TEST(Volume, CountsWhatACellTakes) {
+  EXPECT_EQ(accesses_per_cell({}, 9), 9);
+  EXPECT_EQ(accesses_per_cell({Layout::image}, 9), 3);
+  EXPECT_EQ(bytes_per_cell({Layout::tiled, Storage::float16}, 9), 18u);
+  EXPECT_EQ(bytes_per_cell({Layout::image, Storage::float16}, 9), 24u);
+}
+
+TEST(Volume, PlanesBesideAnImageHoldTheSame) {
+  const VolumeShape shape{9, 5, 3};
+  for (const Storage storage : {Storage::float32, Storage::float16}) {
+    if (unsupported(session().device(), {Layout::image, storage}, shape)) GTEST_SKIP() << "no images";
+    Volume image(session(), shape, "image", {Layout::image, storage});
+    image.write(session(), random_values(shape));
+    PlaneStage stage(session(), shape, storage);
+    stage.take(image);
+    EXPECT_EQ(stage.planes().read(session()), image.read(session()));
+    stage.planes().write(session(), std::vector<float>(random_values(shape).size(), 0.25f));
+    stage.give(image);
+    EXPECT_EQ(stage.planes().read(session()), image.read(session()));
+  }
+}
+
+/// Light, blockers and what propagation makes of them, in one format.
+struct Propagated {
+  std::vector<float> accumulated, late;
+};
+
+struct Run {
+  VolumeFormat format = {};
+  int grid = 5;
+  int lanes = 0;
+  State state = State::coefficients;
+  bool blockers = false;
+};
+
+Propagated propagated(const Run& run, int iterations, bool late = false) {
+  const auto basis = make_basis("sh2");
+  const Transport transport = make_transport("sampled", *basis);
+  const VolumeShape shape{run.grid, basis->size(), 3}, corners{run.grid + 1, basis->size(), 1};
+  Volume injected(session(), shape, "injected", run.format), accumulated(session(), shape, "sum", run.format),
+      late_light(session(), shape, "late", run.format), geometry(session(), corners, "geometry", run.format);
+  injected.write(session(), random_values(shape));
+  geometry.write(session(), random_values(corners));
+  Propagator propagator(session(), *basis, transport,
+                        {.grid = run.grid, .state = run.state, .format = run.format, .lanes = run.lanes});
+  // Twice: nothing may be left of the first.
+  for (int repetition = 0; repetition < 2; ++repetition) {
+    propagator.propagate(
+        {injected, run.blockers ? &geometry : nullptr, accumulated, late ? &late_light : nullptr},
+        iterations);
+  }
+  return {accumulated.read(session()), late_light.read(session())};
+}
+
+/// Rows of whole blocks of eight and one cell more; checks of the stage have other grids.
+TEST(VolumeLayouts, PropagationIsTheSameInAll) {
+  constexpr int kGrid = 33;
+  const Propagated wanted = propagated({.grid = kGrid}, 3);
+  for (const VolumeFormat& format : formats({kGrid, 4, 3})) {
+    if (format == VolumeFormat{}) continue;
+    SCOPED_TRACE(format_name(format));
+    expect_near(propagated({.format = format, .grid = kGrid}, 3).accumulated, wanted.accumulated,
+                format.storage == Storage::float16 ? 4e-3 : 2e-6);
+  }
+}
+
+TEST(VolumeLayouts, OneCellAWorkItemOrEight) {
+  for (const Layout layout : {Layout::soa, Layout::aos, Layout::tiled}) {
+    SCOPED_TRACE(layout_name(layout));
+    const VolumeFormat format{layout, Storage::float32};
+    const Propagated one = propagated({.format = format, .grid = 9, .lanes = 1, .blockers = true}, 2);
+    const Propagated eight = propagated({.format = format, .grid = 9, .lanes = 8, .blockers = true}, 2);
+    expect_near(eight.accumulated, one.accumulated, 2e-6);
+  }
+}
+
+/// Images take turns with spare ones: however many steps there are, the sums end where they should.
+TEST(VolumeLayouts, ImagesAddUpOverAnyNumberOfSteps) {
+  const VolumeFormat image{Layout::image, Storage::float32};
+  if (unsupported(session().device(), image)) GTEST_SKIP() << "no 3-D images to write";
+  for (const State state : {State::coefficients, State::fluxes}) {
+    for (const bool late : {false, true}) {
+      for (int iterations = 0; iterations <= 5; ++iterations) {
+        SCOPED_TRACE(std::to_string(iterations) + (late ? " steps, late" : " steps"));
+        const Propagated wanted = propagated({.state = state, .blockers = true}, iterations, late);
+        const Propagated found =
+            propagated({.format = image, .state = state, .blockers = true}, iterations, late);
+        expect_near(found.accumulated, wanted.accumulated, 2e-6);
+        if (late && iterations > 1) expect_near(found.late, wanted.late, 2e-6);
+        if (late && iterations <= 1) EXPECT_EQ(found.late, wanted.late);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clpv
