@@ -33,9 +33,14 @@ std::size_t blocks_per_row(const VolumeShape& shape) {
   return size((shape.n + kTile - 1) / kTile + 1);
 }
 
+/// Samples from a row to the next one: eight lanes never reach into it.
+std::size_t row_pitch(const VolumeShape& shape) {
+  return size((shape.n + kMostLanes - 1) / kMostLanes * kMostLanes + 2);
+}
+
 /// Samples of a channel with the border all round.
 std::size_t bordered(const VolumeShape& shape) {
-  return size(shape.n + 2) * size(shape.n + 2) * size(shape.n + 2);
+  return size(shape.n + 2) * size(shape.n + 2) * row_pitch(shape);
 }
 
 }  // namespace
@@ -140,8 +145,7 @@ ImageExtent image_extent(const VolumeShape& shape) {
 
 std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape) {
   const std::size_t n = size(shape.coefficients), channels = size(shape.channels);
-  // With 8 lanes the last cell of a row is loaded with seven beyond, maybe past the end of the last row. An even number
-  // of halves can be filled four bytes at a time.
+  // An even number of halves can be filled four bytes at a time.
   const auto padded = [](std::size_t numbers) { return (numbers + 1) / 2 * 2; };
   switch (format.layout) {
     case Layout::image: {
@@ -151,11 +155,11 @@ std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape)
     case Layout::tiled:
       return (channels * size(shape.n + 2) * size(shape.n + 2) * blocks_per_row(shape) + 1) * kTile * n;
     case Layout::aos:
-      return padded((channels * bordered(shape) + kMostLanes - 1) * n);
+      return padded(channels * bordered(shape) * n);
     case Layout::soa:
       break;
   }
-  return padded(channels * n * bordered(shape) + kMostLanes - 1);
+  return padded(channels * n * bordered(shape));
 }
 
 std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape) {
@@ -164,8 +168,8 @@ std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape) {
 
 std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel, int coefficient,
                          int x, int y, int z) {
-  const std::size_t n = size(shape.coefficients), i = size(coefficient), pitch = size(shape.n + 2);
-  const std::size_t row = (size(channel) * pitch + size(z + 1)) * pitch + size(y + 1);
+  const std::size_t n = size(shape.coefficients), i = size(coefficient), rows = size(shape.n + 2);
+  const std::size_t row = (size(channel) * rows + size(z + 1)) * rows + size(y + 1);
   switch (format.layout) {
     case Layout::image: {
       const ImageExtent extent = image_extent(shape);
@@ -176,11 +180,11 @@ std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, i
     case Layout::tiled:
       return ((row * blocks_per_row(shape) + 1 + size(x / kTile)) * n + i) * kTile + size(x % kTile);
     case Layout::aos:
-      return (row * pitch + size(x + 1)) * n + i;
+      return (row * row_pitch(shape) + size(x + 1)) * n + i;
     case Layout::soa:
       break;
   }
-  return (size(channel) * n + i) * bordered(shape) + (size(z + 1) * pitch + size(y + 1)) * pitch +
+  return (size(channel) * n + i) * bordered(shape) + (size(z + 1) * rows + size(y + 1)) * row_pitch(shape) +
          size(x + 1);
 }
 

@@ -1,11 +1,12 @@
 // Volume layout `aos`: array of structures. The coefficients of a sample lie side by side, samples by channel, z, y, x
 // with a border of one zero sample all round. Part of the template instance.h; buffer.h makes the functions.
-#define CLPV_PITCH (CLPV_VOLUME_N + 2)
+#define CLPV_ROWS (CLPV_VOLUME_N + 2)
+#define CLPV_PITCH ((CLPV_VOLUME_N + 7) / 8 * 8 + 2)  // of a row: eight lanes never reach into the next one
 #define CLPV_NEXT 1                  // from a coefficient to the next one
 #define CLPV_LANE CLPV_VOLUME_COUNT  // from a cell to its right neighbour
 
 CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
-  return (((channel * CLPV_PITCH + (z + 1)) * CLPV_PITCH + (y + 1)) * CLPV_PITCH + (x + 1)) * CLPV_VOLUME_COUNT;
+  return (((channel * CLPV_ROWS + (z + 1)) * CLPV_ROWS + (y + 1)) * CLPV_PITCH + (x + 1)) * CLPV_VOLUME_COUNT;
 }
 
 // Eight samples are as many vectors of 8 as there are coefficients: loaded as they lie, then dealt out.
