@@ -13,17 +13,10 @@ std::size_t items_per_row(int grid, int lanes) {
   return static_cast<std::size_t>((grid + lanes - 1) / lanes);
 }
 
-/// Lanes beyond the end of a row are loaded in vain. They must not lie in the next row, which another work-item may be
-/// storing: the rows of `tiled` have room for them, those of other layouts where the grid is a multiple of the lanes.
-int undisturbed_lanes(int lanes, const StencilOptions& options) {
-  return options.format.layout == Layout::tiled || options.grid % lanes == 0 ? lanes : 1;
-}
-
 }  // namespace
 
 Stencil::Stencil(const Device& device, const StencilOptions& options) : options_(options) {
-  if (options_.lanes == 0)
-    options_.lanes = undisturbed_lanes(preferred_lanes(device, options.format), options);
+  if (options_.lanes == 0) options_.lanes = preferred_lanes(device, options.format);
   if (options_.local[0] == 0)
     options_.local[0] = std::min(items_per_row(options.grid, options_.lanes), kWidestGroup);
 }
