@@ -263,7 +263,8 @@ TEST(BenchProgram, PlotSaysWhatIsMissing) {
 }
 
 TEST(BenchProgram, PlotDrawsTheRoofline) {
-  if (test::run("python3 -c 'import matplotlib'").exit_code != 0) GTEST_SKIP() << "no matplotlib";
+  if (test::run("python3 -c 'import matplotlib' || /usr/bin/python3 -c 'import matplotlib'").exit_code != 0)
+    GTEST_SKIP() << "no matplotlib";
   const test::TemporaryFolder folder;
   const auto out = test::run(kProgram + kOneRow + " --plot " + folder.path().string());
   ASSERT_EQ(out.exit_code, 0) << out.err;

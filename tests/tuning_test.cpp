@@ -103,7 +103,7 @@ TEST(ProgramCache, TwoProcessesAtOnceShareAnEmptyCache) {
   const auto render = [&](const std::string& image) {
     return "XDG_CACHE_HOME=" + user.home.path().string() + " " + CLPV_PROGRAM + " -vv render " +
            CLPV_SOURCE_DIR +
-           "/scenes/cornell.json --preset paper --basis sh2 --grid 8 --width 16 --height 12 -o " +
+           "/scenes/cornell.json --basis sh2 --cascades 1 --grid 8 --width 16 --height 12 -o " +
            (user.home.path() / image).string();
   };
   const auto both = test::run(render("a.png") + " & first=$!; " + render("b.png") + " && wait $first");
