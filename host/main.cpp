@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   add_basis(app, shared);
   add_bench(app, shared);
   add_tune(app, shared);
+  add_report(app, shared);
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string scene, model, output, camera, tonemap = "aces", stats, dump;
+  int frames = 5;
   std::vector<std::string> views;
   std::optional<float> exposure;
   GivenOptions frame;
@@ -124,7 +125,7 @@ void run(const Options& options, const Shared& shared) {
   });
   stats.end_first_frame(session);
   progress.advance();
-  if (!options.stats.empty()) {
+  for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
     session.timeline().clear();
     stats.begin_frame();
     frame.render(camera);
@@ -173,9 +174,13 @@ void add_render(CLI::App& app, Shared& shared) {
       ->type_name("EV");
   command->add_option("--tonemap", options->tonemap, "tone curve of a PNG: none|reinhard|aces")
       ->capture_default_str();
-  command
-      ->add_option("--stats", options->stats, "stage times of a second frame, options and energies, as JSON")
+  command->add_option("--stats", options->stats, "stage times, options and energies, as JSON")
       ->type_name("FILE.json");
+  command
+      ->add_option("--frames", options->frames,
+                   "frames that --stats times, after one to warm up; their medians are told")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   command
       ->add_option("--dump-volume", options->dump,
                    "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]")

@@ -115,18 +115,18 @@ std::string first_line(const std::string& message) {
   return message.substr(0, message.find('\n'));
 }
 
-void write(const fs::path& path, const char* format, OIIO::ImageSpec spec, OIIO::TypeDesc type,
-           const void* pixels) {
+/// `name` is for messages.
+std::vector<unsigned char> encoded(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
+                                   OIIO::TypeDesc type, const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const auto output = OIIO::ImageOutput::create(format);
-  if (!output) throw Error(ExitCode::run_time, "{}: OpenImageIO cannot write {}", path.string(), format);
+  if (!output) throw Error(ExitCode::run_time, "{}: OpenImageIO cannot write {}", name, format);
   output->set_ioproxy(&memory);
-  if (!output->open(path.string(), spec) || !output->write_image(type, pixels) || !output->close()) {
-    throw Error(ExitCode::run_time, "{}: cannot be encoded: {}", path.string(),
-                first_line(output->geterror()));
+  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
+    throw Error(ExitCode::run_time, "{}: cannot be encoded: {}", name, first_line(output->geterror()));
   }
-  write_file(path, std::as_bytes(std::span(bytes)));
+  return bytes;
 }
 
 }  // namespace
@@ -161,13 +161,14 @@ void write_exr(const fs::path& path, const Image& image) {
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("DateTime", kFixedDate);
   for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
-  write(path, "openexr", spec, OIIO::TypeFloat, image.pixels.data());
+  const auto bytes = encoded(path.string(), "openexr", spec, OIIO::TypeFloat, image.pixels.data());
+  write_file(path, std::as_bytes(std::span(bytes)));
 }
 
-void write_png(const fs::path& path, const Image& image) {
+std::vector<unsigned char> png_bytes(const Image& image) {
   const std::size_t channels = image.channels.size();
   if (image.encoding != Encoding::srgb || channels < 3 || channels > 4) {
-    throw std::logic_error("write_png wants display-encoded R, G, B and perhaps A");
+    throw std::logic_error("a PNG wants display-encoded R, G, B and perhaps A");
   }
   std::vector<std::uint8_t> pixels(image.pixels.size());
   std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(), [](float value) {
@@ -179,7 +180,12 @@ void write_png(const fs::path& path, const Image& image) {
   if (channels == 4) spec.alpha_channel = 3;
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  write(path, "png", spec, OIIO::TypeUInt8, pixels.data());
+  return encoded("image.png", "png", spec, OIIO::TypeUInt8, pixels.data());
+}
+
+void write_png(const fs::path& path, const Image& image) {
+  const auto bytes = png_bytes(image);
+  write_file(path, std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace clpv

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "image/image.hpp"
 
@@ -26,7 +27,10 @@ Image read_image(const std::filesystem::path& path, const ImageLimits& limits = 
 /// (and comes back from read_image). The same image gives the same bytes. Throws Error(run_time).
 void write_exr(const std::filesystem::path& path, const Image& image);
 
-/// Writes 8-bit PNG of a display-encoded image (display_image): R,G,B or R,G,B,A in [0,1].
+/// An 8-bit PNG file of a display-encoded image (display_image): R,G,B or R,G,B,A in [0,1].
+std::vector<unsigned char> png_bytes(const Image& image);
+
+/// The same, in a file.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace clpv

@@ -3,7 +3,24 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "support/median.hpp"
+
 namespace clpv {
+namespace {
+
+/// The stages of one frame, each with the median of its times over all of them.
+std::vector<StageTime> median_times(const std::vector<std::vector<StageTime>>& frames) {
+  if (frames.empty()) return {};
+  std::vector<StageTime> result = frames.front();
+  for (std::size_t stage = 0; stage < result.size(); ++stage) {
+    std::vector<double> ms;
+    for (const auto& frame : frames) ms.push_back(frame.at(stage).ms);
+    result[stage].ms = median(std::move(ms));
+  }
+  return result;
+}
+
+}  // namespace
 
 std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume) {
   const std::vector<float> values = volume.read(session);
@@ -32,8 +49,8 @@ void FrameStats::end_first_frame(Session& session) {
 
 void FrameStats::end_frame(Session& session) {
   session.queue().finish();
-  frame_ms_ = since_mark();
-  stages_ = session.timeline().times();
+  frame_ms_.push_back(since_mark());
+  stages_.push_back(session.timeline().times());
 }
 
 void FrameStats::add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes) {
@@ -46,7 +63,7 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
     return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
   };
   nlohmann::json stages = nlohmann::json::array(), energy = nlohmann::json::array();
-  for (const StageTime& time : stages_) {
+  for (const StageTime& time : median_times(stages_)) {
     stages.push_back({{"stage", time.mark.stage},
                       {"cascade", number_or_null(time.mark.cascade)},
                       {"light", number_or_null(time.mark.light)},
@@ -57,12 +74,14 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
     energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
   const Device& device = session.device();
+  const double frame_ms = median(frame_ms_);
   return {{"schema", 1},
           {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
           {"options", options},
+          {"frames", frame_ms_.size()},
           {"stages", stages},
-          {"frame_ms", frame_ms_},
-          {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms_)},
+          {"frame_ms", frame_ms},
+          {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.build_ms()},
           {"startup_ms", startup_ms_},
           {"device_bytes", session.device_bytes()},

@@ -17,10 +17,12 @@ class FrameStats {
   void end_startup(const Session& session);  ///< device opened, programs built, scene uploaded
   void end_first_frame(Session& session);    ///< the first launches compile for their work-group sizes
   void begin_frame() { mark_ = Clock::now(); }
-  void end_frame(Session& session);  ///< keeps the timeline's stage times
+  /// Adds the timeline's stage times; frames of one camera have the same stages. Medians over all frames are told: the
+  /// first one after a start still waits for memory and caches.
+  void end_frame(Session& session);
   void add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes);
 
-  /// Schema 1: device, options, stages, frame_ms, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
+  /// Schema 1: device, options, frames (timed ones), stages, frame_ms, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
 
  private:
@@ -34,8 +36,9 @@ class FrameStats {
     std::array<double, 3> injected, accumulated;
   };
   Clock::time_point mark_;
-  double startup_ms_ = 0, first_frame_ms_ = 0, frame_ms_ = 0;
-  std::vector<StageTime> stages_;
+  double startup_ms_ = 0, first_frame_ms_ = 0;
+  std::vector<double> frame_ms_;                ///< one a timed frame
+  std::vector<std::vector<StageTime>> stages_;  ///< the same
   std::vector<Energy> energies_;
 };
 

@@ -12,16 +12,11 @@
 #include "pipeline/quality_report.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/median.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 Image shown(Frame& frame, Show show) {
   Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
