@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,7 @@
 #include "commands/frame_options.hpp"
 #include "commands/quality_subjects.hpp"
 #include "commands/tracing_options.hpp"
+#include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/input.hpp"
 #include "support/cache_folder.hpp"
@@ -68,6 +70,19 @@ GivenOptions sized(const Options& options, GivenOptions given) {
   return given;
 }
 
+/// Indirect light alone is dark at the exposure of a whole image: brings its mean luminance to a fifth of white [EV].
+float exposure_of(const Image& truth) {
+  double sum = 0, count = 0;
+  for (int y = 0; y < truth.height; ++y) {
+    for (int x = 0; x < truth.width; ++x) {
+      sum += luminance({truth.at(x, y, 0), truth.at(x, y, 1), truth.at(x, y, 2)});
+      count += truth.at(x, y, 3);
+    }
+  }
+  constexpr double kMean = 0.2;
+  return sum > 0 ? static_cast<float>(std::log2(kMean * count / sum)) : 0;
+}
+
 report::Shot shot(Session& session, const Subject& subject, const Camera& camera, const Options& options,
                   const Way& way) {
   const RenderOptions resolved = resolve_options(sized(options, way.given), subject.scene);
@@ -90,8 +105,8 @@ void add_views(std::vector<report::View>& views, Session& session, const Options
     report::View& shown = views.emplace_back();
     shown.scene = subject.scene.name;
     shown.camera = camera.name;
-    shown.exposure = subject.scene.exposure;
     shown.truth = extract_layer(truth.image, "indirect", truth.file.string());
+    shown.exposure = exposure_of(shown.truth);
     for (const Way& way : ways()) {
       shown.shots.push_back(shot(session, subject, camera, options, way));
       progress.advance();
