@@ -45,7 +45,7 @@ struct RenderOptions {
   bool occlusion = true;
   std::string blocking = "two-sided";
   std::string injection = "trilinear";
-  double gather_offset = 0.5;
+  double gather_offset = 0.75;
   double gather_floor = 0.15;
   bool late_light = true;
   int width = 960, height = 540;
