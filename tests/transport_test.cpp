@@ -157,7 +157,7 @@ TEST(Upwind, OperatorsOfSh2) {
   const Transport transport = make_transport("upwind", *basis);
   ASSERT_EQ(operators(transport).neighbours.size(), 6u);
   const int coefficient[] = {3, 1, 2};  // of x, y, z in the order y, z, x
-  for (const auto& [offset, direction, weights] : operators(transport).neighbours) {
+  for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
     EXPECT_NEAR(weights(0, 0), 1.0 / 6, 1e-12);
     for (int a = 0; a < 3; ++a) {
       const int i = coefficient[a];
@@ -185,7 +185,7 @@ double weight_of(const std::string& transport, const glm::ivec3& k, const glm::d
 TEST_P(EveryBasis, OperatorsAreMomentsOfTheirWeights) {
   for (const char* name : {"upwind", "semi-lagrangian"}) {
     const Transport transport = make_transport(name, *basis_);
-    for (const auto& [offset, direction, weights] : operators(transport).neighbours) {
+    for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
       Matrix expected(basis_->size(), basis_->size());
       for (const testing::Node& node : sphere({0, 0, 1}, 16)) {
         const double weight = node.weight * weight_of(name, offset, node.w);
@@ -212,7 +212,7 @@ TEST_P(EveryBasis, OperatorsKeepEnergyAndCarryABeamAlong) {
     const Transport transport = make_transport(name, *basis_);
     double energy = 0;
     glm::dvec3 drift(0);
-    for (const auto& [offset, direction, weights] : operators(transport).neighbours) {
+    for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
       const double part = basis_->energy(weights * beam);
       energy += part;
       drift += part * glm::dvec3(offset);
