@@ -124,7 +124,8 @@ TEST(ReportPage, RefusesADocumentOfAnotherShape) {
 class ReportCommand : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "clpv_report_test";
+    folder_ = fs::path(testing::TempDir()) /
+              (std::string("clpv_report_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

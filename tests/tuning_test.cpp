@@ -98,23 +98,5 @@ TEST(TuneProgram, RefusesBadUsage) {
   EXPECT_EQ(user.run("tune --grid 0").exit_code, 2);
 }
 
-TEST(ProgramCache, TwoProcessesAtOnceShareAnEmptyCache) {
-  const User user;
-  const auto render = [&](const std::string& image) {
-    return "XDG_CACHE_HOME=" + user.home.path().string() + " " + CLPV_PROGRAM + " -vv render " +
-           CLPV_SOURCE_DIR +
-           "/scenes/cornell.json --basis sh2 --cascades 1 --grid 8 --width 16 --height 12 -o " +
-           (user.home.path() / image).string();
-  };
-  const auto both = test::run(render("a.png") + " & first=$!; " + render("b.png") + " && wait $first");
-  ASSERT_EQ(both.exit_code, 0) << both.err;
-  const auto third = test::run(render("c.png"));
-  EXPECT_EQ(third.exit_code, 0) << third.err;
-  EXPECT_THAT(third.err, HasSubstr("from the cache"));
-  EXPECT_THAT(third.err, Not(HasSubstr("compiled in")));
-  for (const char* image : {"b.png", "c.png"})
-    EXPECT_EQ(test::read_file(user.home.path() / image), test::read_file(user.home.path() / "a.png"));
-}
-
 }  // namespace
 }  // namespace clpv
