@@ -95,8 +95,9 @@ std::string LinearCode::combination(const std::vector<Term>& terms) {
   std::string sum;
   for (const Term& term : terms) {
     const std::string factor = float_literal(term.factor);
-    sum = sum.empty() ? name(fmt::format("{} * {}", factor, term.input), {.multiplications = 1})
-                      : name(fmt::format("fma((CLPV_REAL)({}), {}, {})", factor, term.input, sum), {.fused = 1});
+    sum = sum.empty()
+              ? name(fmt::format("{} * {}", factor, term.input), {.multiplications = 1})
+              : name(fmt::format("fma((CLPV_REAL)({}), {}, {})", factor, term.input, sum), {.fused = 1});
   }
   return sum;
 }

@@ -51,12 +51,15 @@ inline constexpr Tolerance kTolerances[] = {
     {"gather", 5e-6,
      "float32 trilinear weights and N products of mixed sign; a position 1e-6 m off at 10 m moves them too"},
     {"inject-half", 2e-3,
-     "as inject; volumes rounded to 11 bits, 5e-4 of a coefficient, times the root of the Gram matrix's condition number, "
+     "as inject; volumes rounded to 11 bits, 5e-4 of a coefficient, times the root of the Gram matrix's "
+     "condition number, "
      "35 for srbf8v2"},
-    {"propagate-half", 5e-3, "as propagate; travelling light and sums rounded to 11 bits in each of 8 steps and more"},
+    {"propagate-half", 5e-3,
+     "as propagate; travelling light and sums rounded to 11 bits in each of 8 steps and more"},
     {"gather-half", 3e-3, "as gather; coefficients rounded to 11 bits"},
     {"gather-filtered", 1e-2,
-     "a device's filter may round its weights to 8 bits (OpenCL 1.2, 8.2), 4e-3 of the difference between cells, of each "
+     "a device's filter may round its weights to 8 bits (OpenCL 1.2, 8.2), 4e-3 of the difference between "
+     "cells, of each "
      "coefficient"},
     {"gather-filtered-half", 1e-2, "both of the above"},
 };
