@@ -12,7 +12,6 @@
 #include "commands/quality_subjects.hpp"
 #include "commands/tracing_options.hpp"
 #include "pipeline/quality_report.hpp"
-#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
@@ -29,12 +28,6 @@ struct Options {
   TracingOptions tracing;
   GivenOptions given;
 };
-
-std::filesystem::path cache_folder(const Options& options) {
-  if (!options.cache.empty()) return options.cache;
-  if (const auto folder = user_cache_folder()) return *folder / "quality";
-  throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
-}
 
 /// All combinations: what --vary says; without a word about bases, transports or presets, which have both, all of them.
 std::vector<Variant> variants(const Options& options) {
@@ -163,7 +156,7 @@ void run(const Options& options, const Shared& shared) {
   for (const std::string& output : {options.json, options.csv}) {
     if (!output.empty()) check_writable(output);
   }
-  const std::filesystem::path folder = cache_folder(options);
+  const std::filesystem::path folder = quality_cache(options.cache);
   const QualityStore store(folder / "cells");
   Session session(choose_device(shared.device));
   std::vector<Subject> subjects = load_subjects(options.subjects);

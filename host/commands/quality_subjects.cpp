@@ -6,6 +6,7 @@
 
 #include "commands/tracing_options.hpp"
 #include "scene/load.hpp"
+#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
@@ -27,6 +28,12 @@ std::filesystem::path model_for(const std::string& scene, const QualitySubjects&
 }
 
 }  // namespace
+
+std::filesystem::path quality_cache(const std::string& given) {
+  if (!given.empty()) return given;
+  if (const auto folder = user_cache_folder()) return *folder / "quality";
+  throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
+}
 
 void check_models(const QualitySubjects& given) {
   for (const std::string& model : given.models) {

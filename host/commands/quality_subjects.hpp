@@ -1,4 +1,4 @@
-// What a quality run looks at: scenes, their cameras, and the truth of each view.
+// What a quality run looks at: scenes, their cameras, the truth of each view, and where truths are kept.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +23,10 @@ struct Subject {
   std::vector<Camera> cameras;
   std::vector<reference::Reference> truths;  ///< one a camera, once traced
 };
+
+/// The folder of what quality runs keep: `given` (--cache), or where that is empty the user's cache. Throws Error(usage)
+/// where there is neither.
+std::filesystem::path quality_cache(const std::string& given);
 
 /// Throws Error(usage) for a model that belongs to none of the scenes.
 void check_models(const QualitySubjects& given);

@@ -14,7 +14,6 @@
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/input.hpp"
-#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
@@ -114,12 +113,6 @@ void add_views(std::vector<report::View>& views, Session& session, const Options
   }
 }
 
-fs::path cache_folder(const Options& options) {
-  if (!options.cache.empty()) return options.cache;
-  if (const auto folder = user_cache_folder()) return *folder / "quality";
-  throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
-}
-
 void run(const Options& options, const Shared& shared) {
   check_models(options.subjects);
   std::error_code failed;
@@ -135,7 +128,7 @@ void run(const Options& options, const Shared& shared) {
   Session session(choose_device(shared.device), ProgramCache::of_user());
   std::vector<Subject> subjects = load_subjects(options.subjects);
   for (Subject& subject : subjects)
-    add_views(contents.views, session, options, subject, cache_folder(options) / "references");
+    add_views(contents.views, session, options, subject, quality_cache(options.cache) / "references");
   session.store_programs();
   const RenderOptions best;
   contents.marked = {"paper", "best", best.basis + " " + best.transport};
