@@ -9,7 +9,7 @@
 #include "image/compare.hpp"
 #include "image/tone_map.hpp"
 #include "report/chart.hpp"
-#include "report/page.hpp"
+#include "report/document.hpp"
 #include "report/picture.hpp"
 #include "support/error.hpp"
 

@@ -1,4 +1,4 @@
-// The shell of a page: its style and the script of the sliders.
+// The HTML document round a report: its style, and sliders with their script.
 #pragma once
 
 #include <string>

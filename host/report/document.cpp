@@ -1,4 +1,4 @@
-#include "report/page.hpp"
+#include "report/document.hpp"
 
 #include <fmt/format.h>
 
