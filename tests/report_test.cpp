@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <filesystem>
 #include <fstream>
@@ -11,12 +10,12 @@
 
 #include "report/chart.hpp"
 #include "report/picture.hpp"
+#include "run_program.hpp"
 #include "support/error.hpp"
 
 namespace clpv::report {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -123,48 +122,37 @@ TEST(ReportPage, RefusesADocumentOfAnotherShape) {
 
 class ReportCommand : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("clpv_report_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  static test::Outcome report(const std::string& arguments) {
+    return test::run(std::string(CLPV_PROGRAM) + " report " + arguments);
   }
-  int run(const std::string& arguments) const {
-    const std::string command = std::string(CLPV_PROGRAM) + " report " + arguments + " > " +
-                                (folder_ / "out.txt").string() + " 2> " + (folder_ / "err.txt").string();
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string text(const std::string& name) const {
-    std::ifstream stream(folder_ / name);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  fs::path folder_;
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+
+ private:
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ReportCommand, WritesOnePageWithItsViews) {
-  const std::string scene = std::string(CLPV_SOURCE_DIR) + "/scenes/cornell.json";
-  ASSERT_EQ(run((folder_ / "page").string() + " " + scene + " --width 48 --height 27 --spp 4 --cache " +
-                (folder_ / "cache").string()),
-            0)
-      << text("err.txt");
-  EXPECT_THAT(text("out.txt"), HasSubstr("index.html"));
-  const std::string html = text("page/index.html");
+  const test::Outcome outcome = report(file("page") + " " CLPV_SOURCE_DIR
+                                       "/scenes/cornell.json --width 48 --height 27 --spp 4 --cache " +
+                                       file("cache"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("index.html"));
+  const std::string html = test::read_file(file("page/index.html"));
   EXPECT_THAT(html, HasSubstr("</html>"));
   EXPECT_THAT(html, HasSubstr("--preset best"));
   EXPECT_THAT(html, HasSubstr("clpv: NRMSE"));
 }
 
 TEST_F(ReportCommand, RefusesWithItsOwnExitCode) {
-  const std::string page = (folder_ / "page").string();
-  std::ofstream(folder_ / "other.json") << R"({"schema": 1})";
-  std::ofstream(folder_ / "file") << "";
-  EXPECT_EQ(run(page + " --quality " + (folder_ / "other.json").string()), 3);
-  EXPECT_THAT(text("err.txt"), HasSubstr("variants"));
-  EXPECT_EQ(run(page + " --bench " + (folder_ / "absent.json").string()), 3);
-  EXPECT_EQ(run((folder_ / "file" / "page").string()), 1);
-  EXPECT_EQ(run(""), 2);
-  EXPECT_FALSE(fs::exists(folder_ / "page" / "index.html"));
+  std::ofstream(file("other.json")) << R"({"schema": 1})";
+  std::ofstream(file("file")) << "";
+  const test::Outcome other = report(file("page") + " --quality " + file("other.json"));
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("variants"));
+  EXPECT_EQ(report(file("page") + " --bench " + file("absent.json")).exit_code, 3);
+  EXPECT_EQ(report(file("file/page")).exit_code, 1);
+  EXPECT_EQ(report("").exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(file("page/index.html")));
 }
 
 }  // namespace
