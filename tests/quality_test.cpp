@@ -3,14 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "pipeline/quality_report.hpp"
+#include "run_program.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -20,14 +19,6 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
-
-fs::path fresh_folder() {
-  const fs::path folder =
-      fs::path(CLPV_TEST_DIR) / "quality" / ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
-}
 
 std::string refusal(const std::string& vary) {
   try {
@@ -118,7 +109,8 @@ TEST(QualityReport, TableHasALineAVariant) {
 }
 
 TEST(QualityStore, GivesBackWhatItKept) {
-  const QualityStore store(fresh_folder());
+  const test::TemporaryFolder folder;
+  const QualityStore store(folder.path());
   EXPECT_FALSE(store.find("k"));
   for (const QualityCell& kept : {cell("sh2", "a", 0.9, 10), refused("sh4", "a")}) {
     store.keep("k", kept);
@@ -129,10 +121,10 @@ TEST(QualityStore, GivesBackWhatItKept) {
 }
 
 TEST(QualityStore, DamagedCellsAreMeasuredAnew) {
-  const fs::path folder = fresh_folder();
-  const QualityStore store(folder);
+  const test::TemporaryFolder folder;
+  const QualityStore store(folder.path());
   for (const char* text : {"", "{\"scene\": \"room\"", "[]", "{\"scene\": 3}"}) {
-    std::ofstream(folder / "k.json") << text;
+    std::ofstream(folder.path() / "k.json") << text;
     EXPECT_FALSE(store.find("k")) << text;
   }
 }
@@ -180,38 +172,29 @@ void write_room(const fs::path& folder) {
 
 class QualityCommand : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fresh_folder();
-    write_room(folder_);
-  }
+  void SetUp() override { write_room(folder_.path()); }
 
-  int run(const std::string& arguments) const {
-    const std::string command =
-        std::string(CLPV_PROGRAM) + " quality " + file("room.json") + " --cache " + file("cache") +
-        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --occlusion off --rsm-size 64 " + arguments +
-        " > " + file("out.txt") + " 2> " + file("err.txt");
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  test::Outcome quality(const std::string& arguments) const {
+    return test::run(std::string(CLPV_PROGRAM) + " quality " + file("room.json") + " --cache " +
+                     file("cache") + " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --occlusion off" +
+                     " --rsm-size 64 " + arguments);
   }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string text(const std::string& name) const {
-    std::ifstream stream(file(name));
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
   std::size_t kept() const {
     return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_ / "cache" / "cells"), fs::directory_iterator{}));
+        std::distance(fs::directory_iterator(file("cache/cells")), fs::directory_iterator{}));
   }
 
-  fs::path folder_;
+ private:
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
   const std::string matrix =
       "--transport sampled --vary basis=sh2,srbf4 --format json --csv " + file("a.csv");
-  ASSERT_EQ(run(matrix), 0) << text("err.txt");
-  const std::string first = text("out.txt");
-  const nlohmann::json json = nlohmann::json::parse(first);
+  const test::Outcome first = quality(matrix);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const nlohmann::json json = nlohmann::json::parse(first.out);
   EXPECT_EQ(json["schema"], 1);
   ASSERT_EQ(json["cells"].size(), 4u);
   ASSERT_EQ(json["variants"].size(), 2u);
@@ -229,9 +212,10 @@ TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
   EXPECT_EQ(kept(), 4u);
 
   // As if stopped before the last cell: three are read back with their times, the fourth is measured.
-  fs::remove(fs::directory_iterator(folder_ / "cache" / "cells")->path());
-  ASSERT_EQ(run(matrix), 0) << text("err.txt");
-  const nlohmann::json again = nlohmann::json::parse(text("out.txt"));
+  fs::remove(fs::directory_iterator(file("cache/cells"))->path());
+  const test::Outcome second = quality(matrix);
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  const nlohmann::json again = nlohmann::json::parse(second.out);
   int same_times = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(again["cells"][i]["nrmse"], json["cells"][i]["nrmse"]);
@@ -239,18 +223,19 @@ TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
   }
   EXPECT_EQ(same_times, 3);
   EXPECT_EQ(kept(), 4u);
-  EXPECT_THAT(text("a.csv"), HasSubstr("room,left,srbf4,,"));
+  EXPECT_THAT(test::read_file(file("a.csv")), HasSubstr("room,left,srbf4,,"));
 }
 
 TEST_F(QualityCommand, RefusesWithItsOwnExitCode) {
-  EXPECT_EQ(run("--vary basis=sh99"), 2);
-  EXPECT_EQ(run("--vary width=32,64"), 2);
-  EXPECT_EQ(run("--view fog"), 2);
-  EXPECT_EQ(run("--camera nobody"), 2);
-  EXPECT_THAT(text("err.txt"), HasSubstr("left, right"));
-  EXPECT_EQ(run("--json " + file("nowhere/a.json")), 1);
-  EXPECT_EQ(run(file("absent.json")), 3);
-  EXPECT_FALSE(fs::exists(folder_ / "cache" / "references")) << "no time was spent on tracing";
+  EXPECT_EQ(quality("--vary basis=sh99").exit_code, 2);
+  EXPECT_EQ(quality("--vary width=32,64").exit_code, 2);
+  EXPECT_EQ(quality("--view fog").exit_code, 2);
+  const test::Outcome nobody = quality("--camera nobody");
+  EXPECT_EQ(nobody.exit_code, 2);
+  EXPECT_THAT(nobody.err, HasSubstr("left, right"));
+  EXPECT_EQ(quality("--json " + file("nowhere/a.json")).exit_code, 1);
+  EXPECT_EQ(quality(file("absent.json")).exit_code, 3);
+  EXPECT_FALSE(fs::exists(file("cache/references"))) << "no time was spent on tracing";
 }
 
 }  // namespace

@@ -1,18 +1,19 @@
 // clpv reference: what it writes, what it refuses, and that a refusal costs no time and leaves nothing behind.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
+#include "run_program.hpp"
 
 namespace clpv {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::HasSubstr;
 
 /// A floor of 4 x 4 m at y = 0, facing up (positions, then 16-bit indices), and without its mesh an empty room.
 std::string floor_gltf(bool with_floor) {
@@ -50,43 +51,34 @@ nlohmann::json floor_scene() {
            {{{"name", "sun"}, {"kind", "directional"}, {"direction", {0, -1, 0}}, {"illuminance_lux", 2}}}}};
 }
 
-class ReferenceCommand : public testing::Test {
+class ReferenceCommand : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(CLPV_TEST_DIR) / "reference" / info->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     write("floor.gltf", floor_gltf(true));
     write("empty.gltf", floor_gltf(false));
     write("floor.json", floor_scene().dump());
   }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
+  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  test::Outcome reference(const std::string& scene, const std::string& arguments) const {
+    return test::run(std::string(CLPV_PROGRAM) + " reference " + file(scene) + " " + arguments);
   }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string talk() const {
-    std::ifstream stream(folder_ / "err.txt");
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
-  int run(const std::string& scene, const std::string& arguments) const {
-    const std::string command = std::string(CLPV_PROGRAM) + " reference " + file(scene) + " " + arguments +
-                                " > " + file("out.txt") + " 2> " + file("err.txt");
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  /// The exit code of a run that fails.
+  int refused(const std::string& scene, const std::string& arguments) const {
+    return reference(scene, arguments).exit_code;
   }
 
-  fs::path folder_;
+ private:
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ReferenceCommand, WritesLayersMetadataAndStats) {
-  ASSERT_EQ(run("floor.json", "--camera down --width 9 --height 5 --spp 4 --seed 7 --view full,depth -o " +
-                                  file("a.exr") + " --stats " + file("a.json")),
-            0)
-      << talk();
-  EXPECT_EQ(fs::file_size(folder_ / "out.txt"), 0u) << "stdout is for data";
+  const test::Outcome outcome =
+      reference("floor.json", "--camera down --width 9 --height 5 --spp 4 --seed 7 --view full,depth -o " +
+                                  file("a.exr") + " --stats " + file("a.json"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "") << "stdout is for data";
   const Image image = read_image(file("a.exr"));
   const Image full = extract_layer(image, "full", "a.exr"), depth = extract_layer(image, "depth", "a.exr");
   const float albedo = 1;
@@ -105,54 +97,57 @@ TEST_F(ReferenceCommand, WritesLayersMetadataAndStats) {
 }
 
 TEST_F(ReferenceCommand, SameSeedSameBytesWhateverTheThreads) {
-  const std::string options = "--width 33 --height 21 --spp 3 --bounces all -o ";
-  ASSERT_EQ(run("floor.json", "--threads 1 " + options + file("a.exr")), 0) << talk();
-  ASSERT_EQ(run("floor.json", "--threads 2 " + options + file("b.exr")), 0) << talk();
-  const auto bytes = [&](const char* name) {
-    std::ifstream stream(file(name), std::ios::binary);
-    return std::string{std::istreambuf_iterator<char>(stream), {}};
-  };
-  EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
+  const std::string options = " --width 33 --height 21 --spp 3 --bounces all -o ";
+  for (const auto& [threads, output] : {std::pair{"1", "a.exr"}, {"2", "b.exr"}}) {
+    const test::Outcome outcome =
+        reference("floor.json", std::string("--threads ") + threads + options + file(output));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  EXPECT_EQ(test::read_file(file("a.exr")), test::read_file(file("b.exr")));
 }
 
 TEST_F(ReferenceCommand, BackgroundHasNoAlpha) {
   nlohmann::json scene = floor_scene();
   scene["cameras"][0]["target"] = {0.01, 2, 0};
   write("up.json", scene.dump());
-  ASSERT_EQ(run("up.json", "--width 4 --height 4 --spp 2 -o " + file("a.exr")), 0) << talk();
+  const test::Outcome outcome = reference("up.json", "--width 4 --height 4 --spp 2 -o " + file("a.exr"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const float value : read_image(file("a.exr")).pixels) EXPECT_EQ(value, 0);
 }
 
 TEST_F(ReferenceCommand, RefusesWithItsOwnExitCode) {
   const std::string out = " -o " + file("a.exr");
-  EXPECT_EQ(run("floor.json", "--spp 0" + out), 2);
-  EXPECT_EQ(run("floor.json", "--noise 0" + out), 2);
-  EXPECT_EQ(run("floor.json", "--spp 4 --noise 0.1" + out), 2);
-  EXPECT_EQ(run("floor.json", "--bounces 0" + out), 2);
-  EXPECT_EQ(run("floor.json", "--bounces some" + out), 2);
-  EXPECT_EQ(run("floor.json", "--width 0" + out), 2);
-  EXPECT_EQ(run("floor.json", "--view fog" + out), 2);
-  EXPECT_NE(talk().find("irradiance"), std::string::npos) << "names the views there are: " << talk();
-  EXPECT_EQ(run("floor.json", "--camera none" + out), 2);
-  EXPECT_EQ(run("floor.json", "-o " + file("a.png")), 2);
-  EXPECT_EQ(run("floor.json", "-o " + file("nowhere/a.exr")), 1);
-  EXPECT_EQ(run("floor.json", out + " --stats " + file("nowhere/a.json")), 1);
-  EXPECT_EQ(run("absent.json", out), 3);
-  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+  EXPECT_EQ(refused("floor.json", "--spp 0" + out), 2);
+  EXPECT_EQ(refused("floor.json", "--noise 0" + out), 2);
+  EXPECT_EQ(refused("floor.json", "--spp 4 --noise 0.1" + out), 2);
+  EXPECT_EQ(refused("floor.json", "--bounces 0" + out), 2);
+  EXPECT_EQ(refused("floor.json", "--bounces some" + out), 2);
+  EXPECT_EQ(refused("floor.json", "--width 0" + out), 2);
+  const test::Outcome fog = reference("floor.json", "--view fog" + out);
+  EXPECT_EQ(fog.exit_code, 2);
+  EXPECT_THAT(fog.err, HasSubstr("irradiance")) << "names the views there are";
+  EXPECT_EQ(refused("floor.json", "--camera none" + out), 2);
+  EXPECT_EQ(refused("floor.json", "-o " + file("a.png")), 2);
+  EXPECT_EQ(refused("floor.json", "-o " + file("nowhere/a.exr")), 1);
+  EXPECT_EQ(refused("floor.json", out + " --stats " + file("nowhere/a.json")), 1);
+  EXPECT_EQ(refused("absent.json", out), 3);
+  EXPECT_FALSE(fs::exists(file("a.exr")));
 }
 
 TEST_F(ReferenceCommand, RefusesASceneWithoutLightOrSurface) {
   nlohmann::json scene = floor_scene();
   scene["lights"] = nlohmann::json::array();
   write("dark.json", scene.dump());
-  EXPECT_EQ(run("dark.json", "-o " + file("a.exr")), 3);
-  EXPECT_NE(talk().find("light"), std::string::npos) << talk();
+  const test::Outcome dark = reference("dark.json", "-o " + file("a.exr"));
+  EXPECT_EQ(dark.exit_code, 3);
+  EXPECT_THAT(dark.err, HasSubstr("light"));
   scene = floor_scene();
   scene["model"] = "empty.gltf";
   write("empty.json", scene.dump());
-  EXPECT_EQ(run("empty.json", "-o " + file("a.exr")), 3);
-  EXPECT_NE(talk().find("surface"), std::string::npos) << talk();
-  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+  const test::Outcome empty = reference("empty.json", "-o " + file("a.exr"));
+  EXPECT_EQ(empty.exit_code, 3);
+  EXPECT_THAT(empty.err, HasSubstr("surface"));
+  EXPECT_FALSE(fs::exists(file("a.exr")));
 }
 
 }  // namespace
