@@ -2,7 +2,7 @@
 // before anything of the size it asks for is allocated.
 #include "bad_input.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 namespace {
 
 using ::testing::AllOf;
@@ -264,4 +264,4 @@ TEST_F(BadGltfTest, CamerasAndLightsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace clpv::testing
+}  // namespace clpv::test

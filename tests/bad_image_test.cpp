@@ -1,7 +1,7 @@
 // Hostile and broken images of a model, one a test.
 #include "bad_input.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 namespace {
 
 using ::testing::AllOf;
@@ -77,4 +77,4 @@ TEST_F(BadImageTest, ATextureWithoutASource) {
 }
 
 }  // namespace
-}  // namespace clpv::testing
+}  // namespace clpv::test

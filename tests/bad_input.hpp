@@ -7,7 +7,7 @@
 #include "scene/bounds.hpp"
 #include "tiny_images.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 
 struct BadInputTest : ::testing::Test {
   TempFolder folder;
@@ -36,4 +36,4 @@ struct BadInputTest : ::testing::Test {
   json& accessor() { return model.document["accessors"][0]; }
 };
 
-}  // namespace clpv::testing
+}  // namespace clpv::test

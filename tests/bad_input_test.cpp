@@ -2,7 +2,7 @@
 // allowed, as exit code 3 (bad_input).
 #include "bad_input.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 namespace {
 
 using ::testing::AllOf;
@@ -242,4 +242,4 @@ TEST_F(BadSceneFileTest, AModelThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace clpv::testing
+}  // namespace clpv::test

@@ -14,8 +14,8 @@
 namespace clpv {
 namespace {
 
-using testing::integral;
-using testing::sphere;
+using test::integral;
+using test::sphere;
 
 constexpr double kPi = std::numbers::pi;
 const glm::dvec3 kUp(0, 0, 1), kOblique = glm::normalize(glm::dvec3(-2, 1, -3));
@@ -39,7 +39,7 @@ TEST_P(EveryBasis, GramMatrixAndIntegralsAreThoseOfItsFunctions) {
   const int n = basis_->size();
   Matrix gram(n, n);
   std::vector<double> integrals(static_cast<std::size_t>(n), 0.0);
-  for (const testing::Node& node : sphere()) {
+  for (const test::Node& node : sphere()) {
     const std::vector<double> b = basis_->evaluate(node.w);
     for (int i = 0; i < n; ++i) {
       integrals[static_cast<std::size_t>(i)] += node.weight * b[static_cast<std::size_t>(i)];
@@ -66,7 +66,7 @@ TEST_P(EveryBasis, CosineIntegralsAreThoseOfTheClampedCosine) {
   for (const glm::dvec3& d : {kUp, kOblique, glm::normalize(glm::dvec3(1, 1, 0))}) {
     basis_->cosine_integrals(d, alpha);
     std::vector<double> expected(alpha.size(), 0.0);
-    for (const testing::Node& node : sphere(d)) {
+    for (const test::Node& node : sphere(d)) {
       const std::vector<double> b = basis_->evaluate(node.w);
       for (std::size_t i = 0; i < b.size(); ++i)
         expected[i] += node.weight * b[i] * std::max(0.0, glm::dot(node.w, d));
@@ -125,7 +125,7 @@ TEST_P(LobeTable, ErrorsOfTheExactProjection) {
   EXPECT_NEAR(lobe_error(*basis, kOblique), GetParam().oblique, 6e-4);
   double mean = 0;
   constexpr int kAxesDrawn = 2000;
-  for (const glm::dvec3& axis : testing::spread_axes(kAxesDrawn))
+  for (const glm::dvec3& axis : test::spread_axes(kAxesDrawn))
     mean += lobe_error(*basis, axis) / kAxesDrawn;
   EXPECT_NEAR(mean, GetParam().mean, .003);
 }

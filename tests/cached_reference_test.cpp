@@ -23,12 +23,12 @@ class CachedReference : public ::testing::Test {
     folder_ = fs::path(CLPV_TEST_DIR) / "cached_reference" /
               ::testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
-    const unsigned white = testing::add_material(scene_, glm::vec3(0.8f));
-    testing::add_quad(scene_, {-2, -1, -4}, {4, 0, 0}, {0, 2, 0}, white);
-    testing::add_quad(scene_, {-2, -1, 0}, {4, 0, 0}, {0, 0, -4}, white);
+    const unsigned white = test::add_material(scene_, glm::vec3(0.8f));
+    test::add_quad(scene_, {-2, -1, -4}, {4, 0, 0}, {0, 2, 0}, white);
+    test::add_quad(scene_, {-2, -1, 0}, {4, 0, 0}, {0, 0, -4}, white);
     scene_.name = "room/1";
     scene_.path = "room";
-    scene_.lights = {{"sun", testing::directional_light({0.2f, -1, -0.5f})}};
+    scene_.lights = {{"sun", test::directional_light({0.2f, -1, -0.5f})}};
     camera_.name = "front";
     options_.samples = 4;
   }

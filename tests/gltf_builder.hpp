@@ -17,7 +17,7 @@
 #include "scene/load.hpp"
 #include "support/error.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 
 using nlohmann::json;
 
@@ -195,4 +195,4 @@ MATCHER_P2(IsNear, wanted, tolerance, "") {
   return glm::length(arg - wanted) <= tolerance;
 }
 
-}  // namespace clpv::testing
+}  // namespace clpv::test

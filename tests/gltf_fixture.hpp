@@ -4,7 +4,7 @@
 #include "gltf_builder.hpp"
 #include "tiny_images.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 
 inline constexpr float kClose = 1e-6f;
 
@@ -42,4 +42,4 @@ struct GltfTest : ::testing::Test {
   }
 };
 
-}  // namespace clpv::testing
+}  // namespace clpv::test

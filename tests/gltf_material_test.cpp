@@ -3,7 +3,7 @@
 
 #include "gltf_fixture.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -144,4 +144,4 @@ TEST_F(GltfMaterialTest, EmissiveTextures) {
 }
 
 }  // namespace
-}  // namespace clpv::testing
+}  // namespace clpv::test

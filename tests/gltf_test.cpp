@@ -4,7 +4,7 @@
 
 #include "gltf_fixture.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -336,4 +336,4 @@ TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
 }
 
 }  // namespace
-}  // namespace clpv::testing
+}  // namespace clpv::test

@@ -24,14 +24,14 @@ TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
   const auto basis = make_basis("srbf8v2");
   const std::vector<double> c = basis->clamped_cosine(kOblique);
   const LobeQuality quality = lobe_quality(*basis, c, kOblique);
-  const auto nodes = testing::sphere(kOblique);
-  const double squared = testing::integral(nodes, [&](const glm::dvec3& w) {
+  const auto nodes = test::sphere(kOblique);
+  const double squared = test::integral(nodes, [&](const glm::dvec3& w) {
     const double difference = basis->value(c, w) - std::max(0.0, glm::dot(w, kOblique));
     return difference * difference;
   });
   EXPECT_NEAR(quality.relative_l2, std::sqrt(squared / (2 * std::numbers::pi / 3)), 1e-9);
   double least = 0, most = 0;
-  for (const glm::dvec3& w : testing::spread_axes(20000)) {
+  for (const glm::dvec3& w : test::spread_axes(20000)) {
     least = std::min(least, basis->value(c, w));
     most = std::max(most, basis->value(c, w));
   }
@@ -39,7 +39,7 @@ TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
   EXPECT_NEAR(quality.minimum, least, 1e-3);
   // Some direction at that distance from the axis is as high as the highest.
   double highest = 0;
-  const auto [u, v] = testing::across(kOblique);
+  const auto [u, v] = test::across(kOblique);
   const double tilt = quality.peak_error_degrees * std::numbers::pi / 180;
   for (int i = 0; i < 720; ++i) {
     const double phi = i * std::numbers::pi / 360;

@@ -19,9 +19,9 @@ namespace {
 using reference::PathTracerOptions;
 using reference::TracedImage;
 using std::numbers::pi;
-using testing::add_material;
-using testing::add_quad;
-using testing::directional_light;
+using test::add_material;
+using test::add_quad;
+using test::directional_light;
 
 constexpr float kOpen = std::numeric_limits<float>::infinity();
 
@@ -54,7 +54,7 @@ Light sun(const glm::vec3& direction, float irradiance) {
   return named("sun", directional_light(direction, glm::vec3(irradiance)));
 }
 Light lamp(const glm::vec3& position, float intensity) {
-  return named("lamp", testing::point_light(position, glm::vec3(intensity)));
+  return named("lamp", test::point_light(position, glm::vec3(intensity)));
 }
 
 /// A unit cube seen from inside, faces inwards.
@@ -149,7 +149,7 @@ TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
 TEST(PathTracer, RangeAndConeOfASpotBoundItsLight) {
   Scene scene = floor_scene(0.5);
   const double inner = std::cos(0.2), outer = std::cos(0.5);
-  Light spot = named("spot", testing::spot_light({0, 1, 0}, {0, -1, 0}, 0.2f, 0.5f));
+  Light spot = named("spot", test::spot_light({0, 1, 0}, {0, -1, 0}, 0.2f, 0.5f));
   for (float& i : spot.data.intensity) i = 3;
   spot.data.range = 1.1f;
   scene.lights = {spot};
@@ -369,7 +369,7 @@ Scene clutter() {
   }
   for (unsigned t = 0; t < 90; ++t) {
     const glm::vec3 centre(6 * any(random), 4 * any(random), -8 + 5 * any(random));
-    testing::add_triangle(scene, centre + glm::vec3(any(random), 2, any(random)),
+    test::add_triangle(scene, centre + glm::vec3(any(random), 2, any(random)),
                           centre + glm::vec3(-2, any(random), any(random)),
                           centre + glm::vec3(2, any(random), any(random)), t % 3);
     for (unsigned i = 0; i < 3; ++i) {
@@ -391,7 +391,7 @@ TEST(PathTracer, SeesWhatTheRasteriserSees) {
   PathTracerOptions options;
   options.samples = 1;
   const TracedImage traced = trace_paths(scene, view, options);
-  Session& session = testing::test_session();
+  Session& session = test::test_session();
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, true);
   rasterizer.rasterize_camera(surface);

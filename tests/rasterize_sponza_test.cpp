@@ -16,7 +16,7 @@
 namespace clpv {
 namespace {
 
-using testing::test_session;
+using test::test_session;
 
 /// Sponza, uploaded once; or nothing, where it is absent.
 struct Sponza {

@@ -16,12 +16,12 @@
 namespace clpv {
 namespace {
 
-using testing::add_material;
-using testing::add_quad;
-using testing::add_triangle;
-using testing::add_vertex;
-using testing::directional_light;
-using testing::test_session;
+using test::add_material;
+using test::add_quad;
+using test::add_triangle;
+using test::add_vertex;
+using test::directional_light;
+using test::test_session;
 
 Camera camera_at(const glm::vec3& eye, const glm::vec3& forward, const glm::vec3& up = {0, 1, 0}) {
   Camera camera;
@@ -278,7 +278,7 @@ TEST(Rasterize, FluxInAWhiteRoomIsAllThatAPointLightSends) {
       add_quad(scene, corner, u, v, material);
     }
   }
-  const ClpvLight light = testing::point_light({0.3f, 0.2f, -0.4f}, {1, 1, 1});
+  const ClpvLight light = test::point_light({0.3f, 0.2f, -0.4f}, {1, 1, 1});
   double sum = 0;
   for (const ClpvView& view : point_views(light, 32, {glm::vec3(-2), glm::vec3(2)})) {
     const SurfaceImage image = rsm_image(scene, light, view);

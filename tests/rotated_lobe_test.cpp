@@ -57,7 +57,7 @@ TEST_P(RotatedErrors, AreThoseOfTheTable) {
   EXPECT_NEAR(error_at(*basis, lobes, kOblique), GetParam().oblique, kTolerance);
   constexpr int kAxesDrawn = 2000;
   double mean = 0;
-  for (const glm::dvec3& axis : testing::spread_axes(kAxesDrawn))
+  for (const glm::dvec3& axis : test::spread_axes(kAxesDrawn))
     mean += error_at(*basis, lobes, axis) / kAxesDrawn;
   EXPECT_NEAR(mean, GetParam().mean, kTolerance);
 }
@@ -65,14 +65,14 @@ TEST_P(RotatedErrors, AreThoseOfTheTable) {
 TEST(Lobes, OfBasesWithoutCentresAreProjected) {
   for (const char* name : {"sh2", "sh5", "bins24"}) {
     const auto basis = make_basis(name);
-    for (const glm::dvec3& axis : testing::spread_axes(5)) {
+    for (const glm::dvec3& axis : test::spread_axes(5)) {
       EXPECT_EQ(Lobes(*basis, kTable)(axis), basis->clamped_cosine(axis));
     }
   }
 }
 
 TEST(Lobes, BandThreeOfSh4IsZero) {
-  for (const glm::dvec3& axis : testing::spread_axes(5)) {
+  for (const glm::dvec3& axis : test::spread_axes(5)) {
     const std::vector<double> sh4 = make_basis("sh4")->clamped_cosine(axis);
     const std::vector<double> sh3 = make_basis("sh3")->clamped_cosine(axis);
     for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(sh4[i], i < 9 ? sh3[i] : 0);
@@ -101,7 +101,7 @@ TEST(RotatedLobes, AreTheLobeTowardsZTurned) {
     const auto product = [&](const glm::dvec3& w) {
       return basis->evaluate(w)[i] * basis->value(up, back * w);
     };
-    EXPECT_NEAR(testing::integral(testing::sphere(), product), expected[i], 1e-10);
+    EXPECT_NEAR(test::integral(test::sphere(), product), expected[i], 1e-10);
   }
 }
 
@@ -139,7 +139,7 @@ TEST(RotatedLobes, FloorCostsSrbf14ItsAxisLobes) {
 }
 
 TEST(RotationTo, TurnsAsLittleAsPossible) {
-  std::vector<glm::dvec3> axes = testing::spread_axes(20);
+  std::vector<glm::dvec3> axes = test::spread_axes(20);
   axes.insert(axes.end(), {kUp, -kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1e-7, 0, -1))});
   for (const glm::dvec3& axis : axes) {
     const glm::dmat3 rotation = rotation_to(axis);
@@ -170,7 +170,7 @@ TEST(ZonalTable, HoldsTheBasisFunctions) {
   const auto basis = make_basis("srbf8v2");
   const ZonalTable fine = function_table(*basis, 1 << 18);
   EXPECT_NEAR(gram_table(*basis, 256)(1), basis->gram()(0, 0), 1e-12);
-  for (const glm::dvec3& w : testing::spread_axes(20)) {
+  for (const glm::dvec3& w : test::spread_axes(20)) {
     EXPECT_THAT(evaluate(*basis, fine, w), Pointwise(DoubleNear(1e-4), basis->evaluate(w)));
   }
   const auto harmonics = make_basis("sh3");
@@ -204,7 +204,7 @@ TEST(DirectionBins, CosineIntegralsAreNearTheIntegrals) {
        {std::tuple{"bins24", .01, .0025}, {"bins96", .033, .0045}}) {
     const auto bins = make_basis(name);
     double worst = 0, squares = 0;
-    std::vector<glm::dvec3> directions = testing::spread_axes(100);
+    std::vector<glm::dvec3> directions = test::spread_axes(100);
     directions.insert(directions.end(),
                       {kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1, 1, 0)), glm::normalize(glm::dvec3(1))});
     for (const glm::dvec3& d : directions) {

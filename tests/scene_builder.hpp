@@ -7,7 +7,7 @@
 #include "device/session.hpp"
 #include "scene/scene.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 
 inline Session& test_session() {
   // Never released: a driver's own statics may be gone before a static session is.
@@ -83,4 +83,4 @@ inline ClpvLight spot_light(const glm::vec3& position, const glm::vec3& directio
   return light;
 }
 
-}  // namespace clpv::testing
+}  // namespace clpv::test

@@ -6,7 +6,7 @@
 
 #include "gltf_builder.hpp"
 
-namespace clpv::testing {
+namespace clpv::test {
 namespace {
 
 using ::testing::Contains;
@@ -219,4 +219,4 @@ TEST(SponzaTest, StoredNormalsAgreeWithTheFaces) {
 }
 
 }  // namespace
-}  // namespace clpv::testing
+}  // namespace clpv::test

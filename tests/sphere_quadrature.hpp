@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace clpv::testing {
+namespace clpv::test {
 
 struct Node {
   glm::dvec3 w;
@@ -93,4 +93,4 @@ inline std::vector<glm::dvec3> spread_axes(int n) {
   return axes;
 }
 
-}  // namespace clpv::testing
+}  // namespace clpv::test

@@ -12,9 +12,9 @@
 namespace clpv {
 namespace {
 
-using testing::add_material;
-using testing::add_quad;
-using testing::test_session;
+using test::add_material;
+using test::add_quad;
+using test::test_session;
 
 Texture texture(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) {
   Texture made;

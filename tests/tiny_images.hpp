@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace clpv::testing {
+namespace clpv::test {
 
 /// Rows: red, half-transparent green; transparent blue, grey 128.
 inline constexpr std::string_view kPngRgba2x2 =
@@ -35,4 +35,4 @@ inline constexpr std::string_view kJpegRed8x8 =
     "ZGVmZ2hpanN0dXZ3eHl6goOEhYaHiImKkpOUlZaXmJmaoqOkpaanqKmqsrO0tba3uLm6wsPExcbHyMnK0tPU1dbX2Nna4uPk"
     "5ebn6Onq8vP09fb3+Pn6/9oADAMBAAIRAxEAPwDFoooryz7w/9k=";
 
-}  // namespace clpv::testing
+}  // namespace clpv::test

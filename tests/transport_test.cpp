@@ -12,8 +12,8 @@
 namespace clpv {
 namespace {
 
-using testing::integral;
-using testing::sphere;
+using test::integral;
+using test::sphere;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -47,7 +47,7 @@ TEST(SolidAngles, AreThoseOfTheFacesAndSumToTheSphere) {
   double sum = 0;
   for (const Face& face : faces(transport).faces) {
     const glm::dvec3 normal(face.normal), centre = glm::dvec3(face.travel) + 0.5 * normal;
-    EXPECT_NEAR(face.solid_angle, integral(testing::square(centre, normal), [](auto) { return 1.0; }), 1e-12);
+    EXPECT_NEAR(face.solid_angle, integral(test::square(centre, normal), [](auto) { return 1.0; }), 1e-12);
     EXPECT_NEAR(glm::length(face.direction - glm::normalize(centre)), 0, 1e-15);
     sum += face.solid_angle;
   }
@@ -68,10 +68,10 @@ TEST_P(EveryBasis, FluxesAreSamplesOrIntegralsOverTheFace) {
   for (std::size_t f = 0; f < 30; ++f) {
     const Face &at_centre = faces(sampled).faces[f], &over_cone = faces(exact).faces[f];
     const glm::dvec3 normal(at_centre.normal);
-    const auto nodes = testing::square(glm::dvec3(at_centre.travel) + 0.5 * normal, normal);
+    const auto nodes = test::square(glm::dvec3(at_centre.travel) + 0.5 * normal, normal);
     const std::vector<double> b = basis_->evaluate(at_centre.direction);
     std::vector<double> expected(b.size(), 0.0);
-    for (const testing::Node& node : nodes) {
+    for (const test::Node& node : nodes) {
       const std::vector<double> value = basis_->evaluate(node.w);
       for (std::size_t i = 0; i < b.size(); ++i) expected[i] += node.weight * value[i];
     }
@@ -187,7 +187,7 @@ TEST_P(EveryBasis, OperatorsAreMomentsOfTheirWeights) {
     const Transport transport = make_transport(name, *basis_);
     for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
       Matrix expected(basis_->size(), basis_->size());
-      for (const testing::Node& node : sphere({0, 0, 1}, 16)) {
+      for (const test::Node& node : sphere({0, 0, 1}, 16)) {
         const double weight = node.weight * weight_of(name, offset, node.w);
         if (weight == 0) continue;
         const std::vector<double> b = basis_->evaluate(node.w);
@@ -232,7 +232,7 @@ TEST_P(EveryBasis, OperatorsKeepEnergyAndCarryABeamAlong) {
 // Irradiance from a uniform radiance of 1 W/(m^2 sr), in cells of 1 m.
 double gathered(const Basis& basis, const Transport& transport, const glm::dvec3& normal) {
   std::vector<double> moments(static_cast<std::size_t>(basis.size()), 0.0), alpha(moments.size());
-  for (const testing::Node& node : sphere()) {
+  for (const test::Node& node : sphere()) {
     const double intensity = transport.name == "upwind" ? norm1(node.w) : 1;
     const std::vector<double> b = basis.evaluate(node.w);
     for (std::size_t i = 0; i < b.size(); ++i) moments[i] += node.weight * intensity * b[i];

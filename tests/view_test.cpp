@@ -15,9 +15,9 @@ namespace clpv {
 namespace {
 
 using reference::project;
-using testing::directional_light;
-using testing::point_light;
-using testing::spot_light;
+using test::directional_light;
+using test::point_light;
+using test::spot_light;
 
 constexpr int kSize = 64;
 const Bounds kBounds{glm::vec3(-20, -1, -12), glm::vec3(18, 15, 11)};
