@@ -10,7 +10,7 @@
 namespace clpv::test {
 
 struct BadInputTest : ::testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   GltfBuilder model;
 
   BadInputTest() { model.triangle(); }

@@ -125,8 +125,7 @@ TEST_P(LobeTable, ErrorsOfTheExactProjection) {
   EXPECT_NEAR(lobe_error(*basis, kOblique), GetParam().oblique, 6e-4);
   double mean = 0;
   constexpr int kAxesDrawn = 2000;
-  for (const glm::dvec3& axis : test::spread_axes(kAxesDrawn))
-    mean += lobe_error(*basis, axis) / kAxesDrawn;
+  for (const glm::dvec3& axis : test::spread_axes(kAxesDrawn)) mean += lobe_error(*basis, axis) / kAxesDrawn;
   EXPECT_NEAR(mean, GetParam().mean, .003);
 }
 

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "scene_builder.hpp"
 #include "support/error.hpp"
+#include "temporary_folder.hpp"
 
 namespace clpv {
 namespace {
@@ -20,9 +20,6 @@ using reference::Reference;
 class CachedReference : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(CLPV_TEST_DIR) / "cached_reference" /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
     const unsigned white = test::add_material(scene_, glm::vec3(0.8f));
     test::add_quad(scene_, {-2, -1, -4}, {4, 0, 0}, {0, 2, 0}, white);
     test::add_quad(scene_, {-2, -1, 0}, {4, 0, 0}, {0, 0, -4}, white);
@@ -37,7 +34,8 @@ class CachedReference : public ::testing::Test {
     return cached_reference(folder_, scene_, camera_, width, 8, options_);
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_ / "references";
   Scene scene_;
   Camera camera_;
   PathTracerOptions options_;
@@ -89,8 +87,7 @@ TEST_F(CachedReference, DamagedFilesAreTracedAnew) {
 }
 
 TEST_F(CachedReference, AFolderThatCannotBeIsToldBeforeTracing) {
-  fs::create_directories(folder_.parent_path());
-  std::ofstream(folder_) << "a file where the folder should be";
+  temporary_.write("references", "a file where the folder should be");
   try {
     get();
     FAIL() << "traced";

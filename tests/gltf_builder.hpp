@@ -3,12 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -16,37 +14,11 @@
 
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "temporary_folder.hpp"
 
 namespace clpv::test {
 
 using nlohmann::json;
-
-/// A fresh folder, named after the running test.
-class TempFolder {
- public:
-  TempFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(CLPV_TEST_DIR) / (std::string("scene_") + test->test_suite_name() + "_" +
-                                                    test->name() + "_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() { std::filesystem::remove_all(path_); }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
-  std::filesystem::path write(const std::string& name, std::string_view bytes) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline std::string encode_base64(std::string_view bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -138,13 +110,13 @@ struct GltfBuilder {
     if (!uri.empty()) document["buffers"][0]["uri"] = uri;
   }
 
-  std::filesystem::path write(const TempFolder& folder, const std::string& name = "model.gltf") {
+  std::filesystem::path write(const TemporaryFolder& folder, const std::string& name = "model.gltf") {
     finish("model.bin");
     folder.write("model.bin", binary);
     return folder.write(name, document.dump());
   }
 
-  std::filesystem::path write_base64(const TempFolder& folder) {
+  std::filesystem::path write_base64(const TemporaryFolder& folder) {
     finish("data:application/octet-stream;base64," + encode_base64(binary));
     return folder.write("model.gltf", document.dump());
   }

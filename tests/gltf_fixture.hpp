@@ -20,7 +20,7 @@ inline glm::vec2 uv(const Scene& scene, std::size_t vertex) {
 
 /// A file of its own, and the scene made of it.
 struct GltfTest : ::testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   GltfBuilder model;
 
   Scene load() { return load_scene(model.write(folder)); }

@@ -370,8 +370,8 @@ Scene clutter() {
   for (unsigned t = 0; t < 90; ++t) {
     const glm::vec3 centre(6 * any(random), 4 * any(random), -8 + 5 * any(random));
     test::add_triangle(scene, centre + glm::vec3(any(random), 2, any(random)),
-                          centre + glm::vec3(-2, any(random), any(random)),
-                          centre + glm::vec3(2, any(random), any(random)), t % 3);
+                       centre + glm::vec3(-2, any(random), any(random)),
+                       centre + glm::vec3(2, any(random), any(random)), t % 3);
     for (unsigned i = 0; i < 3; ++i) {
       Vertex& v = scene.vertices[3 * t + i];
       const glm::vec3 bent =

@@ -23,10 +23,7 @@ class KernelFolder {
  public:
   KernelFolder() { setenv("CLPV_KERNEL_DIR", folder_.path().c_str(), 1); }
   ~KernelFolder() { unsetenv("CLPV_KERNEL_DIR"); }
-  void write(const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((folder_.path() / name).parent_path());
-    std::ofstream(folder_.path() / name, std::ios::binary) << text;
-  }
+  void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
 
  private:
   test::TemporaryFolder folder_;

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "pipeline/quality_report.hpp"
@@ -124,13 +123,13 @@ TEST(QualityStore, DamagedCellsAreMeasuredAnew) {
   const test::TemporaryFolder folder;
   const QualityStore store(folder.path());
   for (const char* text : {"", "{\"scene\": \"room\"", "[]", "{\"scene\": 3}"}) {
-    std::ofstream(folder.path() / "k.json") << text;
+    folder.write("k.json", text);
     EXPECT_FALSE(store.find("k")) << text;
   }
 }
 
 /// A floor and a wall, both 4 x 4 m, lit from the front.
-void write_room(const fs::path& folder) {
+void write_room(const test::TemporaryFolder& folder) {
   // Positions of both quads, then 16-bit indices.
   const nlohmann::json gltf = {
       {"asset", {{"version", "2.0"}}},
@@ -166,20 +165,20 @@ void write_room(const fs::path& folder) {
       {"lights",
        {{{"name", "sun"}, {"kind", "directional"}, {"direction", {0, -1, -0.5}}, {"illuminance_lux", 5}}}},
       {"cascades", {{"count", 1}, {"size_metres", 20}}}};
-  std::ofstream(folder / "room.gltf") << gltf.dump();
-  std::ofstream(folder / "room.json") << scene.dump();
+  folder.write("room.gltf", gltf.dump());
+  folder.write("room.json", scene.dump());
 }
 
 class QualityCommand : public ::testing::Test {
  protected:
-  void SetUp() override { write_room(folder_.path()); }
+  void SetUp() override { write_room(folder_); }
 
   test::Outcome quality(const std::string& arguments) const {
     return test::run(std::string(CLPV_PROGRAM) + " quality " + file("room.json") + " --cache " +
                      file("cache") + " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --occlusion off" +
                      " --rsm-size 64 " + arguments);
   }
-  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t kept() const {
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(file("cache/cells")), fs::directory_iterator{}));

@@ -54,13 +54,12 @@ nlohmann::json floor_scene() {
 class ReferenceCommand : public ::testing::Test {
  protected:
   void SetUp() override {
-    write("floor.gltf", floor_gltf(true));
-    write("empty.gltf", floor_gltf(false));
-    write("floor.json", floor_scene().dump());
+    folder_.write("floor.gltf", floor_gltf(true));
+    folder_.write("empty.gltf", floor_gltf(false));
+    folder_.write("floor.json", floor_scene().dump());
   }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
-  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
   test::Outcome reference(const std::string& scene, const std::string& arguments) const {
     return test::run(std::string(CLPV_PROGRAM) + " reference " + file(scene) + " " + arguments);
   }
@@ -69,7 +68,6 @@ class ReferenceCommand : public ::testing::Test {
     return reference(scene, arguments).exit_code;
   }
 
- private:
   test::TemporaryFolder folder_;
 };
 
@@ -109,7 +107,7 @@ TEST_F(ReferenceCommand, SameSeedSameBytesWhateverTheThreads) {
 TEST_F(ReferenceCommand, BackgroundHasNoAlpha) {
   nlohmann::json scene = floor_scene();
   scene["cameras"][0]["target"] = {0.01, 2, 0};
-  write("up.json", scene.dump());
+  folder_.write("up.json", scene.dump());
   const test::Outcome outcome = reference("up.json", "--width 4 --height 4 --spp 2 -o " + file("a.exr"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const float value : read_image(file("a.exr")).pixels) EXPECT_EQ(value, 0);
@@ -137,13 +135,13 @@ TEST_F(ReferenceCommand, RefusesWithItsOwnExitCode) {
 TEST_F(ReferenceCommand, RefusesASceneWithoutLightOrSurface) {
   nlohmann::json scene = floor_scene();
   scene["lights"] = nlohmann::json::array();
-  write("dark.json", scene.dump());
+  folder_.write("dark.json", scene.dump());
   const test::Outcome dark = reference("dark.json", "-o " + file("a.exr"));
   EXPECT_EQ(dark.exit_code, 3);
   EXPECT_THAT(dark.err, HasSubstr("light"));
   scene = floor_scene();
   scene["model"] = "empty.gltf";
-  write("empty.json", scene.dump());
+  folder_.write("empty.json", scene.dump());
   const test::Outcome empty = reference("empty.json", "-o " + file("a.exr"));
   EXPECT_EQ(empty.exit_code, 3);
   EXPECT_THAT(empty.err, HasSubstr("surface"));

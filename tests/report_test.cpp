@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "report/chart.hpp"
@@ -125,16 +124,15 @@ class ReportCommand : public ::testing::Test {
   static test::Outcome report(const std::string& arguments) {
     return test::run(std::string(CLPV_PROGRAM) + " report " + arguments);
   }
-  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
- private:
   test::TemporaryFolder folder_;
 };
 
 TEST_F(ReportCommand, WritesOnePageWithItsViews) {
-  const test::Outcome outcome = report(file("page") + " " CLPV_SOURCE_DIR
-                                       "/scenes/cornell.json --width 48 --height 27 --spp 4 --cache " +
-                                       file("cache"));
+  const test::Outcome outcome = report(
+      file("page") + " " CLPV_SOURCE_DIR "/scenes/cornell.json --width 48 --height 27 --spp 4 --cache " +
+      file("cache"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("index.html"));
   const std::string html = test::read_file(file("page/index.html"));
@@ -144,8 +142,8 @@ TEST_F(ReportCommand, WritesOnePageWithItsViews) {
 }
 
 TEST_F(ReportCommand, RefusesWithItsOwnExitCode) {
-  std::ofstream(file("other.json")) << R"({"schema": 1})";
-  std::ofstream(file("file")) << "";
+  folder_.write("other.json", R"({"schema": 1})");
+  folder_.write("file", "");
   const test::Outcome other = report(file("page") + " --quality " + file("other.json"));
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_THAT(other.err, HasSubstr("variants"));

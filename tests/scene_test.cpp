@@ -34,7 +34,7 @@ constexpr const char* kFull = R"({
 
 /// A model with a triangle, a camera and a light, in models/.
 struct SceneTest : ::testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
 
   GltfBuilder model() {
     GltfBuilder made;
