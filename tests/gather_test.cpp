@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-#include "reference/check.hpp"
+#include "on_device.hpp"
 #include "reference/gather.hpp"
 #include "support/error.hpp"
 
@@ -19,17 +19,14 @@ namespace clpv {
 namespace {
 
 using std::numbers::pi;
+using test::expect_passed;
+using test::test_session;
 
 constexpr int kGrid = 12;
 constexpr float kCell = 0.5f;         // of the finest cascade [m]
 constexpr double kFloat = 2e-6;       // relative: a dozen roundings of float32
 constexpr double kKappa = 0.6742128;  // mean of 1 / |w|_1: sh2's K under upwind transport
 constexpr unsigned kPixels = 241;
-
-Session& session() {
-  static Session one(choose_device(""));
-  return one;
-}
 
 /// What E = 4 I(-n) / s^2 needs to know of a transport.
 Transport intensity_transport() {
@@ -130,8 +127,8 @@ Both gather(const Basis& basis, const Transport& transport, GatherOptions option
   const auto upload = [&](const std::vector<reference::Volume>& volumes) {
     std::vector<const Volume*> uploaded;
     for (const reference::Volume& v : volumes) {
-      device.emplace_back(session(), VolumeShape{kGrid, basis.size(), 3}, "test: light");
-      device.back().write(session(), {v.values.begin(), v.values.end()});
+      device.emplace_back(test_session(), VolumeShape{kGrid, basis.size(), 3}, "test: light");
+      device.back().write(test_session(), {v.values.begin(), v.values.end()});
       uploaded.push_back(&device.back());
     }
     return uploaded;
@@ -144,15 +141,15 @@ Both gather(const Basis& basis, const Transport& transport, GatherOptions option
   }
   Surface camera;
   camera.view = image.view;
-  camera.depth = session().upload(image.depth, "test: depth");
-  camera.normal = session().upload(image.normal, "test: normal");
+  camera.depth = test_session().upload(image.depth, "test: depth");
+  camera.normal = test_session().upload(image.normal, "test: normal");
   const float nan = std::numeric_limits<float>::quiet_NaN();
   cl::Buffer e =
-      session().upload(std::vector<cl_float4>(image.depth.size(), {{nan, nan, nan, nan}}), "test: E");
-  Gatherer(session(), basis, transport, options).gather(camera, grids, upload(full), upload(late), e);
+      test_session().upload(std::vector<cl_float4>(image.depth.size(), {{nan, nan, nan, nan}}), "test: E");
+  Gatherer(test_session(), basis, transport, options).gather(camera, grids, upload(full), upload(late), e);
   Both both{{},
             reference::gather(basis, transport, options, cascades, image),
-            session().read<cl_float4>(e, image.depth.size())};
+            test_session().read<cl_float4>(e, image.depth.size())};
   for (const cl_float4& v : both.raw) both.device.emplace_back(v.s[0], v.s[1], v.s[2]);
   return both;
 }
@@ -374,27 +371,22 @@ TEST(Gather, TwoRunsAreIdentical) {
 TEST(Gather, RefusesWhatDoesNotFit) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const auto make = [&](GatherOptions options) {
-    Gatherer(session(), *basis, intensity_transport(), options);
+    Gatherer(test_session(), *basis, intensity_transport(), options);
   };
   EXPECT_THROW(make({.grid = 0}), Error);
   EXPECT_THROW(make({.blend_cells = 0}), Error);
   EXPECT_THROW(make({.floor = -0.1}), Error);
   EXPECT_THROW(make({.gather_offset = std::numeric_limits<double>::infinity()}), Error);
-  Gatherer gatherer(session(), *basis, intensity_transport(), {.grid = kGrid});
-  const Volume small(session(), {kGrid - 1, 4, 3}, "test: light");
-  cl::Buffer e = session().buffer(kPixels * sizeof(cl_float4), "test: E");
+  Gatherer gatherer(test_session(), *basis, intensity_transport(), {.grid = kGrid});
+  const Volume small(test_session(), {kGrid - 1, 4, 3}, "test: light");
+  cl::Buffer e = test_session().buffer(kPixels * sizeof(cl_float4), "test: E");
   Surface camera;
   EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {&small}, {}, e), Error);
   EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {}, {}, e), Error);
 }
 
 TEST(Gather, KernelsAgreeWithTheirTwin) {
-  const reference::CheckResults results = reference::check_gather(session());
-  ASSERT_FALSE(results.empty());
-  for (const reference::CheckResult& result : results) {
-    EXPECT_TRUE(result.passed()) << result.variant << ": " << result.worst << " > " << result.allowed << ", "
-                                 << result.place;
-  }
+  expect_passed(reference::check_gather(test_session()));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "on_device.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
 #include "scene_builder.hpp"

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/check.hpp"
+#include "on_device.hpp"
 #include "reference/propagate.hpp"
 
 namespace clpv {
 namespace {
+
+using test::expect_passed;
+using test::test_session;
 
 reference::Volume one_source(const Basis& basis, int n, const std::vector<double>& c, glm::ivec3 at) {
   reference::Volume volume(n, basis.size());
@@ -33,15 +36,11 @@ std::vector<double> axis_lobe(const Basis& basis) {
   return c;
 }
 
-Session make_session() {
-  return Session(choose_device());
-}
-
 /// Energy after each step of the kernels, from one source, red channel.
 std::vector<double> device_energies(const Basis& basis, const Transport& transport,
                                     const reference::Volume& light, int steps,
                                     const reference::Volume* blockers = nullptr) {
-  Session session = make_session();
+  Session& session = test_session();
   Volume injected(session, {light.n, basis.size(), 3}, "injected"),
       accumulated(session, {light.n, basis.size(), 3}, "sum");
   injected.write(session, std::vector<float>(light.values.begin(), light.values.end()));
@@ -63,13 +62,8 @@ std::vector<double> device_energies(const Basis& basis, const Transport& transpo
 }
 
 TEST(Propagate, KernelsAgreeWithTheTwin) {
-  Session session = make_session();
-  const auto results = reference::check_propagate(session);
-  EXPECT_GE(results.size(), 38u);  // three bases in full, each other basis with two transports
-  for (const auto& result : results) {
-    EXPECT_TRUE(result.passed()) << result.variant << ": " << result.worst << " > " << result.allowed
-                                 << " at " << result.place;
-  }
+  // Three bases in full, each other basis with two transports.
+  expect_passed(reference::check_propagate(test_session()), 38);
 }
 
 TEST(Propagate, EmptyFieldStaysExactlyZero) {
@@ -168,7 +162,7 @@ TEST(Propagate, LateLightIsWhatTheSecondHalfOfTheStepsAdded) {
   for (const State state : {State::coefficients, State::fluxes}) {
     const Transport transport = make_transport("sampled", *basis);
     const auto light = one_source(*basis, 9, axis_lobe(*basis), {4, 4, 4});
-    Session session = make_session();
+    Session& session = test_session();
     const VolumeShape shape{light.n, basis->size(), 3};
     Volume injected(session, shape, "injected"), early(session, shape, "early"), full(session, shape, "full"),
         late(session, shape, "late");

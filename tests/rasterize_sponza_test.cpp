@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "on_device.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/table_kernel.hpp"
+#include "on_device.hpp"
 #include "pipeline/options.hpp"
 #include "pipeline/propagate.hpp"
 #include "run_program.hpp"
@@ -16,17 +17,13 @@
 namespace clpv {
 namespace {
 
+using test::test_session;
 using ::testing::HasSubstr;
-
-Session& session() {
-  static Session one(choose_device());
-  return one;
-}
 
 // What a kernel reads at each height; by the functions that stages are generated with.
 std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, TableStorage storage,
                              const std::vector<cl_float4>& directions) {
-  const LookupTable table(session(), basis, lobes, storage, TableUse::functions);
+  const LookupTable table(test_session(), basis, lobes, storage, TableUse::functions);
   ProgramSource source{"coefficients.h", {}, {}};
   source.generated = table.macros() + coefficient_macros(basis.size()) +
                      table_basis_source(basis, lobes.table_size) +
@@ -34,14 +31,14 @@ std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, Table
                      " CLPV_AND_TABLE) {\n"
                      "  const float4 d = directions[get_global_id(0)];\n"
                      "  found[get_global_id(0)] = clpv_table_basis(d.x, d.y, d.z CLPV_PASS_TABLE).c0;\n}\n";
-  cl::Kernel kernel = session().kernel(source, "look_up");
-  const cl::Buffer given = session().upload(directions, "directions");
-  const cl::Buffer found = session().buffer(directions.size() * sizeof(float), "found");
+  cl::Kernel kernel = test_session().kernel(source, "look_up");
+  const cl::Buffer given = test_session().upload(directions, "directions");
+  const cl::Buffer found = test_session().buffer(directions.size() * sizeof(float), "found");
   kernel.setArg(0, given);
   kernel.setArg(1, found);
   table.set(kernel);
-  session().launch(kernel, cl::NDRange(directions.size()), cl::NDRange(1));
-  return session().read<float>(found, directions.size());
+  test_session().launch(kernel, cl::NDRange(directions.size()), cl::NDRange(1));
+  return test_session().read<float>(found, directions.size());
 }
 
 TEST(LookupTable, HoldsTheFunctionOnTheDevice) {
@@ -56,7 +53,7 @@ TEST(LookupTable, HoldsTheFunctionOnTheDevice) {
   const std::vector<float> buffer = looked_up(*basis, lobes, TableStorage::buffer, directions);
   for (std::size_t i = 0; i < directions.size(); ++i)
     EXPECT_EQ(buffer[i], static_cast<float>(table(directions[i].s[0]))) << i;
-  if (!session().device().images) GTEST_SKIP() << "no images on this device";
+  if (!test_session().device().images) GTEST_SKIP() << "no images on this device";
   EXPECT_EQ(looked_up(*basis, lobes, TableStorage::image, directions), buffer);
 }
 
@@ -64,9 +61,9 @@ TEST(LookupTable, IsNotThereWhereNothingIsLookedUp) {
   const auto sh = make_basis("sh2"), srbf = make_basis("srbf4");
   const LobeOptions both{.kind = LobeKind::rotate, .table_functions = true};
   for (const TableUse use : {TableUse::lobes, TableUse::functions}) {
-    EXPECT_FALSE(LookupTable(session(), *sh, both, TableStorage::image, use).exists());
-    EXPECT_FALSE(LookupTable(session(), *srbf, {}, TableStorage::image, use).exists());
-    EXPECT_TRUE(LookupTable(session(), *srbf, both, TableStorage::buffer, use).exists());
+    EXPECT_FALSE(LookupTable(test_session(), *sh, both, TableStorage::image, use).exists());
+    EXPECT_FALSE(LookupTable(test_session(), *srbf, {}, TableStorage::image, use).exists());
+    EXPECT_TRUE(LookupTable(test_session(), *srbf, both, TableStorage::buffer, use).exists());
   }
 }
 
@@ -90,7 +87,7 @@ constexpr int kGrid = 5, kSteps = 4;
 std::vector<float> accumulated(const Basis& basis, const Transport& transport,
                                const PropagateOptions& options) {
   const VolumeShape shape{kGrid, basis.size(), 3};
-  Volume injected(session(), shape, "injected"), sum(session(), shape, "sum");
+  Volume injected(test_session(), shape, "injected"), sum(test_session(), shape, "sum");
   const std::size_t plane = kGrid * kGrid * kGrid;
   std::vector<float> light(plane * static_cast<std::size_t>(basis.size()) * 3, 0.0f);
   const std::vector<double> lobe = basis.clamped_cosine(glm::normalize(glm::dvec3(3, 2, 1)));
@@ -98,9 +95,9 @@ std::vector<float> accumulated(const Basis& basis, const Transport& transport,
     light[row * plane + 31] = static_cast<float>(lobe[row % lobe.size()]);
     light[row * plane + 62] = 0.5f * light[row * plane + 31] * static_cast<float>(row / lobe.size());
   }
-  injected.write(session(), light);
-  Propagator(session(), basis, transport, options).propagate({injected, nullptr, sum}, kSteps);
-  return sum.read(session());
+  injected.write(test_session(), light);
+  Propagator(test_session(), basis, transport, options).propagate({injected, nullptr, sum}, kSteps);
+  return sum.read(test_session());
 }
 
 class RunTimeLobesOf : public ::testing::TestWithParam<std::string> {};
@@ -124,7 +121,7 @@ TEST_P(RunTimeLobesOf, GiveTheLightOfConstantOnes) {
 }
 
 TEST(RunTimeLobes, DoNotDependOnWhatHoldsTheTable) {
-  if (!session().device().images) GTEST_SKIP() << "no images on this device";
+  if (!test_session().device().images) GTEST_SKIP() << "no images on this device";
   const auto basis = make_basis("srbf8v2");
   const Transport rotated = make_transport("sampled", *basis, {.kind = LobeKind::rotate}),
                   exact = make_transport("sampled", *basis);
@@ -139,7 +136,7 @@ TEST(RunTimeLobes, AreRefusedWhereNoStepMakesAny) {
   const auto refused = [&](const char* transport, State state, const char* word) {
     const Transport made = make_transport(transport, *basis);
     try {
-      Propagator(session(), *basis, made, {.grid = 3, .state = state, .lobe_time = LobeTime::kernel});
+      Propagator(test_session(), *basis, made, {.grid = 3, .state = state, .lobe_time = LobeTime::kernel});
       ADD_FAILURE() << "taken: " << word;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ExitCode::usage);

@@ -4,16 +4,9 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "device/session.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::test {
-
-inline Session& test_session() {
-  // Never released: a driver's own statics may be gone before a static session is.
-  static Session* const session = new Session(choose_device());
-  return *session;
-}
 
 inline unsigned add_material(Scene& scene, const glm::vec3& albedo = glm::vec3(1), unsigned flags = 0) {
   Material material{};

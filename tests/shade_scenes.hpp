@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "on_device.hpp"
 #include "pipeline/shade.hpp"
 #include "reference/shade.hpp"
 #include "reference/view.hpp"
@@ -22,6 +23,7 @@ namespace shade_scenes {
 using reference::MappedLight;
 using reference::ShadowMap;
 using std::numbers::pi;
+using test::test_session;
 
 inline constexpr unsigned kSide = 96;    // pixels of the camera's image
 inline constexpr double kHalf = 6;       // the camera sees the floor from -kHalf to kHalf [m]
@@ -29,11 +31,6 @@ inline constexpr unsigned kTexels = 64;  // of a shadow map's side
 inline constexpr double kMapHalf = 10;   // [m]
 inline constexpr double kTexel = 2 * kMapHalf / kTexels;
 inline constexpr double kFloat = 1e-5;
-
-inline Session& session() {
-  static Session one(choose_device(""));
-  return one;
-}
 
 inline void set(float v[3], const glm::dvec3& value) {
   for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(value[i]);
@@ -142,7 +139,7 @@ inline ShadowedLight upload(const MappedLight& light) {
   ShadowedLight shadowed{light.light, {}, {}};
   for (const ShadowMap& map : light.maps) {
     shadowed.views.push_back(map.view);
-    shadowed.depths.push_back(session().upload(map.depth, "test: shadow map"));
+    shadowed.depths.push_back(test_session().upload(map.depth, "test: shadow map"));
   }
   return shadowed;
 }
@@ -155,13 +152,13 @@ inline std::vector<glm::vec4> show(Show what, const SurfaceImage& image,
   const std::size_t pixels = image.depth.size();
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const cl::Buffer irradiance =
-      session().upload(indirect.empty() ? std::vector<cl_float4>(pixels) : indirect, "test: irradiance");
-  cl::Buffer shown = session().upload(std::vector<glm::vec4>(pixels, glm::vec4(nan)), "test: image");
-  const Surface camera = upload_surface(session(), image);
-  Shader shader(session());
+      test_session().upload(indirect.empty() ? std::vector<cl_float4>(pixels) : indirect, "test: irradiance");
+  cl::Buffer shown = test_session().upload(std::vector<glm::vec4>(pixels, glm::vec4(nan)), "test: image");
+  const Surface camera = upload_surface(test_session(), image);
+  Shader shader(test_session());
   shader.light(camera, shadowed);
   shader.show(what, camera, irradiance, shown);
-  return session().read<glm::vec4>(shown, pixels);
+  return test_session().read<glm::vec4>(shown, pixels);
 }
 
 /// E of the first channel, pixel by pixel; the kernels' and the twin's agree.

@@ -1,7 +1,7 @@
 // Shading against closed forms: Lambert's law for every kind of light, what each view shows, and the kernels' twin.
 #include "pipeline/shade.hpp"
 
-#include "reference/check.hpp"
+#include "on_device.hpp"
 #include "shade_scenes.hpp"
 #include "support/error.hpp"
 
@@ -9,6 +9,7 @@ namespace clpv {
 namespace {
 
 using namespace shade_scenes;
+using test::expect_passed;
 
 TEST(Shade, DirectionalLightFollowsTheCosine) {
   for (const double degrees : {0.0, 35.0, 80.0}) {
@@ -119,8 +120,8 @@ TEST(Shade, NamesOfViewsRoundTrip) {
 
 TEST(Shade, RefusesMapsThatDoNotFit) {
   const SurfaceImage image = floor_image();
-  const Surface camera = upload_surface(session(), image);
-  Shader shader(session());
+  const Surface camera = upload_surface(test_session(), image);
+  Shader shader(test_session());
   ShadowedLight shadowed = upload(sun({0, -1, 0}, 7, floor_at(0)));
   shadowed.views[0].width = 3;
   EXPECT_THROW(shader.light(camera, {shadowed}), Error);
@@ -130,12 +131,7 @@ TEST(Shade, RefusesMapsThatDoNotFit) {
 }
 
 TEST(Shade, KernelsAgreeWithTheirTwin) {
-  const reference::CheckResults results = reference::check_shade(session());
-  ASSERT_FALSE(results.empty());
-  for (const reference::CheckResult& result : results) {
-    EXPECT_TRUE(result.passed()) << result.variant << ": " << result.worst << " > " << result.allowed << ", "
-                                 << result.place;
-  }
+  expect_passed(reference::check_shade(test_session()));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "on_device.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/propagate.hpp"
 #include "scene/load.hpp"
@@ -12,10 +13,7 @@
 namespace clpv {
 namespace {
 
-Session& session() {
-  static Session one(choose_device());
-  return one;
-}
+using test::test_session;
 
 double largest(const std::vector<float>& values) {
   double most = 0;
@@ -51,14 +49,14 @@ std::vector<float> lobes_everywhere(const Basis& basis, int samples, int channel
 }
 
 std::vector<float> propagated(const Basis& basis, const Transport& transport, State state, bool blockers) {
-  Volume injected(session(), {kGrid, basis.size(), 3}, "injected"),
-      accumulated(session(), {kGrid, basis.size(), 3}, "accumulated"),
-      geometry(session(), {kGrid + 1, basis.size(), 1}, "geometry");
-  injected.write(session(), lobes_everywhere(basis, kGrid, 3, false));
-  geometry.write(session(), lobes_everywhere(basis, kGrid + 1, 1, true));
-  Propagator(session(), basis, transport, {.grid = kGrid, .state = state})
+  Volume injected(test_session(), {kGrid, basis.size(), 3}, "injected"),
+      accumulated(test_session(), {kGrid, basis.size(), 3}, "accumulated"),
+      geometry(test_session(), {kGrid + 1, basis.size(), 1}, "geometry");
+  injected.write(test_session(), lobes_everywhere(basis, kGrid, 3, false));
+  geometry.write(test_session(), lobes_everywhere(basis, kGrid + 1, 1, true));
+  Propagator(test_session(), basis, transport, {.grid = kGrid, .state = state})
       .propagate({injected, blockers ? &geometry : nullptr, accumulated}, kSteps);
-  return accumulated.read(session());
+  return accumulated.read(test_session());
 }
 
 // Direction bins, N up to 96, take long to compile; the check of propagation has them.
@@ -105,13 +103,13 @@ TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
       light[(channel * source.size() + i) * plane + plane / 2] = static_cast<float>(source[i]);
   }
   const VolumeShape shape{kCells, basis->size(), 3};
-  Volume injected(session(), shape, "injected"), accumulated(session(), shape, "accumulated");
-  injected.write(session(), light);
+  Volume injected(test_session(), shape, "injected"), accumulated(test_session(), shape, "accumulated");
+  injected.write(test_session(), light);
   double energy = 0;
-  Propagator(session(), *basis, transport, {.grid = kCells})
+  Propagator(test_session(), *basis, transport, {.grid = kCells})
       .propagate({injected, nullptr, accumulated}, kTravels, [&](int step, const Volume& travelling) {
         if (step < kTravels) return;
-        const std::vector<float> values = travelling.read(session());
+        const std::vector<float> values = travelling.read(test_session());
         for (std::size_t i = 0; i < source.size(); ++i) {
           double sum = 0;
           for (std::size_t cell = 0; cell < plane; ++cell)
@@ -130,7 +128,7 @@ TEST(Sh4, GivesTheImageOfSh3) {
     options.basis = basis, options.transport = "exact";
     options.width = options.height = 24, options.cascade_size = scene.cascade_size.value_or(2);
     options.grid = 10, options.cascades = 1, options.shadow_size = 64, options.rsm_size = 48;
-    Frame frame(session(), scene, options);
+    Frame frame(test_session(), scene, options);
     frame.render(scene.cameras.front());
     return frame.read(Show::indirect);
   };

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "on_device.hpp"
 #include "pipeline/mip_chain.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "on_device.hpp"
 #include "pipeline/convert.hpp"
 #include "pipeline/propagate.hpp"
 #include "support/error.hpp"
@@ -15,12 +16,9 @@
 namespace clpv {
 namespace {
 
-constexpr double kHalf = 1.0 / 2048;  // half a unit in the last place of 11 bits, relative
+using test::test_session;
 
-Session& session() {
-  static Session one(choose_device());
-  return one;
-}
+constexpr double kHalf = 1.0 / 2048;  // half a unit in the last place of 11 bits, relative
 
 std::vector<float> random_values(std::size_t count) {
   std::mt19937 random(3);
@@ -39,7 +37,7 @@ std::vector<float> random_values(const VolumeShape& shape) {
 std::vector<VolumeFormat> formats(const VolumeShape& shape) {
   std::vector<VolumeFormat> found;
   for (const VolumeFormat& format : all_formats()) {
-    if (!unsupported(session().device(), format, shape)) found.push_back(format);
+    if (!unsupported(test_session().device(), format, shape)) found.push_back(format);
   }
   return found;
 }
@@ -68,19 +66,19 @@ TEST(Volume, ReadsBackWhatWasWritten) {
     const std::vector<float> values = random_values(shape);
     for (const VolumeFormat& format : formats(shape)) {
       SCOPED_TRACE(format_name(format) + " n " + std::to_string(shape.n));
-      Volume volume(session(), shape, "test", format);
-      volume.write(session(), values);
-      const std::vector<float> found = volume.read(session());
+      Volume volume(test_session(), shape, "test", format);
+      volume.write(test_session(), values);
+      const std::vector<float> found = volume.read(test_session());
       if (format.storage == Storage::float32) {
         EXPECT_EQ(found, values);
       } else {
         expect_near(found, values, kHalf);
       }
-      Volume copy(session(), shape, "copy", format);
-      copy.copy_from(session(), volume);
-      EXPECT_EQ(copy.read(session()), found);
-      volume.clear(session());
-      for (const float value : volume.read(session())) ASSERT_EQ(value, 0.0f);
+      Volume copy(test_session(), shape, "copy", format);
+      copy.copy_from(test_session(), volume);
+      EXPECT_EQ(copy.read(test_session()), found);
+      volume.clear(test_session());
+      for (const float value : volume.read(test_session())) ASSERT_EQ(value, 0.0f);
     }
   }
 }
@@ -101,7 +99,7 @@ TEST(Volume, NoTwoCoefficientsShareAPlace) {
 }
 
 TEST(Volume, WhatADeviceLacksIsSaid) {
-  Device device = session().device();
+  Device device = test_session().device();
   const VolumeFormat image{Layout::image, Storage::float16};
   device.image3d_writes = false;
   EXPECT_EQ(unsupported(device, image).value_or(""), "no 3-D image writes (cl_khr_3d_image_writes)");
@@ -118,15 +116,15 @@ TEST(Volume, WhatADeviceLacksIsSaid) {
 }
 
 TEST(Volume, AnImageThatIsTooLargeIsUnsupported) {
-  const Device& device = session().device();
+  const Device& device = test_session().device();
   if (unsupported(device, {Layout::image})) GTEST_SKIP() << "no 3-D images to write on " << device.name;
   EXPECT_TRUE(unsupported(device, {Layout::image}, {1 << 20, 4, 3}).has_value());
   EXPECT_FALSE(unsupported(device, {Layout::image}, {16, 4, 3}).has_value());
 }
 
 TEST(Volume, BuffersBeyondWhatKernelsAddressAreUnsupported) {
-  EXPECT_TRUE(unsupported(session().device(), {}, {512, 25, 3}).has_value());
-  EXPECT_FALSE(unsupported(session().device(), {}, {128, 25, 3}).has_value());
+  EXPECT_TRUE(unsupported(test_session().device(), {}, {512, 25, 3}).has_value());
+  EXPECT_FALSE(unsupported(test_session().device(), {}, {128, 25, 3}).has_value());
 }
 
 TEST(Volume, CountsWhatACellTakes) {
@@ -139,15 +137,15 @@ TEST(Volume, CountsWhatACellTakes) {
 TEST(Volume, PlanesBesideAnImageHoldTheSame) {
   const VolumeShape shape{9, 5, 3};
   for (const Storage storage : {Storage::float32, Storage::float16}) {
-    if (unsupported(session().device(), {Layout::image, storage}, shape)) GTEST_SKIP() << "no images";
-    Volume image(session(), shape, "image", {Layout::image, storage});
-    image.write(session(), random_values(shape));
-    PlaneStage stage(session(), shape, storage);
+    if (unsupported(test_session().device(), {Layout::image, storage}, shape)) GTEST_SKIP() << "no images";
+    Volume image(test_session(), shape, "image", {Layout::image, storage});
+    image.write(test_session(), random_values(shape));
+    PlaneStage stage(test_session(), shape, storage);
     stage.take(image);
-    EXPECT_EQ(stage.planes().read(session()), image.read(session()));
-    stage.planes().write(session(), std::vector<float>(random_values(shape).size(), 0.25f));
+    EXPECT_EQ(stage.planes().read(test_session()), image.read(test_session()));
+    stage.planes().write(test_session(), std::vector<float>(random_values(shape).size(), 0.25f));
     stage.give(image);
-    EXPECT_EQ(stage.planes().read(session()), image.read(session()));
+    EXPECT_EQ(stage.planes().read(test_session()), image.read(test_session()));
   }
 }
 
@@ -168,11 +166,13 @@ Propagated propagated(const Run& run, int iterations, bool late = false) {
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport("sampled", *basis);
   const VolumeShape shape{run.grid, basis->size(), 3}, corners{run.grid + 1, basis->size(), 1};
-  Volume injected(session(), shape, "injected", run.format), accumulated(session(), shape, "sum", run.format),
-      late_light(session(), shape, "late", run.format), geometry(session(), corners, "geometry", run.format);
-  injected.write(session(), random_values(shape));
-  geometry.write(session(), random_values(corners));
-  Propagator propagator(session(), *basis, transport,
+  Volume injected(test_session(), shape, "injected", run.format),
+      accumulated(test_session(), shape, "sum", run.format),
+      late_light(test_session(), shape, "late", run.format),
+      geometry(test_session(), corners, "geometry", run.format);
+  injected.write(test_session(), random_values(shape));
+  geometry.write(test_session(), random_values(corners));
+  Propagator propagator(test_session(), *basis, transport,
                         {.grid = run.grid, .state = run.state, .format = run.format, .lanes = run.lanes});
   // Twice: nothing may be left of the first.
   for (int repetition = 0; repetition < 2; ++repetition) {
@@ -180,7 +180,7 @@ Propagated propagated(const Run& run, int iterations, bool late = false) {
         {injected, run.blockers ? &geometry : nullptr, accumulated, late ? &late_light : nullptr},
         iterations);
   }
-  return {accumulated.read(session()), late_light.read(session())};
+  return {accumulated.read(test_session()), late_light.read(test_session())};
 }
 
 /// Rows of whole blocks of eight and one cell more; checks of the stage have other grids.
@@ -208,7 +208,7 @@ TEST(VolumeLayouts, OneCellAWorkItemOrEight) {
 /// Images take turns with spare ones: however many steps there are, the sums end where they should.
 TEST(VolumeLayouts, ImagesAddUpOverAnyNumberOfSteps) {
   const VolumeFormat image{Layout::image, Storage::float32};
-  if (unsupported(session().device(), image)) GTEST_SKIP() << "no 3-D images to write";
+  if (unsupported(test_session().device(), image)) GTEST_SKIP() << "no 3-D images to write";
   for (const State state : {State::coefficients, State::fluxes}) {
     for (const bool late : {false, true}) {
       for (int iterations = 0; iterations <= 5; ++iterations) {
