@@ -8,12 +8,14 @@
 
 #include "basis/clamped_cosine.hpp"
 #include "basis/srbf.hpp"
+#include "every_basis.hpp"
 #include "sphere_quadrature.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
 
+using test::EveryBasis;
 using test::integral;
 using test::sphere;
 
@@ -25,15 +27,6 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
 }
-
-class EveryBasis : public ::testing::TestWithParam<std::string> {
- protected:
-  std::unique_ptr<Basis> basis_ = make_basis(GetParam());
-};
-INSTANTIATE_TEST_SUITE_P(Names, EveryBasis,
-                         ::testing::Values("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2",
-                                           "srbf8v3", "srbf14"),
-                         [](const auto& info) { return info.param; });
 
 TEST_P(EveryBasis, GramMatrixAndIntegralsAreThoseOfItsFunctions) {
   const int n = basis_->size();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "every_basis.hpp"
 #include "on_device.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/propagate.hpp"
@@ -13,6 +14,7 @@
 namespace clpv {
 namespace {
 
+using test::EveryBasis;
 using test::test_session;
 
 double largest(const std::vector<float>& values) {
@@ -59,25 +61,13 @@ std::vector<float> propagated(const Basis& basis, const Transport& transport, St
   return accumulated.read(test_session());
 }
 
-// Direction bins, N up to 96, take long to compile; the check of propagation has them.
-std::vector<std::string> names() {
-  std::vector<std::string> names = basis_names();
-  std::erase_if(names, [](const std::string& name) { return name.starts_with("bins"); });
-  return names;
-}
-
-class EveryBasis : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Names, EveryBasis, ::testing::ValuesIn(names()),
-                         [](const auto& info) { return info.param; });
-
 TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
-  const auto basis = make_basis(GetParam());
   for (const char* name : {"sampled", "exact"}) {
-    const Transport transport = make_transport(name, *basis);
+    const Transport transport = make_transport(name, *basis_);
     std::vector<float> before;
     for (const bool blockers : {false, true}) {
-      const std::vector<float> coefficients = propagated(*basis, transport, State::coefficients, blockers),
-                               fluxes = propagated(*basis, transport, State::fluxes, blockers);
+      const std::vector<float> coefficients = propagated(*basis_, transport, State::coefficients, blockers),
+                               fluxes = propagated(*basis_, transport, State::fluxes, blockers);
       EXPECT_LE(largest_difference(fluxes, coefficients), 1e-5 * largest(coefficients))
           << name << (blockers ? ", blockers" : "");
       if (blockers) {
@@ -91,22 +81,21 @@ TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
 // Exact transport loses nothing: the share of an isotropic source's energy that travels after 24 steps, in a grid that
 // light does not leave.
 TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
-  const auto basis = make_basis(GetParam());
   constexpr int kTravels = 24, kCells = 2 * kTravels + 1;
-  const Transport transport = make_transport("exact", *basis);
+  const Transport transport = make_transport("exact", *basis_);
   const std::size_t plane = static_cast<std::size_t>(kCells) * kCells * kCells;
-  std::vector<float> light(plane * static_cast<std::size_t>(basis->size()) * 3, 0.0f);
-  std::vector<double> source = basis->constant();
+  std::vector<float> light(plane * static_cast<std::size_t>(basis_->size()) * 3, 0.0f);
+  std::vector<double> source = basis_->constant();
   for (std::size_t i = 0; i < source.size(); ++i) {
     source[i] *= 0.25 / std::numbers::pi;
     for (std::size_t channel = 0; channel < 3; ++channel)
       light[(channel * source.size() + i) * plane + plane / 2] = static_cast<float>(source[i]);
   }
-  const VolumeShape shape{kCells, basis->size(), 3};
+  const VolumeShape shape{kCells, basis_->size(), 3};
   Volume injected(test_session(), shape, "injected"), accumulated(test_session(), shape, "accumulated");
   injected.write(test_session(), light);
   double energy = 0;
-  Propagator(test_session(), *basis, transport, {.grid = kCells})
+  Propagator(test_session(), *basis_, transport, {.grid = kCells})
       .propagate({injected, nullptr, accumulated}, kTravels, [&](int step, const Volume& travelling) {
         if (step < kTravels) return;
         const std::vector<float> values = travelling.read(test_session());
@@ -114,10 +103,10 @@ TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
           double sum = 0;
           for (std::size_t cell = 0; cell < plane; ++cell)
             sum += static_cast<double>(values[i * plane + cell]);
-          energy += sum * basis->integrals()[i];
+          energy += sum * basis_->integrals()[i];
         }
       });
-  EXPECT_NEAR(energy / basis->energy(source), 1, 2e-5);
+  EXPECT_NEAR(energy / basis_->energy(source), 1, 2e-5);
 }
 
 // Band 3 of a clamped cosine is 0, and face transports send nothing but clamped cosines.

@@ -6,12 +6,14 @@
 #include <algorithm>
 
 #include "basis/face_transport.hpp"
+#include "every_basis.hpp"
 #include "sphere_quadrature.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
 
+using test::EveryBasis;
 using test::integral;
 using test::sphere;
 
@@ -53,15 +55,6 @@ TEST(SolidAngles, AreThoseOfTheFacesAndSumToTheSphere) {
   }
   EXPECT_NEAR(sum, 4 * kPi, 1e-13);
 }
-
-class EveryBasis : public ::testing::TestWithParam<std::string> {
- protected:
-  std::unique_ptr<Basis> basis_ = make_basis(GetParam());
-};
-INSTANTIATE_TEST_SUITE_P(Names, EveryBasis,
-                         ::testing::Values("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2",
-                                           "srbf8v3", "srbf14"),
-                         [](const auto& info) { return info.param; });
 
 TEST_P(EveryBasis, FluxesAreSamplesOrIntegralsOverTheFace) {
   const Transport sampled = make_transport("sampled", *basis_), exact = make_transport("exact", *basis_);
