@@ -1,0 +1,59 @@
+// Scenes for the tests of path tracing: floors, suns, lamps, and what looks at them.
+#pragma once
+
+#include <limits>
+
+#include "reference/path_tracer.hpp"
+#include "scene_builder.hpp"
+
+namespace clpv::test {
+
+inline constexpr float kOpen = std::numeric_limits<float>::infinity();
+
+/// A view along `forward`, its half extents the tangents of half the fields of view.
+inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float half, unsigned width,
+                        unsigned height) {
+  const glm::vec3 f = glm::normalize(forward), r = glm::normalize(glm::cross(f, up)), u = glm::cross(r, f);
+  ClpvView view{};
+  for (int i = 0; i < 3; ++i) {
+    view.eye[i] = eye[i], view.right[i] = r[i], view.up[i] = u[i], view.forward[i] = f[i];
+  }
+  view.half_width = half, view.half_height = half * height / width;
+  view.near_depth = 0.001f, view.far_depth = kOpen;
+  view.width = width, view.height = height;
+  return view;
+}
+
+/// By the scene's own lights.
+inline reference::TracedImage trace_paths(const Scene& scene, const ClpvView& view,
+                                          const reference::PathTracerOptions& options) {
+  return reference::trace_paths(scene, scene.lights, view, options);
+}
+
+/// A material of one albedo.
+inline unsigned add_grey(Scene& scene, float albedo) {
+  return add_material(scene, glm::vec3(albedo));
+}
+
+/// Irradiance across its direction [W/m^2], white.
+inline Light sun(const glm::vec3& direction, float irradiance) {
+  return {"sun", directional_light(direction, glm::vec3(irradiance))};
+}
+/// Intensity [W/sr], white.
+inline Light lamp(const glm::vec3& position, float intensity) {
+  return {"lamp", point_light(position, glm::vec3(intensity))};
+}
+
+/// A horizontal square of edge 20 m round the origin, facing up.
+inline Scene floor_scene(float albedo) {
+  Scene scene;
+  scene.path = "floor";
+  add_grey(scene, albedo);
+  add_quad(scene, {-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, 0);
+  return scene;
+}
+
+/// Down on the middle of the floor from 2 m above it.
+inline const ClpvView kDown = view_of({0, 2, 0}, {0, -1, 0}, {0, 0, -1}, 0.5f, 9, 7);
+
+}  // namespace clpv::test
