@@ -7,8 +7,8 @@
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pipeline/gather.hpp"
+#include "reference/check.hpp"
 #include "reference/gather.hpp"
-#include "reference/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -104,8 +104,9 @@ Job gather_job(Bench& bench, const Variant& variant) {
     const std::string key = fmt::format("gather {} {} {} {} {}", variant.basis, variant.lambda,
                                         variant.transport, variant.lobe, variant.grid);
     const auto twin = bench.twin(key, [&] { return twin_of(*p, bench.inputs(), seen.camera_image); });
-    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
-                   tolerance_of(filters(variant) ? "gather-filtered" : "gather", variant.storage));
+    return compare(
+        bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
+        reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", format_of(variant)));
   };
   const VolumeFormat format = format_of(variant);
   const int n = p->basis->size();

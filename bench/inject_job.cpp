@@ -6,8 +6,8 @@
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pipeline/inject.hpp"
+#include "reference/check.hpp"
 #include "reference/inject.hpp"
-#include "reference/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -119,8 +119,9 @@ Job inject_job(Bench& bench, const Variant& variant) {
     const auto twin = bench.twin(key, [&] { return twin_of(*p, seen, Injection::options_of(variant)); });
     Deviation deviation{
         0,
-        tolerance_of(variant.lobe == "exact" || variant.storage == "half" ? "inject" : "inject-rotated",
-                     variant.storage),
+        reference::tolerance_in(
+            variant.lobe == "exact" || variant.storage == "half" ? "inject" : "inject-rotated",
+            format_of(variant)),
         {}};
     const std::vector<float> light = p->light.read(bench.session);
     compare(*p->basis, light, twin->data(), variant.grid, "light", deviation);

@@ -9,7 +9,7 @@
 #include "bench/stage_jobs.hpp"
 #include "pipeline/propagate.hpp"
 #include "pipeline/tuning.hpp"
-#include "reference/tolerances.hpp"
+#include "reference/check.hpp"
 #include "support/log.hpp"
 
 namespace clpv::bench {
@@ -171,8 +171,8 @@ Job propagate_job(Bench& bench, const Variant& variant) {
     });
     return compare_volumes(
         p->accumulated.read(bench.session), *twin, grid,
-        tolerance_of(p->variant.lobe == kRunTimeLobes ? "propagate-run-time-lobes" : "propagate",
-                     p->variant.storage));
+        reference::tolerance_in(p->variant.lobe == kRunTimeLobes ? "propagate-run-time-lobes" : "propagate",
+                                format_of(p->variant)));
   };
   return job;
 }

@@ -6,7 +6,6 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "reference/tolerances.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -34,10 +33,6 @@ Row make_row(const std::string& suite, const std::string& stage, const Variant& 
 
 VolumeFormat format_of(const Variant& variant) {
   return volume_format(variant.layout, variant.storage);
-}
-
-double tolerance_of(const std::string& stage, const std::string& storage) {
-  return reference::tolerance(storage == "half" ? stage + "-half" : stage);
 }
 
 LobeOptions lobe_options(const Variant& variant) {

@@ -62,9 +62,6 @@ Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const st
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
                           double tolerance);
 
-/// Tolerance of a stage's output kept in a storage ("float", "half").
-double tolerance_of(const std::string& stage, const std::string& storage);
-
 LobeOptions lobe_options(const Variant& variant);
 VolumeFormat format_of(const Variant& variant);
 State state_of(const Variant& variant);

@@ -7,6 +7,7 @@
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/propagate_twin.hpp"
 #include "bench/suites.hpp"
+#include "reference/check.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -40,7 +41,7 @@ Job native_job(Bench& bench, const Variant& variant) {
     return compare_volumes(p->baseline.accumulated(),
                            propagated(*p->basis, p->transport, injected,
                                       variant.occlusion ? &corners : nullptr, variant.iterations),
-                           variant.grid, tolerance_of("propagate", variant.storage));
+                           variant.grid, reference::tolerance_in("propagate", format_of(variant)));
   };
   job.cost.flops = p->baseline.flops(variant.iterations);
   job.cost.bytes = p->baseline.bytes(variant.iterations);
