@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "reference/transmit.hpp"
+
 namespace clpv::reference {
 namespace {
 
@@ -11,27 +13,6 @@ std::vector<double> cell(const Volume& volume, int channel, const glm::ivec3& p)
   for (int i = 0; i < volume.coefficients; ++i)
     c[static_cast<std::size_t>(i)] = volume.value(channel, i, p.x, p.y, p.z);
   return c;
-}
-
-/// 1 - B, B the mean blocker over those corners of cell p that lie towards `side`, looked up `against` the light.
-double transmitted(const Basis& basis, const Volume& geometry, const glm::ivec3& p, const glm::ivec3& side,
-                   const std::vector<double>& against) {
-  std::vector<double> mean(static_cast<std::size_t>(basis.size()), 0.0);
-  int corners = 0;
-  for (int c = 0; c < 8; ++c) {
-    const glm::ivec3 corner(c & 1, (c >> 1) & 1, c >> 2);
-    bool towards = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (side[axis] != 0) towards = towards && corner[axis] == (side[axis] > 0 ? 1 : 0);
-    }
-    if (!towards) continue;
-    ++corners;
-    const std::vector<double> g = cell(geometry, 0, p + corner);
-    for (std::size_t i = 0; i < g.size(); ++i) mean[i] += g[i];
-  }
-  double blocked = 0;
-  for (std::size_t i = 0; i < mean.size(); ++i) blocked += mean[i] / corners * against[i];
-  return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
 double flux_through(const Face& face, const std::vector<double>& c, bool clamp) {

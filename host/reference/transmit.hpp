@@ -1,0 +1,17 @@
+// The twin of kernels/transmit.cl: what blockers let through on one way into a cell (docs/method.md, 'Propagation').
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "reference/volume.hpp"
+
+namespace clpv::reference {
+
+/// 1 - B in [0, 1], B the mean blocker over those corners of `cell` that lie towards `side` (components -1, 0, 1), looked
+/// up `against` the light: N values, Face::against or Neighbour::against. `geometry`: (n+1)^3 corners, one channel.
+double transmitted(const Basis& basis, const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
+                   const std::vector<double>& against);
+
+}  // namespace clpv::reference

@@ -1,0 +1,170 @@
+// What blockers let through: the kernels against their twin, and both against closed forms.
+#include "pipeline/transmit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "on_device.hpp"
+#include "reference/tolerances.hpp"
+#include "reference/transmit.hpp"
+
+namespace clpv {
+namespace {
+
+using test::test_session;
+
+constexpr int kGrid = 5;  // no multiple of anything: borders, partial work-groups
+constexpr std::size_t kCells = std::size_t{kGrid} * kGrid * kGrid;
+constexpr double kFloat = 1e-6;  // sums of N products of numbers about 1
+
+/// A way into a cell: which of its corners block, and what their blockers are looked up by.
+struct Way {
+  glm::ivec3 side;
+  glm::dvec3 direction;  // of the light
+  std::vector<double> against;
+};
+
+/// In the order of the transmittance volume's planes.
+std::vector<Way> ways(const Transport& transport) {
+  std::vector<Way> result;
+  if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
+    for (const Face& face : faces->faces) result.push_back({face.normal, face.direction, face.against});
+    return result;
+  }
+  for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
+    if (neighbour.offset != glm::ivec3(0))
+      result.push_back({-neighbour.offset, neighbour.direction, neighbour.against});
+  }
+  return result;
+}
+
+/// Coefficients of the blocker at a corner.
+using Blockers = std::function<std::vector<double>(const glm::ivec3& corner)>;
+
+reference::Volume geometry_of(const Basis& basis, const Blockers& blockers) {
+  reference::Volume volume(kGrid + 1, basis.size(), 1);
+  for (int z = 0; z <= kGrid; ++z) {
+    for (int y = 0; y <= kGrid; ++y) {
+      for (int x = 0; x <= kGrid; ++x) {
+        const std::vector<double> c = blockers({x, y, z});
+        for (int i = 0; i < basis.size(); ++i)
+          volume.at(0, i, x, y, z) = static_cast<float>(c[static_cast<std::size_t>(i)]);
+      }
+    }
+  }
+  return volume;
+}
+
+std::vector<float> on_device(const Basis& basis, const Transport& transport,
+                             const reference::Volume& blockers) {
+  Volume geometry(test_session(), {kGrid + 1, basis.size(), 1}, "test: geometry");
+  geometry.write(test_session(), {blockers.values.begin(), blockers.values.end()});
+  Transmitter transmitter(test_session(), basis, transport, {.grid = kGrid});
+  transmitter.transmit(geometry);
+  return transmitter.transmittance().read(test_session());
+}
+
+/// What kernel and twin let through a cell by a way has to be `expected`.
+void expect_all(const Basis& basis, const Transport& transport, const reference::Volume& geometry,
+                const std::function<double(const glm::ivec3& cell, const Way& way)>& expected,
+                double allowed = kFloat) {
+  const std::vector<float> device = on_device(basis, transport, geometry);
+  const std::vector<Way> all = ways(transport);
+  ASSERT_EQ(device.size(), all.size() * kCells);
+  for (std::size_t at = 0; at < device.size(); ++at) {
+    const int cell = static_cast<int>(at % kCells);
+    const glm::ivec3 p(cell % kGrid, cell / kGrid % kGrid, cell / kGrid / kGrid);
+    const Way& way = all[at / kCells];
+    const double through = expected(p, way);
+    ASSERT_NEAR(device[at], through, allowed) << "way " << at / kCells << " cell " << cell;
+    ASSERT_NEAR(reference::transmitted(basis, geometry, p, way.side, way.against), through, allowed)
+        << "twin, way " << at / kCells << " cell " << cell;
+  }
+}
+
+std::vector<double> times(double s, std::vector<double> c) {
+  for (double& value : c) value *= s;
+  return c;
+}
+
+class EachTransport : public ::testing::TestWithParam<std::string> {
+ protected:
+  Transport transport(const Basis& basis) const { return make_transport(GetParam(), basis); }
+};
+INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport, ::testing::ValuesIn(transport_names()),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST_P(EachTransport, NothingBlocksNothing) {
+  for (const char* name : {"sh2", "srbf8v2"}) {
+    const auto basis = make_basis(name);
+    const reference::Volume nothing(kGrid + 1, basis->size(), 1);
+    expect_all(
+        *basis, transport(*basis), nothing, [](const glm::ivec3&, const Way&) { return 1.0; }, 0);
+  }
+}
+
+// Of sh2, whose constant is one exactly: blockers that grow from corner to corner are averaged over the side that light
+// comes in by, and B is cut to [0, 1].
+TEST_P(EachTransport, BlockersAreAveragedOverTheSideOfTheWay) {
+  const auto basis = make_basis("sh2");
+  const glm::dvec3 slope(0.21, -0.13, 0.17);
+  const auto blocked = [&](const glm::dvec3& corner) { return 0.4 + glm::dot(slope, corner); };
+  const reference::Volume geometry = geometry_of(*basis, [&](const glm::ivec3& corner) {
+    return times(blocked(glm::dvec3(corner)), basis->constant());
+  });
+  int open = 0, shut = 0, between = 0;
+  expect_all(*basis, transport(*basis), geometry, [&](const glm::ivec3& cell, const Way& way) {
+    const double through = 1 - blocked(glm::dvec3(cell) + 0.5 + 0.5 * glm::dvec3(way.side));
+    ++(through >= 1 ? open : through <= 0 ? shut : between);
+    return std::clamp(through, 0.0, 1.0);
+  });
+  EXPECT_GT(open, 0);
+  EXPECT_GT(shut, 0);
+  EXPECT_GT(between, 0);
+}
+
+// On sh2 a surfel that faces n blocks 1/4 - n.w/2 of what travels along w, and one that faces both ways 1/2 of all.
+TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
+  const auto basis = make_basis("sh2");
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(2, -1, 3));
+  const std::vector<double> front = times(0.9, basis->clamped_cosine(normal)),
+                            back = times(0.9, basis->clamped_cosine(-normal));
+  expect_all(*basis, transport(*basis), geometry_of(*basis, [&](const glm::ivec3&) { return front; }),
+             [&](const glm::ivec3&, const Way& way) {
+               return 1 - std::clamp(0.9 * (0.25 - 0.5 * glm::dot(normal, way.direction)), 0.0, 1.0);
+             });
+  std::vector<double> both = front;
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] += back[i];
+  expect_all(*basis, transport(*basis), geometry_of(*basis, [&](const glm::ivec3&) { return both; }),
+             [](const glm::ivec3&, const Way&) { return 1 - 0.9 * 0.5; });
+}
+
+TEST_P(EachTransport, KernelsAgreeWithTheTwin) {
+  for (const char* name : {"sh3", "srbf4", "srbf8v2"}) {
+    SCOPED_TRACE(name);
+    const auto basis = make_basis(name);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const reference::Volume geometry = geometry_of(*basis, [&](const glm::ivec3&) {
+      const glm::dvec3 normal(uniform(random), uniform(random), uniform(random) + 2);
+      return times(std::max(0.0, 2 * uniform(random)), basis->clamped_cosine(glm::normalize(normal)));
+    });
+    expect_all(
+        *basis, transport(*basis), geometry,
+        [&](const glm::ivec3& cell, const Way& way) {
+          return reference::transmitted(*basis, geometry, cell, way.side, way.against);
+        },
+        reference::tolerance("propagate"));
+  }
+}
+
+}  // namespace
+}  // namespace clpv
