@@ -35,7 +35,7 @@ class Session {
   /// as the first launches.
   void store_programs();
 
-  /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill(). `what` names it in errors.
+  /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill_zero(). `what` names it in errors.
   /// Throws Error(run_time) before allocating where the device cannot hold it, and says what it could.
   cl::Buffer buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags = CL_MEM_READ_WRITE);
   void account(std::size_t bytes) { bytes_ += bytes; }  ///< for memory taken outside buffer()
