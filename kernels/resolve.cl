@@ -156,6 +156,16 @@ static inline Unpacked unpack(const int8 hit, const Vec v) {
   return lanes;
 }
 
+// What these pixels see, and which of them see anything; stores their depths.
+CLPV_INLINE void resolve(const ClpvView view, const Eight p, __global const float8* keys,
+                         __global const uint8* triangles_seen, CLPV_SCENE, __global float* depths,
+                         int8* hit, Seen* seen) {
+  const float8 key = keys[p.row];
+  *hit = key < (float8)(INFINITY);
+  look(view, p, hit_depth(key), *hit ? triangles_seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, seen);
+  store_depth(view, p, key, depths);
+}
+
 #if !CLPV_FROM_LIGHT
 
 // Emission goes to `emissives` where CLPV_EMISSIVE; a scene that does not emit has none to write.
@@ -169,11 +179,9 @@ __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
 ) {
   const Eight p = this_row(view);
   if (p.count == 0) return;
-  const float8 key = keys[p.row];
-  const int8 hit = key < (float8)(INFINITY);
+  int8 hit;
   Seen seen;
-  look(view, p, hit_depth(key), hit ? triangles_seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, &seen);
-  store_depth(view, p, key, depths);
+  resolve(view, p, keys, triangles_seen, CLPV_PASS_SCENE, depths, &hit, &seen);
   const Unpacked normal = unpack(hit, seen.normal), albedo = unpack(hit, seen.albedo);
 #if CLPV_EMISSIVE
   const Unpacked emissive = unpack(hit, seen.emissive);
@@ -205,11 +213,9 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
                           const float colour_scale) {
   const Eight p = this_row(view);
   if (p.count == 0) return;
-  const float8 key = keys[p.row];
-  const int8 hit = key < (float8)(INFINITY);
+  int8 hit;
   Seen seen;
-  look(view, p, hit_depth(key), hit ? triangles_seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, &seen);
-  store_depth(view, p, key, depths);
+  resolve(view, p, keys, triangles_seen, CLPV_PASS_SCENE, depths, &hit, &seen);
   const Unpacked normal = unpack(hit, seen.normal), albedo = unpack(hit, seen.albedo);
   for (uint i = 0; i < p.count; ++i) {
     const uint pixel = p.py * view.width + p.px + i;
