@@ -5,9 +5,10 @@
 #include <string_view>
 
 #include "image/image.hpp"
-#include "pipeline/options.hpp"
 
 namespace clpv {
+
+enum class ToneMap { none, reinhard, aces };
 
 /// The tone curve on linear colour, into [0,1].
 /// none: clamped. reinhard: E. Reinhard et al. 2002, eq. 3, L/(1+L) on the luminance, then clamped.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "basis/rotated_lobe.hpp"
+#include "image/tone_map.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/run_time_lobes.hpp"
 #include "pipeline/transport_source.hpp"
@@ -17,8 +18,6 @@
 namespace clpv {
 
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
-
-enum class ToneMap { none, reinhard, aces };
 
 /// The defaults are the preset `best`, and stand here alone: what comes closest to path tracing at about the
 /// published scheme's cost (docs/method.md, 'Two ways to use clpv').

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
