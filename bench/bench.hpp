@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <regex>
-#include <string>
 #include <vector>
 
 #include "bench/suites.hpp"

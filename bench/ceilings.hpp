@@ -1,7 +1,6 @@
 // What this device can do at most, measured in the same run (kernels/ceilings.cl).
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "bench/job.hpp"

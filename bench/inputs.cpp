@@ -1,7 +1,6 @@
 #include "bench/inputs.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pipeline/cascade.hpp"
 #include "pipeline/scene_buffers.hpp"

@@ -1,5 +1,5 @@
 // Propagation in double, row by row: what host/reference/propagate does cell by cell, fast enough for the sizes that
-// are timed. tests/bench_twin_test.cpp holds the two against each other.
+// are timed. tests/bench_test.cpp holds the two against each other.
 #pragma once
 
 #include <vector>

@@ -2,7 +2,6 @@
 // for a while disturbs all alike.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "bench/ceilings.hpp"

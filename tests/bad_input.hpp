@@ -1,8 +1,6 @@
 // The common ground of tests that must be refused: a sound model to spoil.
 #pragma once
 
-#include <limits>
-
 #include "gltf_builder.hpp"
 #include "scene/bounds.hpp"
 #include "tiny_images.hpp"

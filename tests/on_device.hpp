@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "device/session.hpp"
 #include "reference/check.hpp"
 

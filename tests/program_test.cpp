@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
 
 #include "device/kernel_files.hpp"
 #include "device/session.hpp"

@@ -12,7 +12,6 @@
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
 #include "scene/load.hpp"
-#include "scene_builder.hpp"
 
 namespace clpv {
 namespace {

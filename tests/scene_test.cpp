@@ -1,7 +1,6 @@
 // Scene files: what they say, what they replace, what is added where nothing is given; and Sponza as a whole.
 #include "scene/scene.hpp"
 
-#include <chrono>
 #include <glm/gtc/constants.hpp>
 
 #include "gltf_builder.hpp"

@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <glm/glm.hpp>
-#include <iterator>
-#include <limits>
 
 #include "reference/ray_scene.hpp"
 #include "run_program.hpp"

@@ -2,7 +2,6 @@
 // flat square seen from the origin.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/glm.hpp>

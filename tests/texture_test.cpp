@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "on_device.hpp"
 #include "pipeline/mip_chain.hpp"
 #include "pipeline/rasterize.hpp"

@@ -1,7 +1,6 @@
 // The propagation of sh2 with the paper's transport in C++, OpenMP and AVX2: what the OpenCL kernels are held against.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 

@@ -1,5 +1,4 @@
 // Suite `baseline`: propagation of sh2 in OpenCL against the same step in C++, OpenMP and AVX2 on the host.
-#include <fmt/format.h>
 
 #include <cmath>
 

@@ -1,7 +1,5 @@
 #include "basis/srbf.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
 

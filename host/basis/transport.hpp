@@ -4,7 +4,6 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <memory>
 #include <string>
 #include <variant>
 #include <vector>

@@ -2,7 +2,6 @@
 #include "pipeline/quality.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,6 @@
 // clpv render: a scene, lit by cascaded light propagation volumes, into an image.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 

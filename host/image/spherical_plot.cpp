@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "image/label.hpp"
-#include "image/tone_map.hpp"
 
 namespace clpv {
 namespace {

@@ -1,7 +1,6 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pipeline/view.hpp"
 #include "support/error.hpp"

@@ -1,8 +1,5 @@
 #include "pipeline/inject.hpp"
 
-#include <algorithm>
-#include <numbers>
-
 #include "device/arguments.hpp"
 #include "kernels/shared/sort.h"
 #include "pipeline/inject_source.hpp"

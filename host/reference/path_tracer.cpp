@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <numbers>
 #include <thread>
 
 #include "reference/path_sampler.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"

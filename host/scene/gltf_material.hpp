@@ -2,7 +2,6 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <string>
 #include <vector>
 
 #include "scene/gltf_document.hpp"
