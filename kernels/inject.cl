@@ -1,4 +1,4 @@
-// Injection: what a view sees becomes light or blocking in the cells of a volume (MATH section 4).
+// Injection: what a view sees becomes light or blocking in the cells of a volume (docs/method.md, 'Injection').
 //
 // CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W]; its cell gains (P/pi) c(n), c(n) the clamped
 // cosine round n. CLPV_GEOMETRY 1, blocking: a texel is a surfel of area A; the corner nearest to it gains

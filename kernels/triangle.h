@@ -1,7 +1,7 @@
 // A triangle of the scene as a view sees it: its plane, and what a pixel's ray hits on it.
 //
-// Of one triangle, or of eight side by side (vec.h). Everything is relative to the eye and built from edges, so that small triangles far from the origin lose no
-// digits. CLPV_ORTHOGRAPHIC 1: parallel rays; 0: rays through the eye.
+// Of one triangle, or of eight side by side (vec.h). Everything is relative to the eye and built from edges, so that
+// small triangles far from the origin lose no digits. CLPV_ORTHOGRAPHIC 1: parallel rays; 0: rays through the eye.
 #ifndef CLPV_TRIANGLE_H
 #define CLPV_TRIANGLE_H
 

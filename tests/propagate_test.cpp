@@ -1,4 +1,4 @@
-// Propagation: kernels against the twin, and the twin against closed forms (MATH section 3).
+// Propagation: kernels against the twin, and the twin against closed forms.
 #include "pipeline/propagate.hpp"
 
 #include <gtest/gtest.h>

@@ -104,7 +104,7 @@ TEST_P(EveryBasis, LobesAreClampedCosinesAlongTheAxes) {
   const Transport sampled = make_transport("sampled", *basis_), exact = make_transport("exact", *basis_);
   for (std::size_t a = 0; a < kAxes.size(); ++a) {
     const std::vector<double> lobe = basis_->clamped_cosine(glm::dvec3(kAxes[a]));
-    // MATH: unit flux changes a lobe by -.13 to +.05 %.
+    // Unit flux changes a lobe by -.13 to +.05 %.
     EXPECT_NEAR(basis_->energy(lobe) / kPi, 1, 1.4e-3);
     std::vector<double> unit;
     for (int i = 0; i < basis_->size(); ++i) {

@@ -13,8 +13,8 @@
 
 namespace clpv {
 
-/// One of the thirty ways from a source cell to a face of a neighbour (Kaplanyan & Dachsbacher 2010; MATH
-/// section 3).
+/// One of the thirty ways from a source cell to a face of a neighbour (Kaplanyan & Dachsbacher 2010;
+/// docs/method.md, 'Propagation').
 struct Face {
   glm::ivec3 travel;         ///< k: from the source cell to its neighbour, a unit axis
   glm::ivec3 normal;         ///< n_f: outward normal of the neighbour's face; equals travel for the far face
@@ -47,7 +47,7 @@ struct Transport {
   LobeOptions lobes;  ///< that it was made with
   std::variant<FaceTransport, OperatorTransport> scheme;
   /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2],
-  /// where gather(n) = 4 b(-n) for face transports (the convention of MATH section 4), alpha(-n) K for
+  /// where gather(n) = 4 b(-n) for face transports (docs/method.md, 'Gathering'), alpha(-n) K for
   /// operators.
   bool gathers_cosine = false;  ///< false: 4 b(-n);  true: alpha(-n) K
   Matrix gather;                ///< K, N x N; used where gathers_cosine

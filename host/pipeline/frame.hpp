@@ -1,4 +1,4 @@
-// A frame: every stage in its order, for one scene and one set of options (ARCHITECTURE: 'A frame').
+// A frame: every stage in its order, for one scene and one set of options (docs/method.md, 'The frame').
 #pragma once
 
 #include <functional>

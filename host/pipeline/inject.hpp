@@ -1,4 +1,4 @@
-// Injection: what views see becomes light and blocking in the cells of volumes (MATH section 4).
+// Injection: what views see becomes light and blocking in the cells of volumes (docs/method.md, 'Injection').
 #pragma once
 
 #include <CL/opencl.hpp>

@@ -1,5 +1,5 @@
-// Propagation: the injected light, n steps on through a cascade's cells (MATH section 3; Kaplanyan &
-// Dachsbacher 2010).
+// Propagation: the injected light, n steps on through a cascade's cells (docs/method.md, 'Propagation'; Kaplanyan
+// & Dachsbacher 2010).
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct PropagateVolumes {
   const Volume& injected;            ///< [W/sr], step 0
   const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
   Volume& accumulated;               ///< out: injected field plus every step's output [W/sr]
-  Volume* late = nullptr;  ///< out, where wanted: what steps after half of them added (MATH section 5)
+  Volume* late = nullptr;            ///< out, where wanted: what steps after half of them added
 };
 
 /// Runs the steps of one basis and transport over volumes of one grid size.

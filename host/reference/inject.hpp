@@ -1,4 +1,4 @@
-// The twin of kernels/inject.cl: one texel after another in double, straight from MATH section 4.
+// The twin of kernels/inject.cl: one texel after another in double, straight from docs/method.md, 'Injection'.
 #pragma once
 
 #include "basis/basis.hpp"

@@ -1,4 +1,4 @@
-// The twin of kernels/propagate.cl: one step after another in double, straight from MATH section 3.
+// The twin of kernels/propagate.cl: one step after another in double, straight from docs/method.md, 'Propagation'.
 #pragma once
 
 #include <array>
