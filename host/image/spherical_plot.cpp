@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "image/label.hpp"
+#include "image/tone_map.hpp"
 
 namespace clpv {
 namespace {
