@@ -54,12 +54,13 @@ std::vector<double> twin_of(const Gathering& p, Inputs& inputs, const SurfaceIma
     volumes.push_back(
         to_reference(inputs.light(*p.basis, static_cast<int>(c)), p.options.grid, p.basis->size(), 3));
   }
-  for (std::size_t c = 0; c < p.grids.size(); ++c) cascades.push_back({p.grids[c], &volumes[c], nullptr});
+  for (std::size_t c = 0; c < p.grids.size(); ++c) cascades.push_back({p.grids[c], &volumes[c]});
+  const GatherForm form(*p.basis, p.transport);
   std::vector<double> values;
   for (std::size_t i = 0; i < camera.depth.size(); i += kCheckedPixels) {
     const glm::dvec3 normal(glm::vec3(camera.normal[i]));
     const glm::dvec3 e = camera.depth[i] > 0
-                             ? reference::gather(*p.basis, p.transport, p.options, cascades,
+                             ? reference::gather(*p.basis, form, p.options, cascades,
                                                  position(camera.view, i, camera.depth[i]), normal)
                              : glm::dvec3(0);
     values.insert(values.end(), {e.x, e.y, e.z});
@@ -99,7 +100,7 @@ Job gather_job(Bench& bench, const Variant& variant) {
   p->irradiance = session.buffer(bytes, "bench: irradiance");
   Job job;
   job.reset = [p, &session, bytes] { session.fill_zero(p->irradiance, bytes); };
-  job.run = [p, &seen] { p->gatherer.gather(seen.camera, p->grids, p->accumulated, {}, p->irradiance); };
+  job.run = [p, &seen] { p->gatherer.gather(seen.camera, p->grids, p->accumulated, p->irradiance); };
   job.verify = [p, &bench, &seen, variant, pixels] {
     const std::string key = fmt::format("gather {} {} {} {} {}", variant.basis, variant.lambda,
                                         variant.transport, variant.lobe, variant.grid);
@@ -109,7 +110,7 @@ Job gather_job(Bench& bench, const Variant& variant) {
         reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", format_of(variant)));
   };
   const VolumeFormat format = format_of(variant);
-  const int n = p->basis->size();
+  const int n = GatherForm(*p->basis, p->transport).functions().size();
   double volumes = 0;  // read once; buffers are packed first: read, written and read again
   for (const auto& volume : p->volumes)
     volumes += static_cast<double>(volume->bytes()) * (format.layout == Layout::image ? 1 : 3);

@@ -5,6 +5,8 @@
 #ifndef CLPV_GATHER_IMAGE_H
 #define CLPV_GATHER_IMAGE_H
 
+#include "volume/light.h"
+
 typedef struct {
   Coefficients r, g, b;
 } Sampled;
@@ -22,13 +24,9 @@ CLPV_INLINE float3 clpv_weigh(const Coefficients weights, const Sampled sampled)
 }
 
 #define CLPV_GATHERED CLPV_IMAGE_IN
-#if CLPV_LATE
-#define CLPV_GATHERED_VOLUME(c) , CLPV_GATHERED full##c, CLPV_GATHERED late##c
-#define CLPV_ADD_NUMBERED(c) CLPV_ADD_CASCADE(c, full##c, late##c);
-#else
-#define CLPV_GATHERED_VOLUME(c) , CLPV_GATHERED full##c
-#define CLPV_ADD_NUMBERED(c) CLPV_ADD_CASCADE(c, full##c, full##c);
-#endif
+#define CLPV_GATHERED_VOLUME(c) , CLPV_GATHERED volume##c
+#define CLPV_ADD_NUMBERED(c) \
+  if (left > 0.0f) CLPV_ADD_CASCADE(c, volume##c);
 #define CLPV_GATHERED_VOLUMES CLPV_EACH_CASCADE(CLPV_GATHERED_VOLUME)
 #define CLPV_ADD_CASCADES CLPV_EACH_CASCADE(CLPV_ADD_NUMBERED)
 

@@ -1,6 +1,6 @@
-// Gathering from buffers, whatever their layout: kernel `pack` brings a cascade's volume to one record a cell, CLPV_PAIRS
-// float8, each two coefficients as (r g b 0)(r g b 0). Kernel `gather` then reads the eight cells round a point as whole
-// vectors, where planes would take 24 N scalar reads.
+// Gathering from records that kernel `pack` made of a cascade's volume: CLPV_PAIRS float8 a cell, each two numbers as
+// (r g b 0)(r g b 0). Kernel `gather` then reads the eight cells round a point as whole vectors, where planes would take
+// 24 scalar reads a number.
 //
 // The host writes CLPV_EACH_PAIR(DO), which writes DO(j, even, odd) for each pair j; even(c), odd(c) are its members of
 // Coefficients c.
@@ -54,13 +54,12 @@ CLPV_INLINE float3 clpv_weigh(const Coefficients weights, const Sampled sampled)
   return sum.lo.xyz + sum.hi.xyz;
 }
 
-// The packed volumes of all cascades in one buffer: full, full, ... or full, late, full, late, ...
+// The packed volumes of all cascades in one buffer, finest first.
 #define CLPV_GATHERED __global const float8*
 #define CLPV_GATHERED_VOLUMES , CLPV_GATHERED packed
 #define CLPV_ADD_CASCADES                                                                                \
-  for (uint c = 0; c < cascades && (CLPV_LATE || left > 0.0f); ++c) {                                    \
-    CLPV_GATHERED full = packed + (size_t)c * (1 + CLPV_LATE) * CLPV_CELLS * CLPV_PAIRS;                 \
-    CLPV_ADD_CASCADE(c, full, full + CLPV_CELLS * CLPV_PAIRS);                                           \
+  for (uint c = 0; c < cascades && left > 0.0f; ++c) {                                                   \
+    CLPV_ADD_CASCADE(c, packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS);                                   \
   }
 
 #endif

@@ -105,12 +105,10 @@ struct Both {
 
 /// Gathers `image` from volumes of grid_of(0), grid_of(1), ...
 inline Both gather(const Basis& basis, const Transport& transport, GatherOptions options,
-                   const std::vector<reference::Volume>& full, const SurfaceImage& image,
-                   const std::vector<reference::Volume>& late = {}) {
+                   const std::vector<reference::Volume>& full, const SurfaceImage& image) {
   options.grid = kGrid;
-  options.late_light = !late.empty();
   std::vector<Volume> device;
-  device.reserve(full.size() + late.size());
+  device.reserve(full.size());
   const auto upload = [&](const std::vector<reference::Volume>& volumes) {
     std::vector<const Volume*> uploaded;
     for (const reference::Volume& v : volumes) {
@@ -124,7 +122,7 @@ inline Both gather(const Basis& basis, const Transport& transport, GatherOptions
   std::vector<reference::Cascade> cascades;
   for (std::size_t c = 0; c < full.size(); ++c) {
     grids.push_back(grid_of(static_cast<int>(c)));
-    cascades.push_back({grids[c], &full[c], late.empty() ? nullptr : &late[c]});
+    cascades.push_back({grids[c], &full[c]});
   }
   Surface camera;
   camera.view = image.view;
@@ -133,7 +131,7 @@ inline Both gather(const Basis& basis, const Transport& transport, GatherOptions
   const float nan = std::numeric_limits<float>::quiet_NaN();
   cl::Buffer e =
       test_session().upload(std::vector<cl_float4>(image.depth.size(), {{nan, nan, nan, nan}}), "test: E");
-  Gatherer(test_session(), basis, transport, options).gather(camera, grids, upload(full), upload(late), e);
+  Gatherer(test_session(), basis, transport, options).gather(camera, grids, upload(full), e);
   Both both{{},
             reference::gather(basis, transport, options, cascades, image),
             test_session().read<cl_float4>(e, image.depth.size())};

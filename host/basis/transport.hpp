@@ -48,7 +48,7 @@ struct Transport {
   std::variant<FaceTransport, OperatorTransport> scheme;
   /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2],
   /// where gather(n) = 4 b(-n) for face transports (docs/method.md, 'Gathering'), alpha(-n) K for
-  /// operators.
+  /// operators; GatherForm says how it is evaluated.
   bool gathers_cosine = false;  ///< false: 4 b(-n);  true: alpha(-n) K
   Matrix gather;                ///< K, N x N; used where gathers_cosine
   /// Lobes carry their nominal flux exactly: injection scales each virtual point light's lobe f to Int f dw =

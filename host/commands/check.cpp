@@ -28,9 +28,13 @@ const std::vector<Stage>& stages() {
     return [check](Session& session, bool) { return check(session); };
   };
   static const std::vector<Stage> all = {
-      {"sizes", plain(reference::check_sizes)}, {"rasterize", plain(reference::check_rasterize)},
-      {"inject", reference::check_inject},      {"propagate", reference::check_propagate},
-      {"gather", reference::check_gather},      {"shade", plain(reference::check_shade)},
+      {"sizes", plain(reference::check_sizes)},
+      {"rasterize", plain(reference::check_rasterize)},
+      {"inject", reference::check_inject},
+      {"propagate", reference::check_propagate},
+      {"carry-late", plain(reference::check_carry_late)},
+      {"gather", reference::check_gather},
+      {"shade", plain(reference::check_shade)},
   };
   return all;
 }

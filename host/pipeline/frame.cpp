@@ -21,7 +21,6 @@ InjectOptions inject_options(const RenderOptions& options, const Transport& tran
 GatherOptions gather_options(const RenderOptions& options) {
   return {.grid = options.grid,
           .gather_offset = options.gather_offset,
-          .late_light = options.late_light,
           .floor = options.gather_floor,
           .lobes = options.lobes(),
           .table = options.table_storage(),
@@ -46,8 +45,8 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   const double light = bytes(light_shape(tried, basis));
   const double carried = bytes({grid, options.travelling() == State::fluxes ? 6 : basis.size(), 3});
   // Images, which are not updated in place, come with spare ones, and with planes to inject into.
-  const double spare = options.format().layout == Layout::image ? 2 * light + carried : 0.0;
-  return light * (1 + options.cascades * (options.late_light ? 2 : 1)) + 3 * carried +
+  const double spare = options.format().layout == Layout::image ? 3 * light + carried : 0.0;
+  return light * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) + 3 * carried +
          2 * bytes(geometry_shape(tried, basis)) + spare;
 }
 
@@ -101,10 +100,13 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   for (int c = 0; c < options.cascades; ++c) {
     accumulated_.push_back(std::make_unique<Volume>(session, light_shape(options, *basis_),
                                                     "accumulated light", options.format()));
-    if (options.late_light)
-      late_.push_back(
-          std::make_unique<Volume>(session, light_shape(options, *basis_), "late light", options.format()));
+    late_.push_back(
+        options.late_light && c > 0
+            ? std::make_unique<Volume>(session, light_shape(options, *basis_), "late light", options.format())
+            : nullptr);
   }
+  if (options.late_light && options.cascades > 1)
+    late_carrier_.emplace(session, light_shape(options, *basis_), options.format());
   if (options.occlusion) {
     geometry_ = std::make_unique<Volume>(session, geometry_shape(options, *basis_), "geometry volume",
                                          options.format());
@@ -189,11 +191,19 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
   const auto c = static_cast<std::size_t>(cascade);
   {
     const StageScope scope(session_, {"propagate", cascade});
-    propagator_.propagate(
-        {injected_, geometry_.get(), *accumulated_[c], options_.late_light ? late_[c].get() : nullptr},
-        options_.iterations);
+    propagator_.propagate({injected_, geometry_.get(), *accumulated_[c], late_[c].get()},
+                          options_.iterations);
   }
   if (observer) observer({cascade, grids_[c], injected_, geometry_.get(), *accumulated_[c]});
+}
+
+void Frame::carry_late_light() {
+  for (std::size_t c = accumulated_.size() - 1; c-- > 0;) {
+    const StageScope scope(session_, {"carry-late", static_cast<int>(c)});
+    for (Volume* sum : {accumulated_[c].get(), late_[c].get()}) {
+      if (sum != nullptr) late_carrier_->carry(*late_[c + 1], grids_[c + 1], *sum, grids_[c]);
+    }
+  }
 }
 
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
@@ -202,12 +212,12 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   rasterize_camera(camera);
   rasterize_shadows();
   for (int cascade = 0; cascade < options_.cascades; ++cascade) light_cascade(cascade, observer);
-  std::vector<const Volume*> accumulated, late;
+  if (late_carrier_) carry_late_light();
+  std::vector<const Volume*> accumulated;
   for (const auto& volume : accumulated_) accumulated.push_back(volume.get());
-  for (const auto& volume : late_) late.push_back(volume.get());
   {
     const StageScope scope(session_, {"gather"});
-    gatherer_.gather(*camera_surface_, grids_, accumulated, late, irradiance_);
+    gatherer_.gather(*camera_surface_, grids_, accumulated, irradiance_);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);

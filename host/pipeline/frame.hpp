@@ -9,6 +9,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
+#include "pipeline/carry_late.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"
 #include "pipeline/inject.hpp"
@@ -63,6 +64,7 @@ class Frame {
   void light_cascade(int cascade, const CascadeObserver& observer);
   void rasterize_rsms(int cascade);
   void inject(int cascade);
+  void carry_late_light();
 
   Session& session_;
   const Scene& scene_;
@@ -73,6 +75,7 @@ class Frame {
   Rasterizer rasterizer_;
   Injector injector_;
   Propagator propagator_;
+  std::optional<LateCarrier> late_carrier_;  ///< none: no late light, or no coarser cascade
   Gatherer gatherer_;
   Shader shader_;
   std::optional<Surface> camera_surface_;
@@ -81,8 +84,9 @@ class Frame {
   std::vector<ClpvGrid> grids_;
   Volume injected_;
   std::unique_ptr<Volume> geometry_;
-  std::vector<std::unique_ptr<Volume>> accumulated_, late_;
-  cl::Buffer irradiance_;  ///< float4 a pixel, as is image_
+  std::vector<std::unique_ptr<Volume>> accumulated_;
+  std::vector<std::unique_ptr<Volume>> late_;  ///< a cascade; null for the finest, and without late light
+  cl::Buffer irradiance_;                      ///< float4 a pixel, as is image_
   cl::Buffer image_;
   Show shown_ = Show::full;
 };

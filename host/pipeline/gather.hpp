@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/lookup_table.hpp"
+#include "pipeline/stencil.hpp"
 #include "pipeline/surface.hpp"
 #include "pipeline/volume.hpp"
 
@@ -19,56 +21,52 @@ struct GatherOptions {
   int grid = 32;               ///< cells along each axis of every cascade
   double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
   double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
-  bool late_light = false;     ///< add the late light of coarser cascades
-  double floor = 0;            ///< E is at least so much of its value were the light isotropic, in [0, 1]
+  double floor = 0;            ///< E is at least so much of its mean over all normals, in [0, 1]
   LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< of the cascades' volumes
   bool filtered = true;  ///< images: sampled by the device's filter; else from texels, in single precision
 };
 
-/// Isotropic light of energy Int I dw puts isotropic_share(...) Int I dw / s^2 on a surface, averaged over
-/// the surface's normal: 1/pi by the face transports' convention, kappa/4 for an operator that moves light by
-/// kappa cells.
-double isotropic_share(const Basis& basis, const Transport& transport);
-
-/// The gathering of one basis and transport. E(n) = g(n) . c / s^2 with g of Transport::gather, c the volume
+/// The gathering of one basis and transport. E(n) = g(n) . M c / s^2 by GatherForm, c the volume
 /// sampled trilinearly `gather_offset` cells off the surface, negative E clamped at 0.
 ///
 /// Which cascade lights a surface depends on the surface point alone: cascade i has the share
 /// m_i = min(1, cells to its boundary / blend_cells) of what finer ones left. So light is continuous across
-/// cascades, fades out towards the coarsest one's boundary, and is 0 outside. With late light, cascade i adds
-/// its late sum to all that finer ones lit: m_i (1 - left_i).
+/// cascades, fades out towards the coarsest one's boundary, and is 0 outside.
 class Gatherer {
  public:
   /// Throws Error(usage) for options out of range.
   Gatherer(Session& session, const Basis& basis, const Transport& transport, const GatherOptions& options);
 
-  /// Finest cascade first; `accumulated` a volume a grid, `late` too where options.late_light, else empty.
+  /// Finest cascade first; `accumulated` a volume a grid.
   /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
   /// there is no surface. Throws Error(run_time) where counts or shapes do not fit, or the device's memory
   /// does not suffice.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-              const std::vector<const Volume*>& accumulated, const std::vector<const Volume*>& late,
-              cl::Buffer& irradiance);
+              const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance);
 
  private:
-  bool reads_images() const { return options_.format.layout == Layout::image; }
+  /// Images are sampled as they are, unless they hold more than irradiance needs.
+  bool packs() const { return options_.format.layout != Layout::image || form_.projects(); }
   cl::Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                   const std::vector<const Volume*>& volumes, std::size_t expected) const;
-  void reserve(std::size_t volumes, std::size_t cascades);
+                   const std::vector<const Volume*>& volumes) const;
+  void reserve(std::size_t cascades);
   void pack(const Volume& volume, std::size_t slot);
 
   Session& session_;
   GatherOptions options_;
   int coefficients_;
+  GatherForm form_;
   LookupTable table_;
   ProgramSource source_;
-  cl::Kernel pack_;                           ///< of buffers
-  std::map<std::size_t, cl::Kernel> gather_;  ///< by number of cascades, of which only images take note
+  Stencil stencil_;  ///< of packing
+  cl::Kernel pack_;
+  std::map<std::size_t, cl::Kernel>
+      gather_;  ///< by number of cascades, of which only volumes not packed take note
   cl::Buffer packed_, grids_;
-  std::size_t reserved_volumes_ = 0, reserved_grids_ = 0;
+  std::size_t reserved_ = 0;  ///< cascades
 };
 
 }  // namespace clpv

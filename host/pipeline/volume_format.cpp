@@ -123,6 +123,10 @@ int preferred_lanes(const Device& device, const VolumeFormat& format) {
   return device.type == "cpu" && format.layout != Layout::image && !across_work_items ? kMostLanes : 1;
 }
 
+int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
+  return device.type == "cpu" && format.layout != Layout::image ? kMostLanes : 1;
+}
+
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
   literals["CLPV_LAYOUT"] = kLayoutLiterals[static_cast<std::size_t>(format.layout)];
   literals["CLPV_STORAGE_HALF"] = std::to_string(format.storage == Storage::float16 ? 1 : 0);

@@ -54,6 +54,9 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
 /// work-items, which is all but soa/float; else 1.
 int preferred_lanes(const Device& device, const VolumeFormat& format);
 
+/// The same where work-items do not vectorise whatever the format: 8 in buffers on CPU devices.
+int preferred_row_lanes(const Device& device, const VolumeFormat& format);
+
 /// What kernels/volume/instance.h wants to know.
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes = 1);
 

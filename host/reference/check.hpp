@@ -34,6 +34,7 @@ CheckResults check_rasterize(Session& session);
 // `thorough`: every combination of basis and options; minutes, for the kernels there are to build.
 CheckResults check_inject(Session& session, bool thorough = false);
 CheckResults check_propagate(Session& session, bool thorough = false);
+CheckResults check_carry_late(Session& session);
 CheckResults check_gather(Session& session, bool thorough = false);
 CheckResults check_shade(Session& session);
 

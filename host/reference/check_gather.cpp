@@ -28,7 +28,6 @@ Volume random_light(int coefficients, std::mt19937& random) {
 
 struct Variant {
   std::string name;
-  bool late_light = false;
   double floor = 0;
   LobeOptions lobes = {};
   TableStorage table = TableStorage::buffer;
@@ -56,27 +55,22 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   }
   const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
   const GatherOptions options{.grid = kGrid,
-                              .late_light = variant.late_light,
                               .floor = variant.floor,
                               .lobes = variant.lobes,
                               .table = variant.table,
                               .format = variant.format,
                               .filtered = variant.filtered};
-  std::vector<Lit> full, late;
-  for (int c = 0; c < kCascades; ++c) {
-    full.emplace_back(session, basis.size(), variant.format, random);
-    if (variant.late_light) late.emplace_back(session, basis.size(), variant.format, random);
-  }
-  std::vector<const clpv::Volume*> full_volumes, late_volumes;
+  std::vector<Lit> lit;
+  for (int c = 0; c < kCascades; ++c) lit.emplace_back(session, basis.size(), variant.format, random);
+  std::vector<const clpv::Volume*> volumes;
   std::vector<Cascade> cascades;
   for (std::size_t c = 0; c < grids.size(); ++c) {
-    full_volumes.push_back(&full[c].device);
-    if (variant.late_light) late_volumes.push_back(&late[c].device);
-    cascades.push_back({grids[c], &full[c].twin, variant.late_light ? &late[c].twin : nullptr});
+    volumes.push_back(&lit[c].device);
+    cascades.push_back({grids[c], &lit[c].twin});
   }
   const Surface camera = upload_surface(session, image);
   cl::Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
-  Gatherer(session, basis, transport, options).gather(camera, grids, full_volumes, late_volumes, irradiance);
+  Gatherer(session, basis, transport, options).gather(camera, grids, volumes, irradiance);
   std::vector<glm::dvec4> twin;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
   CheckResult result =
@@ -92,7 +86,7 @@ void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const Transport transport = make_transport("upwind", *basis);
   for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
-    Variant variant{.name = format_name(format), .late_light = true, .format = format};
+    Variant variant{.name = format_name(format), .format = format};
     if (format.layout == Layout::image) {
       variant.name += " filter";
       results.push_back(check_one(session, *basis, transport, variant));
@@ -100,6 +94,10 @@ void check_formats(Session& session, CheckResults& results) {
       variant.filtered = false;
     }
     results.push_back(check_one(session, *basis, transport, variant));
+    if (format.layout != Layout::image) continue;
+    // More coefficients than irradiance needs are packed, from images too.
+    const std::unique_ptr<Basis> large = make_basis("bins24");
+    results.push_back(check_one(session, *large, make_transport("upwind", *large), variant));
   }
 }
 
@@ -111,15 +109,13 @@ CheckResults check_gather(Session& session, bool thorough) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     // One transport that gathers radiant intensity, one that gathers through its own matrix.
     results.push_back(check_one(session, *basis, make_transport("sampled", *basis), {"plain"}));
-    results.push_back(
-        check_one(session, *basis, make_transport("upwind", *basis), {"late, floor", true, 0.15}));
+    results.push_back(check_one(session, *basis, make_transport("upwind", *basis), {"floor", 0.15}));
     if (basis->centres().empty()) continue;  // no table
     const LobeOptions functions{.table_functions = true};
-    results.push_back(
-        check_one(session, *basis, make_transport("sampled", *basis), {"table", false, 0, functions}));
+    results.push_back(check_one(session, *basis, make_transport("sampled", *basis), {"table", 0, functions}));
     if (!session.device().images || (!thorough && basis->size() > 4)) continue;
     results.push_back(check_one(session, *basis, make_transport("sampled", *basis),
-                                {"table image", false, 0, functions, TableStorage::image}));
+                                {"table image", 0, functions, TableStorage::image}));
   }
   check_formats(session, results);
   return results;

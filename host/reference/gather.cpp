@@ -43,17 +43,12 @@ std::vector<double> sample(const Volume& volume, int channel, const glm::dvec3& 
   return c;
 }
 
-/// g(n): what irradiance is in each coefficient, per s^2.
-std::vector<double> gather_weights(const Basis& basis, const Transport& transport, const LobeOptions& lobes,
+/// M^T g(n): what irradiance is in each coefficient, per s^2.
+std::vector<double> gather_weights(const Basis& basis, const GatherForm& form, const LobeOptions& lobes,
                                    const glm::dvec3& normal) {
-  std::vector<double> weights(static_cast<std::size_t>(basis.size()));
-  if (transport.gathers_cosine) {
-    basis.cosine_integrals(-normal, weights);
-    return transport.gather.transposed() * weights;
-  }
-  weights = evaluate(basis, lobes, -normal);
-  for (double& weight : weights) weight *= 4;
-  return weights;
+  const bool looked_up = !form.integrates() && !form.projects();
+  const std::vector<double> f = looked_up ? evaluate(basis, lobes, -normal) : form.evaluate(-normal);
+  return form.matrix().transposed() * std::span<const double>(form.windowed(f));
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -63,12 +58,12 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// E s^2 of one volume, clamped and floored.
-glm::dvec3 irradiance(const Basis& basis, const Volume& volume, const glm::dvec3& at,
-                      const std::vector<double>& weights, double floor_share) {
+glm::dvec3 irradiance(const Volume& volume, const glm::dvec3& at, const std::vector<double>& weights,
+                      const std::vector<double>& floor) {
   glm::dvec3 e(0);
   for (int channel = 0; channel < 3; ++channel) {
     const std::vector<double> c = sample(volume, channel, at);
-    const double least = std::max(0.0, floor_share * basis.energy(c));
+    const double least = std::max(0.0, dot(floor, c));
     e[channel] = std::max(least, dot(weights, c));
   }
   return e;
@@ -84,11 +79,12 @@ double share_of(const glm::dvec3& at, int n, double blend_cells) {
 
 }  // namespace
 
-glm::dvec3 gather(const Basis& basis, const Transport& transport, const GatherOptions& options,
+glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
                   const glm::dvec3& normal) {
-  const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
-  const double floor_share = options.floor * isotropic_share(basis, transport);
+  const std::vector<double> weights = gather_weights(basis, form, options.lobes, normal);
+  std::vector<double> floor = form.matrix().transposed() * std::span<const double>(form.mean());
+  for (double& weight : floor) weight *= options.floor;
   glm::dvec3 e(0);
   double left = 1;
   for (const Cascade& cascade : cascades) {
@@ -98,10 +94,7 @@ glm::dvec3 gather(const Basis& basis, const Transport& transport, const GatherOp
     const double share = share_of(at, options.grid, options.blend_cells);
     const glm::dvec3 point = at + options.gather_offset * normal - 0.5;  // the first cell's centre is at 0.5
     const double area = double{grid.cell} * grid.cell;
-    e += share * left / area * irradiance(basis, *cascade.accumulated, point, weights, floor_share);
-    if (cascade.late != nullptr) {
-      e += share * (1 - left) / area * irradiance(basis, *cascade.late, point, weights, floor_share);
-    }
+    e += share * left / area * irradiance(*cascade.accumulated, point, weights, floor);
     left *= 1 - share;
   }
   return e;
@@ -109,13 +102,14 @@ glm::dvec3 gather(const Basis& basis, const Transport& transport, const GatherOp
 
 std::vector<glm::dvec3> gather(const Basis& basis, const Transport& transport, const GatherOptions& options,
                                const std::vector<Cascade>& cascades, const SurfaceImage& camera) {
+  const GatherForm form(basis, transport);
   std::vector<glm::dvec3> image(camera.depth.size(), glm::dvec3(0));
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
     const auto x = static_cast<double>(pixel % camera.view.width),
                y = static_cast<double>(pixel / camera.view.width);
-    image[pixel] = gather(basis, transport, options, cascades, surface_position(camera.view, x, y, depth),
+    image[pixel] = gather(basis, form, options, cascades, surface_position(camera.view, x, y, depth),
                           glm::dvec3(camera.normal[pixel]));
   }
   return image;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/gather.hpp"
@@ -17,12 +18,11 @@ namespace clpv::reference {
 struct Cascade {
   ClpvGrid grid{};
   const Volume* accumulated = nullptr;
-  const Volume* late = nullptr;  ///< null without late light
 };
 
 /// Irradiance [W/m^2] of red, green, blue that the cascades, finest first, put on a surface at `position` [m]
 /// with unit `normal`. As Gatherer, one surface at a time.
-glm::dvec3 gather(const Basis& basis, const Transport& transport, const GatherOptions& options,
+glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position, const glm::dvec3& normal);
 
 /// The same for every pixel of what a camera sees, row 0 first; 0 where there is no surface.

@@ -46,6 +46,10 @@ inline constexpr Tolerance kTolerances[] = {
      "a device's image filter may keep 8 bits of a weight, along each of three axes, between neighbours as "
      "far apart as random ones are; PoCL, which filters in float, measured 1e-6"},
     {"gather-filter-half", 2e-2, "as gather-filter: numbers of 11 bits add a tenth of that"},
+    {"carry-late", 5e-6,
+     "sums of nine float32 numbers; the twin weighs by where the float32 origins put the centres; measured "
+     "2e-7"},
+    {"carry-late-half", 1e-3, "numbers of 11 bits: the light, the sum before and the sum after are rounded"},
     {"shade", 5e-6,
      "float32 light angles and distances; a shadow filter weighs texels by coordinates good to 1e-6 of its "
      "side"},

@@ -13,8 +13,7 @@
 //   CLPV_VOLUME_IN, CLPV_VOLUME_OUT                    types of kernel parameters that read, write
 //   CELL NAME_load(in, channel, x, y, z)               x, y, z in -1..n; the border is 0
 //   void NAME_store(out, channel, x, y, z, cell)       x, y, z in 0..n-1
-// With 8 lanes, x is a multiple of 8 to store and at most one off such to load; lanes beyond the border load anything
-// and are not stored.
+// With 8 lanes, x is a multiple of 8 to store; lanes beyond the border load anything and are not stored.
 // Every layout has a border of zeros all round, so that a neighbour outside the grid reads 0 without a test.
 #ifndef CLPV_VOLUME_INSTANCE_ONCE
 #define CLPV_VOLUME_INSTANCE_ONCE

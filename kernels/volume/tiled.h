@@ -12,15 +12,19 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   return (row * CLPV_BLOCKS + 1 + (x >> 3)) * CLPV_BLOCK + (x & 7);
 }
 
-// x is a multiple of 8, one less, or one more, which the compiler knows of a literal step from such a multiple.
+// Most callers' x is a multiple of 8, one less, or one more, which the compiler knows of a literal step from such a multiple.
 CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int at, const int x) {
   const int block = at - (x & 7);
   const float8 row = CLPV_READ_ROW(volume, block);
   if ((x & 7) == 0) return row;
   const float8 next = CLPV_READ_ROW(volume, block + CLPV_BLOCK);
   // Spelt out as in gather_packed.h.
-  return (x & 7) == 1 ? (float8)(row.s1, row.s2, row.s3, row.s4, row.s5, row.s6, row.s7, next.s0)
-                      : (float8)(row.s7, next.s0, next.s1, next.s2, next.s3, next.s4, next.s5, next.s6);
+  if ((x & 7) == 1)
+    return (float8)(row.s1, row.s2, row.s3, row.s4, row.s5, row.s6, row.s7, next.s0);
+  if ((x & 7) == 7)
+    return (float8)(row.s7, next.s0, next.s1, next.s2, next.s3, next.s4, next.s5, next.s6);
+  const float8 both[2] = {row, next};
+  return vload8(0, (const float*)both + (x & 7));
 }
 
 #define CLPV_BEFORE_LOAD

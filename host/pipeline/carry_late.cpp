@@ -1,0 +1,61 @@
+#include "pipeline/carry_late.hpp"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "device/arguments.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kAligned = 1e-2;  // [finer cells]: rounding of origins in float32, some hundred cells away
+
+/// From the coarser grid's least corner to the finer one's, in finer cells.
+std::array<cl_int, 3> offset_between(const ClpvGrid& coarser, const ClpvGrid& finer, int n) {
+  if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
+    throw Error(ExitCode::run_time, "late light: cells of {} m in cells of {} m; halves allowed", finer.cell,
+                coarser.cell);
+  }
+  std::array<cl_int, 3> offset{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = (double{finer.origin[axis]} - coarser.origin[axis]) / finer.cell;
+    const double whole = std::round(cells);
+    if (std::abs(cells - whole) > kAligned || whole < -1 || whole > n + 1) {
+      throw Error(
+          ExitCode::run_time,
+          "late light: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
+          "numbers -1..{} allowed",
+          axis, cells, n + 1);
+    }
+    offset[axis] = static_cast<cl_int>(whole);
+  }
+  return offset;
+}
+
+}  // namespace
+
+LateCarrier::LateCarrier(Session& session, const VolumeShape& shape, const VolumeFormat& format, int lanes)
+    : session_(session),
+      shape_(shape),
+      stencil_(session.device(),
+               {.grid = shape.n,
+                .format = format,
+                .lanes = lanes > 0 ? lanes : preferred_row_lanes(session.device(), format)}) {
+  ProgramSource source{"carry_late.cl", {}, coefficient_macros(shape.coefficients)};
+  stencil_.add_literals(source.literals);
+  kernel_ = session.kernel(source, "carry_late");
+  if (format.layout == Layout::image)
+    spare_ = std::make_unique<Volume>(session, shape, "spare sum with late light", format);
+}
+
+void LateCarrier::carry(const Volume& light, const ClpvGrid& coarser, Volume& sum, const ClpvGrid& finer) {
+  const std::array<cl_int, 3> offset = offset_between(coarser, finer, shape_.n);
+  Volume& result = spare_ ? *spare_ : sum;
+  set_arguments(kernel_, light.memory(), sum.memory(), result.memory(), offset[0], offset[1], offset[2]);
+  stencil_.launch(session_, kernel_, shape_.channels);
+  if (spare_) std::swap(*spare_, sum);
+}
+
+}  // namespace clpv
