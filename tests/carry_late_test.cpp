@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "basis/transport.hpp"
+#include "on_device.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "reference/carry_late.hpp"
@@ -22,14 +23,11 @@
 namespace clpv {
 namespace {
 
+using namespace test;
+
 constexpr int kGrid = 12;
 constexpr double kEdge = 6;      // of the finest grid [m]
 constexpr double kFloat = 2e-6;  // relative: a dozen roundings of float32
-
-Session& session() {
-  static Session one(choose_device(""));
-  return one;
-}
 
 /// Finest first. In cells of either kind, the camera is in the second of two finer ones along x alone.
 std::vector<ClpvGrid> grids(int count) {
@@ -60,11 +58,11 @@ reference::Volume carried(const reference::Volume& light, const ClpvGrid& coarse
                           const reference::Volume& sum, const ClpvGrid& finer,
                           const VolumeFormat& format = {}, int lanes = 0) {
   const VolumeShape shape{kGrid, sum.coefficients, 3};
-  Volume from(session(), shape, "test: light", format), to(session(), shape, "test: sum", format);
-  from.write(session(), {light.values.begin(), light.values.end()});
-  to.write(session(), {sum.values.begin(), sum.values.end()});
-  LateCarrier(session(), shape, format, lanes).carry(from, coarser, to, finer);
-  const std::vector<float> found = to.read(session());
+  Volume from(test_session(), shape, "test: light", format), to(test_session(), shape, "test: sum", format);
+  from.write(test_session(), {light.values.begin(), light.values.end()});
+  to.write(test_session(), {sum.values.begin(), sum.values.end()});
+  LateCarrier(test_session(), shape, format, lanes).carry(from, coarser, to, finer);
+  const std::vector<float> found = to.read(test_session());
   reference::Volume twin = sum;
   reference::carry_late(light, coarser, twin, finer);
   double largest = 0;
@@ -116,7 +114,7 @@ TEST(CarryLate, LinearLightIsReproducedAndAddedToWhatIsThere) {
   const auto light = volume_of(two[1], 5, linear);
   const auto field = volume_of(two[0], 5, linear);
   for (const VolumeFormat& format : all_formats()) {
-    if (format.storage != Storage::float32 || unsupported(session().device(), format)) continue;
+    if (format.storage != Storage::float32 || unsupported(test_session().device(), format)) continue;
     for (const int lanes : {1, 8}) {
       if (lanes == 8 && format.layout == Layout::image) continue;
       SCOPED_TRACE(format_name(format) + " " + std::to_string(lanes));
@@ -142,8 +140,8 @@ TEST(CarryLate, BeyondTheCoarserGridThereIsNothing) {
 
 TEST(CarryLate, RefusesGridsThatAreNotNested) {
   const VolumeShape shape{kGrid, 1, 3};
-  Volume from(session(), shape, "test: light"), to(session(), shape, "test: sum");
-  LateCarrier carrier(session(), shape, {});
+  Volume from(test_session(), shape, "test: light"), to(test_session(), shape, "test: sum");
+  LateCarrier carrier(test_session(), shape, {});
   const std::vector<ClpvGrid> three = grids(3);
   EXPECT_THROW(carrier.carry(from, three[2], to, three[0]), Error);
   ClpvGrid aside = three[0];
@@ -167,15 +165,15 @@ Lit lit(int cascades, bool late, const std::string& layout = "soa") {
   options.rsm_size = 64, options.shadow_size = 64, options.cascade_size = 1.5;
   options.cascades = cascades, options.late_light = late, options.layout = layout;
   options.basis = "bins24";  // nothing in it is negative: light can only be added
-  Frame frame(session(), scene, options);
+  Frame frame(test_session(), scene, options);
   Lit result;
   for (int run = 0; run < 2; ++run) {  // nothing may be left of the first
-    session().timeline().clear();
+    test_session().timeline().clear();
     frame.render(scene.camera(""));
     const std::vector<float> pixels = frame.read(Show::irradiance);
     result = {};
     for (std::size_t i = 0; i < pixels.size(); ++i) result.irradiance += i % 4 == 3 ? 0.0 : pixels[i];
-    for (const StageTime& time : session().timeline().times()) {
+    for (const StageTime& time : test_session().timeline().times()) {
       if (time.mark.stage == "carry-late") result.carried_to.push_back(time.mark.cascade.value());
     }
   }
@@ -192,19 +190,14 @@ TEST(CarryLate, IsAStageOfEachFinerCascadeAndAddsLight) {
 }
 
 TEST(CarryLate, AFrameOfImagesIsLitAsOneOfBuffers) {
-  if (unsupported(session().device(), {Layout::image, Storage::float32}))
+  if (unsupported(test_session().device(), {Layout::image, Storage::float32}))
     GTEST_SKIP() << "no 3-D images to write";
   const double wanted = lit(3, true).irradiance;
   EXPECT_NEAR(lit(3, true, "image").irradiance, wanted, 1e-5 * wanted);
 }
 
 TEST(CarryLate, KernelAgreesWithItsTwin) {
-  const reference::CheckResults results = reference::check_carry_late(session());
-  ASSERT_FALSE(results.empty());
-  for (const reference::CheckResult& result : results) {
-    EXPECT_TRUE(result.passed()) << result.variant << ": " << result.worst << " > " << result.allowed << ", "
-                                 << result.place;
-  }
+  expect_passed(reference::check_carry_late(test_session()));
 }
 
 }  // namespace
