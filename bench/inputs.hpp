@@ -45,7 +45,9 @@ class Inputs {
   const std::vector<float>& light(const Basis& basis, int cascade);
   const std::vector<float>& geometry(const Basis& basis, int cascade);
 
-  static InjectOptions published_injection(int grid) { return {.grid = grid, .two_sided = false}; }
+  static InjectOptions published_injection(int grid) {
+    return {.grid = grid, .blocking = Blocking::one_sided};
+  }
 
  private:
   struct Injected {

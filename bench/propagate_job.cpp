@@ -165,9 +165,9 @@ Job propagate_job(Bench& bench, const Variant& variant) {
     const int grid = p->variant.grid, n = p->basis->size();
     const auto twin = bench.twin(twin_key(p->variant), [&] {
       const auto light = to_reference(bench.inputs().light(*p->basis, cascade), grid, n, 3);
-      if (!p->geometry) return propagated(*p->basis, p->transport, light, nullptr, p->variant.iterations);
+      if (!p->geometry) return propagated(p->transport, light, nullptr, p->variant.iterations);
       const auto geometry = to_reference(bench.inputs().geometry(*p->basis, cascade), grid + 1, n, 1);
-      return propagated(*p->basis, p->transport, light, &geometry, p->variant.iterations);
+      return propagated(p->transport, light, &geometry, p->variant.iterations);
     });
     return compare_volumes(
         p->accumulated.read(bench.session), *twin, grid,

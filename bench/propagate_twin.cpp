@@ -33,10 +33,9 @@ Reach reach(const Row& row, const glm::ivec3& travel) {
 }
 
 /// 1 - B for every cell: B the mean blocker over the corners towards `side`, looked up in `direction`.
-std::vector<double> transmittance(const Basis& basis, const Volume& geometry, const glm::ivec3& side,
-                                  const glm::dvec3& direction) {
+std::vector<double> transmittance(const Volume& geometry, const glm::ivec3& side,
+                                  const std::vector<double>& weights) {
   const int n = geometry.n - 1;
-  const std::vector<double> b = basis.evaluate(direction);
   std::vector<double> open(static_cast<std::size_t>(n) * n * n, 0.0);
   int corners = 0;
   for (int c = 0; c < 8; ++c) {
@@ -46,13 +45,13 @@ std::vector<double> transmittance(const Basis& basis, const Volume& geometry, co
       towards = towards && (side[axis] == 0 || corner[axis] == (side[axis] > 0 ? 1 : 0));
     if (!towards) continue;
     ++corners;
-    for (int i = 0; i < basis.size(); ++i) {
+    for (int i = 0; i < geometry.coefficients; ++i) {
       for (int z = 0; z < n; ++z) {
         for (int y = 0; y < n; ++y) {
           double* out = open.data() + (static_cast<std::size_t>(z) * n + y) * n;
           const double* from =
               geometry.values.data() + geometry.index(0, i, corner.x, y + corner.y, z + corner.z);
-          for (int x = 0; x < n; ++x) out[x] += b[static_cast<std::size_t>(i)] * from[x];
+          for (int x = 0; x < n; ++x) out[x] += weights[static_cast<std::size_t>(i)] * from[x];
         }
       }
     }
@@ -61,20 +60,19 @@ std::vector<double> transmittance(const Basis& basis, const Volume& geometry, co
   return open;
 }
 
-std::vector<Way> ways_of(const Basis& basis, const Transport& transport, const Volume* geometry) {
+std::vector<Way> ways_of(const Transport& transport, const Volume* geometry) {
   std::vector<Way> ways;
   if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
     for (const Face& face : faces->faces) {
       ways.push_back({face.travel, {}});
-      if (geometry != nullptr)
-        ways.back().open = transmittance(basis, *geometry, face.normal, -face.direction);
+      if (geometry != nullptr) ways.back().open = transmittance(*geometry, face.normal, face.blocked_by);
     }
     return ways;
   }
   for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
     ways.push_back({neighbour.offset, {}});
     if (geometry != nullptr && neighbour.offset != glm::ivec3(0))
-      ways.back().open = transmittance(basis, *geometry, -neighbour.offset, -neighbour.direction);
+      ways.back().open = transmittance(*geometry, -neighbour.offset, neighbour.blocked_by);
   }
   return ways;
 }
@@ -153,9 +151,9 @@ class Stepper {
 
 }  // namespace
 
-std::vector<double> propagated(const Basis& basis, const Transport& transport, const Volume& injected,
-                               const Volume* geometry, int iterations) {
-  const std::vector<Way> ways = ways_of(basis, transport, geometry);
+std::vector<double> propagated(const Transport& transport, const Volume& injected, const Volume* geometry,
+                               int iterations) {
+  const std::vector<Way> ways = ways_of(transport, geometry);
   Volume travelling = injected;
   std::vector<double> accumulated = injected.values;
   for (int step = 1; step <= iterations; ++step) {

@@ -12,8 +12,7 @@ namespace clpv::bench {
 
 /// The accumulated light after `iterations` steps, in Volume's host order; the first step does not block. As
 /// reference::propagate, with clamping.
-std::vector<double> propagated(const Basis& basis, const Transport& transport,
-                               const reference::Volume& injected, const reference::Volume* geometry,
-                               int iterations);
+std::vector<double> propagated(const Transport& transport, const reference::Volume& injected,
+                               const reference::Volume* geometry, int iterations);
 
 }  // namespace clpv::bench

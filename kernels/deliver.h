@@ -53,12 +53,6 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
 
 #else
 
-#if CLPV_GEOMETRY
-static inline Coefficients larger_mean(const Coefficients found, const Coefficients kept) {
-  return clpv_mean(found) > clpv_mean(kept) ? found : kept;
-}
-#endif
-
 static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
   const int3 cell = cell_of(CLPV_KEYS(CLPV_GRID), key);
 #define CLPV_DO(channel) const Sum projected##channel = clpv_project_sum(sums.k##channel);
@@ -66,7 +60,7 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
 #undef CLPV_DO
 #if CLPV_GEOMETRY
   geometry_store(volume, 0, cell.x, cell.y, cell.z,
-                 larger_mean(one_lane(&projected0, 0), geometry_load(volume, 0, cell.x, cell.y, cell.z)));
+                 clpv_merge(one_lane(&projected0, 0), geometry_load(volume, 0, cell.x, cell.y, cell.z)));
 #else
 #define CLPV_DO(channel)                                                                     \
   light_store(volume, channel, cell.x, cell.y, cell.z,                                       \

@@ -1,16 +1,15 @@
 // Injection: what a view sees becomes light or blocking in the cells of a volume (docs/method.md, 'Injection').
 //
 // CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W]; its cell gains (P/pi) c(n), c(n) the clamped
-// cosine round n. CLPV_GEOMETRY 1, blocking: a texel is a surfel of area A; the corner nearest to it gains
-// (A/s^2) (c(n) + c(-n)), or (A/s^2) c(n) with CLPV_TWO_SIDED 0. Of all surfaces injected, a corner keeps the one with
-// the larger mean, since they see the same walls.
+// cosine round n. CLPV_GEOMETRY 1, blocking: a texel is a surfel of area A; the corner nearest to it gains A/s^2 of what
+// host/basis/blocking.hpp says of n. All surfaces injected see the same walls: clpv_merge, not a sum.
 //
 // c(n) = A^-1 alpha(n) is linear in alpha: a cell sums its texels' weighted alpha, and the matrix comes once a cell.
 // Three steps: find_cells.cl gives every texel its cell; sort_by_cell.cl sorts them; sum_segments and join_segments
 // add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TWO_SIDED, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
 // what host/pipeline/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
@@ -48,10 +47,7 @@ static inline Sum add_lobe(Sum sum, const Lanes weight, const Coefficients lobe)
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = clpv_load_normal(normals, texel);
-  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE));
-#if CLPV_TWO_SIDED
-  sums.k0 = add_lobe(sums.k0, details[texel], clpv_lobe_integrals(-n.x, -n.y, -n.z CLPV_PASS_TABLE));
-#endif
+  sums.k0 = add_lobe(sums.k0, details[texel], clpv_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
 

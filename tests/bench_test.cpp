@@ -71,12 +71,11 @@ TEST_P(FastTwin, IsThePlainTwin) {
   const Scene scene(*basis, 5);
   for (const reference::Volume* geometry :
        {static_cast<const reference::Volume*>(nullptr), &scene.geometry}) {
-    const auto plain = reference::propagate(*basis, transport, scene.light, geometry, 3);
+    const auto plain = reference::propagate(transport, scene.light, geometry, 3);
     double most = 0;
     for (const double value : plain.accumulated.values) most = std::max(most, std::abs(value));
-    EXPECT_LT(
-        largest_difference(propagated(*basis, transport, scene.light, geometry, 3), plain.accumulated.values),
-        1e-12 * most);
+    EXPECT_LT(largest_difference(propagated(transport, scene.light, geometry, 3), plain.accumulated.values),
+              1e-12 * most);
   }
 }
 
@@ -97,8 +96,7 @@ TEST(BenchBaseline, IsThePlainTwin) {
     baseline.set(light, blocked ? &corners : nullptr);
     baseline.propagate(4);
     const std::vector<float> found = baseline.accumulated();
-    const auto plain =
-        reference::propagate(*basis, transport, scene.light, blocked ? &scene.geometry : nullptr, 4);
+    const auto plain = reference::propagate(transport, scene.light, blocked ? &scene.geometry : nullptr, 4);
     double most = 0;
     for (const double value : plain.accumulated.values) most = std::max(most, std::abs(value));
     EXPECT_LT(largest_difference({found.begin(), found.end()}, plain.accumulated.values), 2e-6 * most)

@@ -97,7 +97,7 @@ Injection geometry_of(const Basis& basis, const std::vector<SurfaceImage>& image
                       InjectOptions options = {}) {
   Session& session = test_session();
   options.grid = kGrid;
-  Volume geometry(session, {kGrid + 1, basis.size(), 1}, "geometry");
+  Volume geometry(session, {kGrid + 1, blocking_size(options.blocking, basis), 1}, "geometry");
   Injector injector(session, basis, options);
   for (const SurfaceImage& image : images) {
     injector.inject_geometry(upload_surface(session, image), kCells, geometry);
@@ -245,7 +245,7 @@ TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
   const auto basis = make_basis("sh2");
   // Two metres square: from corner 2 to 6, each inner corner's square full of 8 x 8 texels. Layer 5 is .5 m.
   const SurfaceImage wall = plane(from_above(32, 32, 1.0f / 16), 0.55f);
-  const Injection one_sided = geometry_of(*basis, {wall}, {.two_sided = false});
+  const Injection one_sided = geometry_of(*basis, {wall}, {.blocking = Blocking::one_sided});
   const Injection two_sided = geometry_of(*basis, {wall});
   for (const int x : {3, 4, 5}) {
     EXPECT_NEAR(basis->value(one_sided.cell(0, x, 5, 4), {0, 1, 0}), 0.75, kRounding);
@@ -255,6 +255,21 @@ TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
     EXPECT_NEAR(basis->value(two_sided.cell(0, x, 5, 4), {1, 0, 0}), 0.5, kRounding);
   }
   EXPECT_NEAR(basis->value(one_sided.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding) << "half a square";
+}
+
+TEST(Inject, AreasAreWhatIsCoveredOfEachFace) {
+  const auto basis = make_basis("sh2");
+  const InjectOptions areas{.blocking = Blocking::areas};
+  const Injection wall = geometry_of(*basis, {plane(from_above(32, 32, 1.0f / 16), 0.55f)}, areas);
+  for (const int x : {3, 4, 5})
+    EXPECT_THAT(wall.cell(0, x, 5, 4), testing::Pointwise(testing::DoubleNear(kRounding), {0.0, 1.0, 0.0}));
+  // Of two surfaces that cross in a cell each keeps what it covers.
+  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, 2)), other = glm::normalize(glm::vec3(4, 4, 2));
+  const Injection crossed = geometry_of(
+      *basis, {one_texel({0, 0, 0}, normal, glm::vec3(1)), one_texel({0, 0, 0}, other, glm::vec3(1))}, areas);
+  const double across = 0.01 * 0.01 / (kCell * kCell);
+  EXPECT_THAT(crossed.cell(0, 4, 4, 4),
+              testing::Pointwise(testing::DoubleNear(across * 1e-5), {across, across, across}));
 }
 
 TEST(Inject, SlantedSurfelsCoverMoreUpToALimit) {
@@ -275,7 +290,7 @@ TEST(Inject, PerspectiveFootprintsTileTheWall) {
   // A camera 3 m above a floor, 90 degrees wide: the floor's squares in view are covered once, however slanted.
   ClpvView camera = from_above(240, 240, 1);
   camera.orthographic = 0, camera.eye[1] = 3.1f, camera.half_width = camera.half_height = 1;
-  const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)}, {.two_sided = false});
+  const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)}, {.blocking = Blocking::one_sided});
   for (const int x : {1, 4, 6}) {
     // Squares hold 40 x 40 pixels, cut by pixel centres.
     EXPECT_NEAR(basis->value(blocked.cell(0, x, 4, 3), {0, 1, 0}), 0.75, 0.02) << x;

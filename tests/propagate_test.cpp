@@ -99,7 +99,7 @@ TEST(Propagate, UnclampedExactTransportConservesEnergyOfEveryBasis) {
     if (basis->size() > 30) continue;  // bins96 take too long
     const Transport transport = make_transport("exact", *basis);
     const auto light = one_source(*basis, 9, isotropic(*basis), {4, 4, 4});
-    const auto end = reference::propagate(*basis, transport, light, nullptr, 3, false);
+    const auto end = reference::propagate(transport, light, nullptr, 3, false);
     EXPECT_NEAR(reference::energy(*basis, end.travelling)[0] / reference::energy(*basis, light)[0], 1.0,
                 1e-13)
         << name;
@@ -117,7 +117,7 @@ TEST(Propagate, UniformIsotropicFieldStaysAsItIsAwayFromTheBorder) {
         light.at(channel, i, cell % 9, cell / 9 % 9, cell / 81) = c[static_cast<std::size_t>(i)];
     }
   }
-  const auto end = reference::propagate(*basis, transport, light, nullptr, 3);
+  const auto end = reference::propagate(transport, light, nullptr, 3);
   for (int i = 0; i < basis->size(); ++i)
     EXPECT_NEAR(end.travelling.value(0, i, 4, 4, 4), c[static_cast<std::size_t>(i)], 1e-14);
 }
@@ -134,7 +134,7 @@ TEST(Propagate, LittleLightArrivesBehindAWallOfFullBlockers) {
       blockers.at(0, i, corner % (n + 1), corner / (n + 1), wall) = one[static_cast<std::size_t>(i)];
   }
   const auto behind = [&](const reference::Volume* geometry) {
-    const auto end = reference::propagate(*basis, transport, light, geometry, 12).accumulated;
+    const auto end = reference::propagate(transport, light, geometry, 12).accumulated;
     double sum = 0;
     for (int z = wall; z < n; ++z) {
       for (int y = 0; y < n; ++y) {
@@ -151,7 +151,7 @@ TEST(Propagate, WhatIsLostIsWhatLeavesTheGrid) {
   const Transport transport = make_transport("sampled", *basis);
   // Isotropic light is never clamped: before = after + lost.
   const auto light = one_source(*basis, 3, isotropic(*basis), {0, 1, 1});
-  const auto next = reference::propagate_step(*basis, transport, light, nullptr);
+  const auto next = reference::propagate_step(transport, light, nullptr);
   EXPECT_NEAR(reference::energy(*basis, next)[0] + reference::leaving(*basis, transport, light)[0], 1.0,
               2e-5);
   EXPECT_GT(reference::leaving(*basis, transport, light)[0], 0.1);
@@ -186,7 +186,7 @@ TEST(Propagate, AnAlteredLiteralIsCaught) {
   std::get<FaceTransport>(altered.scheme).faces[3].flux[0] *= 1.001;
   const auto light = one_source(*basis, 5, isotropic(*basis), {2, 2, 2});
   const auto kernel = device_energies(*basis, altered, light, 2);
-  const auto twin = reference::propagate(*basis, make_transport("sampled", *basis), light, nullptr, 2);
+  const auto twin = reference::propagate(make_transport("sampled", *basis), light, nullptr, 2);
   EXPECT_GT(std::abs(kernel[2] - reference::energy(*basis, twin.travelling)[0]), 1e-5);
 }
 

@@ -25,33 +25,33 @@ constexpr double kFloat = 1e-6;  // sums of N products of numbers about 1
 struct Way {
   glm::ivec3 side;
   glm::dvec3 direction;  // of the light
-  std::vector<double> against;
+  std::vector<double> blocked_by;
 };
 
 /// In the order of the transmittance volume's planes.
 std::vector<Way> ways(const Transport& transport) {
   std::vector<Way> result;
   if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-    for (const Face& face : faces->faces) result.push_back({face.normal, face.direction, face.against});
+    for (const Face& face : faces->faces) result.push_back({face.normal, face.direction, face.blocked_by});
     return result;
   }
   for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
     if (neighbour.offset != glm::ivec3(0))
-      result.push_back({-neighbour.offset, neighbour.direction, neighbour.against});
+      result.push_back({-neighbour.offset, neighbour.direction, neighbour.blocked_by});
   }
   return result;
 }
 
-/// Coefficients of the blocker at a corner.
+/// What blocks at a corner.
 using Blockers = std::function<std::vector<double>(const glm::ivec3& corner)>;
 
-reference::Volume geometry_of(const Basis& basis, const Blockers& blockers) {
-  reference::Volume volume(kGrid + 1, basis.size(), 1);
+reference::Volume geometry_of(int numbers, const Blockers& blockers) {
+  reference::Volume volume(kGrid + 1, numbers, 1);
   for (int z = 0; z <= kGrid; ++z) {
     for (int y = 0; y <= kGrid; ++y) {
       for (int x = 0; x <= kGrid; ++x) {
         const std::vector<double> c = blockers({x, y, z});
-        for (int i = 0; i < basis.size(); ++i)
+        for (int i = 0; i < numbers; ++i)
           volume.at(0, i, x, y, z) = static_cast<float>(c[static_cast<std::size_t>(i)]);
       }
     }
@@ -61,7 +61,7 @@ reference::Volume geometry_of(const Basis& basis, const Blockers& blockers) {
 
 std::vector<float> on_device(const Basis& basis, const Transport& transport,
                              const reference::Volume& blockers) {
-  Volume geometry(test_session(), {kGrid + 1, basis.size(), 1}, "test: geometry");
+  Volume geometry(test_session(), {kGrid + 1, blockers.coefficients, 1}, "test: geometry");
   geometry.write(test_session(), {blockers.values.begin(), blockers.values.end()});
   Transmitter transmitter(test_session(), basis, transport, {.grid = kGrid});
   transmitter.transmit(geometry);
@@ -81,7 +81,7 @@ void expect_all(const Basis& basis, const Transport& transport, const reference:
     const Way& way = all[at / kCells];
     const double through = expected(p, way);
     ASSERT_NEAR(device[at], through, allowed) << "way " << at / kCells << " cell " << cell;
-    ASSERT_NEAR(reference::transmitted(basis, geometry, p, way.side, way.against), through, allowed)
+    ASSERT_NEAR(reference::transmitted(geometry, p, way.side, way.blocked_by), through, allowed)
         << "twin, way " << at / kCells << " cell " << cell;
   }
 }
@@ -93,7 +93,9 @@ std::vector<double> times(double s, std::vector<double> c) {
 
 class EachTransport : public ::testing::TestWithParam<std::string> {
  protected:
-  Transport transport(const Basis& basis) const { return make_transport(GetParam(), basis); }
+  Transport transport(const Basis& basis, Blocking blocking = Blocking::two_sided) const {
+    return make_transport(GetParam(), basis, {}, blocking);
+  }
 };
 INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport, ::testing::ValuesIn(transport_names()),
                          [](const auto& info) {
@@ -117,7 +119,7 @@ TEST_P(EachTransport, BlockersAreAveragedOverTheSideOfTheWay) {
   const auto basis = make_basis("sh2");
   const glm::dvec3 slope(0.21, -0.13, 0.17);
   const auto blocked = [&](const glm::dvec3& corner) { return 0.4 + glm::dot(slope, corner); };
-  const reference::Volume geometry = geometry_of(*basis, [&](const glm::ivec3& corner) {
+  const reference::Volume geometry = geometry_of(basis->size(), [&](const glm::ivec3& corner) {
     return times(blocked(glm::dvec3(corner)), basis->constant());
   });
   int open = 0, shut = 0, between = 0;
@@ -137,14 +139,45 @@ TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(2, -1, 3));
   const std::vector<double> front = times(0.9, basis->clamped_cosine(normal)),
                             back = times(0.9, basis->clamped_cosine(-normal));
-  expect_all(*basis, transport(*basis), geometry_of(*basis, [&](const glm::ivec3&) { return front; }),
+  expect_all(*basis, transport(*basis), geometry_of(basis->size(), [&](const glm::ivec3&) { return front; }),
              [&](const glm::ivec3&, const Way& way) {
                return 1 - std::clamp(0.9 * (0.25 - 0.5 * glm::dot(normal, way.direction)), 0.0, 1.0);
              });
   std::vector<double> both = front;
   for (std::size_t i = 0; i < both.size(); ++i) both[i] += back[i];
-  expect_all(*basis, transport(*basis), geometry_of(*basis, [&](const glm::ivec3&) { return both; }),
+  expect_all(*basis, transport(*basis), geometry_of(basis->size(), [&](const glm::ivec3&) { return both; }),
              [](const glm::ivec3&, const Way&) { return 1 - 0.9 * 0.5; });
+}
+
+// A surfel across an axis keeps |n.w| of what travels along w, whatever w; a slanted one the same of what travels along
+// the axes, and no less of the rest.
+TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
+  const auto basis = make_basis("sh2");
+  const Transport by_areas = transport(*basis, Blocking::areas);
+  const auto surfel = [](const glm::dvec3& n) {
+    return geometry_of(3, [n](const glm::ivec3&) {
+      return times(0.6, {std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+    });
+  };
+  const auto blocked = [](const glm::dvec3& n, const glm::dvec3& w) {
+    return 0.6 * std::abs(glm::dot(n, w));
+  };
+  const glm::dvec3 up(0, 1, 0), slanted = glm::normalize(glm::dvec3(2, -1, 3));
+  expect_all(*basis, by_areas, surfel(up),
+             [&](const glm::ivec3&, const Way& way) { return 1 - blocked(up, way.direction); });
+  int along_axes = 0;
+  for (const Way& way : ways(by_areas)) {
+    const double through = reference::transmitted(surfel(slanted), glm::ivec3(2), way.side, way.blocked_by);
+    const bool along = std::max({std::abs(way.direction.x), std::abs(way.direction.y),
+                                 std::abs(way.direction.z)}) > 1 - 1e-12;
+    along_axes += along;
+    if (along) {
+      EXPECT_NEAR(through, 1 - blocked(slanted, way.direction), kFloat);
+    } else {
+      EXPECT_LE(through, 1 - blocked(slanted, way.direction) + kFloat);
+    }
+  }
+  EXPECT_EQ(along_axes, 6);
 }
 
 TEST_P(EachTransport, KernelsAgreeWithTheTwin) {
@@ -153,14 +186,14 @@ TEST_P(EachTransport, KernelsAgreeWithTheTwin) {
     const auto basis = make_basis(name);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    const reference::Volume geometry = geometry_of(*basis, [&](const glm::ivec3&) {
+    const reference::Volume geometry = geometry_of(basis->size(), [&](const glm::ivec3&) {
       const glm::dvec3 normal(uniform(random), uniform(random), uniform(random) + 2);
       return times(std::max(0.0, 2 * uniform(random)), basis->clamped_cosine(glm::normalize(normal)));
     });
     expect_all(
         *basis, transport(*basis), geometry,
         [&](const glm::ivec3& cell, const Way& way) {
-          return reference::transmitted(*basis, geometry, cell, way.side, way.against);
+          return reference::transmitted(geometry, cell, way.side, way.blocked_by);
         },
         reference::tolerance("propagate"));
   }

@@ -14,13 +14,15 @@ const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0)
 namespace {
 
 void look_up_blockers(Transport& transport, const Basis& basis) {
+  const auto weights = [&](const glm::dvec3& direction) {
+    return blocking_weights(transport.blocking, basis, transport.lobes, direction);
+  };
   if (auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-    for (Face& face : faces->faces) face.against = evaluate(basis, transport.lobes, -face.direction);
+    for (Face& face : faces->faces) face.blocked_by = weights(face.direction);
     return;
   }
   for (auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
-    if (neighbour.offset != glm::ivec3(0))
-      neighbour.against = evaluate(basis, transport.lobes, -neighbour.direction);
+    if (neighbour.offset != glm::ivec3(0)) neighbour.blocked_by = weights(neighbour.direction);
   }
 }
 
@@ -30,10 +32,12 @@ std::vector<std::string> transport_names() {
   return {"sampled", "exact", "upwind", "semi-lagrangian"};
 }
 
-Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes) {
+Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes,
+                         Blocking blocking) {
   Transport transport;
   transport.name = name;
   transport.lobes = lobes;
+  transport.blocking = blocking;
   transport.gather = Matrix::identity(basis.size());
   if (name == "sampled") {
     transport.scheme = make_face_transport(basis, FaceFlux::sampled, lobes);

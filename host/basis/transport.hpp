@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
 
 namespace clpv {
@@ -21,7 +22,7 @@ struct Face {
   glm::dvec3 direction;      ///< w_f, unit: from the source's centre to the face's centre
   double solid_angle;        ///< Omega_f, seen from the source's centre [sr]
   std::vector<double> flux;  ///< N: flux through the face [W] = flux . c, before blocking and clamping
-  std::vector<double> against;  ///< N: b(-direction), what a blocker on the way is looked up by
+  std::vector<double> blocked_by;  ///< blocking_weights of what blocks on the way
 };
 
 /// Fluxes through faces, clamped at 0, re-emitted as lobes: `sampled` (the paper) and `exact`.
@@ -35,16 +36,17 @@ struct OperatorTransport {
   struct Neighbour {
     glm::ivec3 offset;  ///< how far the light travels, in cells; zero: it stays
     glm::dvec3
-        direction;   ///< unit; the blocker of the shared face (or corner) is looked up against it; zero: none
-    Matrix weights;  ///< R_k, N x N
-    std::vector<double> against = {};  ///< as in Face; empty where nothing blocks
+        direction;  ///< unit; what blocks on the shared face (or edge, or corner) is looked up along it; zero: nothing
+    Matrix weights;                       ///< R_k, N x N
+    std::vector<double> blocked_by = {};  ///< as in Face; empty where nothing blocks
   };
   std::vector<Neighbour> neighbours;
 };
 
 struct Transport {
   std::string name;
-  LobeOptions lobes;  ///< that it was made with
+  LobeOptions lobes;  ///< that it was made with, and so is
+  Blocking blocking = Blocking::two_sided;
   std::variant<FaceTransport, OperatorTransport> scheme;
   /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2],
   /// where gather(n) = 4 b(-n) for face transports (docs/method.md, 'Gathering'), alpha(-n) K for
@@ -56,9 +58,11 @@ struct Transport {
   bool unit_flux_lobes = false;
 };
 
-/// "sampled", "exact", "upwind", "semi-lagrangian". Operators have no lobes: `lobes` does not matter to them.
+/// "sampled", "exact", "upwind", "semi-lagrangian". Operators have no lobes: `lobes` does not matter to them. `blocking`: what the
+/// geometry volume holds.
 /// Throws Error(usage) for another name.
-Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes = {});
+Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes = {},
+                         Blocking blocking = Blocking::two_sided);
 std::vector<std::string> transport_names();
 
 /// The six axes in the order used everywhere: +x -x +y -y +z -z.

@@ -126,6 +126,18 @@ cl::Buffer Session::buffer(std::size_t bytes, const std::string& what, cl_mem_fl
   }
 }
 
+const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, const std::string& what) {
+  // PoCL 3.1 gives the buffer's memory back when the image is released, whoever still holds the buffer: no image of a
+  // buffer is released before the session is.
+  cl::Image1DBuffer& image = table_images_[values];
+  if (image() == nullptr) {
+    // One channel of 32-bit floats is among the formats that every device with images reads (OpenCL 1.2, 5.3.2.1).
+    image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT), values.size(),
+                              upload(values, what));
+  }
+  return image;
+}
+
 void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) {
   const std::size_t* g = global.get();
   const std::size_t* l = local.get();

@@ -65,6 +65,10 @@ class Session {
     return values;
   }
 
+  /// A read-only 1-D image of a buffer that holds `values`, as floats of one channel: the same for the same values, and
+  /// alive as long as the session. `what` names it in errors. For devices with images (Device::images).
+  const cl::Image1DBuffer& table_image(const std::vector<float>& values, const std::string& what);
+
   /// Largest buffer that still fits [bytes]: the device's limit for one, and what is left of its memory.
   std::size_t largest_buffer() const;
 
@@ -90,6 +94,7 @@ class Session {
   std::optional<ProgramCache> cache_;
   std::map<std::string, Built> programs_;  ///< by ProgramCache::key
   std::vector<cl::Buffer> kept_;           ///< see buffer()
+  std::map<std::vector<float>, cl::Image1DBuffer> table_images_;  ///< see table_image()
   std::size_t bytes_ = 0;
   double build_ms_ = 0;
 };

@@ -11,7 +11,7 @@ namespace {
 InjectOptions inject_options(const RenderOptions& options, const Transport& transport) {
   return {.grid = options.grid,
           .trilinear = options.injection == "trilinear",
-          .two_sided = options.blocking == "two-sided",
+          .blocking = options.blocked_by(),
           .unit_flux_lobes = transport.unit_flux_lobes,
           .lobes = options.lobes(),
           .table = options.table_storage(),
@@ -32,7 +32,7 @@ VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
 }
 
 VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis) {
-  return {options.grid + 1, basis.size(), 1};
+  return {options.grid + 1, blocking_size(options.blocked_by(), basis), 1};
 }
 
 /// Bytes of the volumes of a frame at this grid.
@@ -82,7 +82,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       scene_(scene),
       basis_(make_basis(options)),
       options_(checked(session, options, *basis_)),
-      transport_(make_transport(options.transport, *basis_, options.lobes())),
+      transport_(make_transport(options.transport, *basis_, options.lobes(), options.blocked_by())),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_)),

@@ -58,6 +58,10 @@ Injector::Injector(Session& session, const Basis& basis, const InjectOptions& op
       sorter_(session),
       strip_(session.device().type == "cpu" ? kCpuStrip : 1) {}
 
+bool Injector::looks_up(Kind kind) const {
+  return kind == Kind::light || options_.blocking != Blocking::areas;
+}
+
 Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
   const auto [found, made] = kernels_.try_emplace({kind, format});
   if (made) {
@@ -74,9 +78,10 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
                        {"CLPV_TRILINEAR", flag(trilinear)},
                        {"CLPV_SURFACE_PAPER", paper},
                        {"CLPV_GRID", std::to_string(options_.grid)},
-                       {"CLPV_TWO_SIDED", flag(options_.two_sided)},
                        {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
-                      table_.macros() + inject_source(basis_, options_.lobes, trilinear)};
+                      light ? table_.macros() + inject_source(basis_, options_.lobes, trilinear)
+                            : (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
+                                  blocker_source(basis_, options_.lobes, options_.blocking)};
     const bool planes = options_.format.layout == Layout::image;
     add_format_literals(sum.literals,
                         {planes ? Layout::soa : options_.format.layout, options_.format.storage});
@@ -130,7 +135,7 @@ void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid
     set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
                   surface.normal, surface.colour, surface.colour_scale, details_,
                   static_cast<cl_uint>(texels), volume.memory(), partials_, firsts_);
-    table_.set(kernel.sum_segments);
+    if (looks_up(kind)) table_.set(kernel.sum_segments);
     session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
     set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(),
                   partials_, firsts_);
@@ -144,7 +149,8 @@ void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& li
 }
 
 void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry) {
-  require_fit(geometry, {options_.grid + 1, basis_.size(), 1}, options_.format, "geometry");
+  require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1}, options_.format,
+              "geometry");
   inject(Kind::geometry, surface, grid, geometry);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "basis/basis.hpp"
+#include "basis/blocking.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/convert.hpp"
@@ -19,7 +20,7 @@ namespace clpv {
 struct InjectOptions {
   int grid = 32;           ///< cells along each axis
   bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
-  bool two_sided = true;   ///< surfels block from both sides; else only what travels against their normal
+  Blocking blocking = Blocking::two_sided;
   bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
   LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
   TableStorage table = TableStorage::buffer;
@@ -36,8 +37,9 @@ class Injector {
   /// Texels that are empty, dark, not finite or outside the grid add nothing.
   void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light);
 
-  /// Merges what `surface`, an RSM or a G-buffer, sees into `geometry`: grid + 1 samples a side, 1 channel. A
-  /// sample becomes the surface's blocking share where that has the larger mean.
+  /// Merges what `surface`, an RSM or a G-buffer, sees into `geometry`: grid + 1 samples a side, 1 channel, numbers as
+  /// `blocking` says. Surfaces see the same walls: a sample becomes the surface's blocking share where that has the
+  /// larger mean; of areas it keeps the larger one of each.
   void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry);
 
  private:
@@ -46,6 +48,7 @@ class Injector {
     cl::Kernel find_cells, sum_segments, join_segments;
   };
   Kernels& kernels(Kind kind, RsmFormat format);
+  bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);
   void inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);

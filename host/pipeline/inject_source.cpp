@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <vector>
 
@@ -30,10 +29,10 @@ Matrix cholesky(const Matrix& a) {
 }
 
 /// A function that is a fixed weighted sum of coefficients.
-std::string weighted_sum(const std::string& name, std::span<const double> weights, double scale) {
+std::string weighted_sum(const std::string& name, std::span<const double> weights) {
   std::string sum = "0.0f";
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    sum = fmt::format("fma({}, a.c{}, {})", float_literal(weights[i] * scale), i, sum);
+    sum = fmt::format("fma({}, a.c{}, {})", float_literal(weights[i]), i, sum);
   }
   return fmt::format("static inline float {}(const Coefficients a) {{\n  return {};\n}}\n", name, sum);
 }
@@ -50,14 +49,19 @@ std::string unknown(std::string right, double diagonal, const char* known, int f
   return fmt::format("{} * ({})", float_literal(1 / diagonal), right);
 }
 
+/// Lanes and Sum, of n numbers.
+std::string sum_types(int n, bool trilinear) {
+  std::string text = fmt::format("typedef float{} Lanes;\ntypedef struct {{\n  Lanes", trilinear ? "8" : "");
+  for (int i = 0; i < n; ++i) text += fmt::format("{} c{}", i == 0 ? "" : ",", i);
+  return text + ";\n} Sum;\n";
+}
+
 /// Lanes, Sum and clpv_project_sum. A^-1 by the two triangles of A = L L^T: rounding then stays where it hardly
 /// changes the function, which A^-1 written out in single precision does not achieve (srbf14: 20 times worse).
 std::string projection(const Basis& basis, bool trilinear) {
   const int n = basis.size();
   const Matrix lower = cholesky(basis.gram());
-  std::string text = fmt::format("typedef float{} Lanes;\ntypedef struct {{\n  Lanes", trilinear ? "8" : "");
-  for (int i = 0; i < n; ++i) text += fmt::format("{} c{}", i == 0 ? "" : ",", i);
-  text += ";\n} Sum;\nstatic inline Sum clpv_project_sum(const Sum a) {\n";
+  std::string text = sum_types(n, trilinear) + "static inline Sum clpv_project_sum(const Sum a) {\n";
   for (int i = 0; i < n; ++i) {
     const auto row = [&](int j) { return lower(i, j); };
     text += fmt::format("  const Lanes y{} = {};\n", i,
@@ -72,6 +76,30 @@ std::string projection(const Basis& basis, bool trilinear) {
   return text + "  return r;\n}\n";
 }
 
+std::string lobe_blockers(const Basis& basis, const LobeOptions& lobes, bool two_sided) {
+  std::string text = lobe_source(basis, lobes, false) + weighted_sum("clpv_energy", basis.integrals());
+  text +=
+      "static inline Coefficients clpv_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
+      "  Coefficients b = clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE);\n";
+  if (two_sided) {
+    text += "  const Coefficients back = clpv_lobe_integrals(-x, -y, -z CLPV_PASS_TABLE);\n";
+    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c{0} += back.c{0};\n", i);
+  }
+  return text +
+         "  return b;\n}\n"
+         "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
+         "  return clpv_energy(a) > clpv_energy(b) ? a : b;\n}\n";
+}
+
+std::string area_blockers() {
+  return sum_types(3, false) +
+         "static inline Sum clpv_project_sum(const Sum a) { return a; }\n"
+         "static inline Coefficients clpv_blocker(float x, float y, float z) {\n"
+         "  const Coefficients b = {fabs(x), fabs(y), fabs(z)};\n  return b;\n}\n"
+         "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
+         "  const Coefficients r = {fmax(a.c0, b.c0), fmax(a.c1, b.c1), fmax(a.c2, b.c2)};\n  return r;\n}\n";
+}
+
 }  // namespace
 
 std::string lobe_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
@@ -84,14 +112,19 @@ std::string lobe_source(const Basis& basis, const LobeOptions& lobes, bool trili
   } else {
     text += "#define clpv_lobe_integrals clpv_cosine_integrals\n";
   }
-  text += weighted_sum("clpv_flux", flux, 1.0);
-  text += weighted_sum("clpv_mean", basis.integrals(), 0.25 * std::numbers::inv_pi);
+  text += weighted_sum("clpv_flux", flux);
   text += projection(basis, trilinear);
   return text;
 }
 
 std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
   return coefficient_macros(basis.size()) + lobe_source(basis, lobes, trilinear);
+}
+
+std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blocking blocking) {
+  return coefficient_macros(blocking_size(blocking, basis)) +
+         (blocking == Blocking::areas ? area_blockers()
+                                      : lobe_blockers(basis, lobes, blocking == Blocking::two_sided));
 }
 
 std::size_t inject_keys(int grid, bool trilinear, bool geometry) {

@@ -32,16 +32,19 @@ LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions
     : values_(table_of(basis, options, use)), storage_(storage) {
   if (!values_) return;
   if (storage == TableStorage::image) require_image(session.device(), values_->size());
-  buffer_ = session.upload(values_->values(), "look-up table");
   if (storage == TableStorage::image) {
-    // One channel of 32-bit floats is among the formats that every device with images reads (OpenCL 1.2, 5.3.2.1).
-    image_ = cl::Image1DBuffer(session.context(), CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
-                               static_cast<std::size_t>(values_->size()), buffer_);
+    image_ = session.table_image(values_->values(), "look-up table");
+  } else {
+    buffer_ = session.upload(values_->values(), "look-up table");
   }
 }
 
+std::string LookupTable::no_macros() {
+  return "#define CLPV_AND_TABLE\n#define CLPV_PASS_TABLE\n";
+}
+
 std::string LookupTable::macros() const {
-  if (!values_) return "#define CLPV_AND_TABLE\n#define CLPV_PASS_TABLE\n";
+  if (!values_) return no_macros();
   const bool image = storage_ == TableStorage::image;
   return fmt::format(
       "#define CLPV_AND_TABLE , {} table\n#define CLPV_PASS_TABLE , table\n"

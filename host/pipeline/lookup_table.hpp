@@ -29,6 +29,7 @@ class LookupTable {
 
   bool exists() const { return values_.has_value(); }
   std::string macros() const;
+  static std::string no_macros();  ///< those of none
   /// Sets the last argument of a kernel that was compiled with macros(), where there is a table.
   void set(cl::Kernel& kernel) const;
 

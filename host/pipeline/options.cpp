@@ -74,8 +74,10 @@ void for_each_option(Options& o, Visit&& visit) {
         Range{1, kMostTexels});
   visit("occlusion", o.occlusion, "indirect shadows: the geometry volume blocks light",
         std::vector<std::string>{"on", "off"});
-  visit("blocking", o.blocking, "which light a surface blocks: all, or what meets its lit side",
-        std::vector<std::string>{"two-sided", "one-sided"});
+  visit("blocking", o.blocking,
+        "how surfaces block light: by their area across each axis, or by lobes, from both sides or what "
+        "meets their lit one",
+        blocking_names());
   visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight",
         std::vector<std::string>{"nearest", "trilinear"});
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});

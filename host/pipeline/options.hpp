@@ -42,7 +42,7 @@ struct RenderOptions {
   std::string rsm_format = "float";
   int shadow_size = 1024;
   bool occlusion = true;
-  std::string blocking = "two-sided";
+  std::string blocking = "areas";
   std::string injection = "trilinear";
   double gather_offset = 0.75;
   double gather_floor = 0.15;
@@ -52,6 +52,7 @@ struct RenderOptions {
   RsmFormat rsm() const { return rsm_format == "paper" ? RsmFormat::paper : RsmFormat::float32; }
   VolumeFormat format() const { return volume_format(layout, storage); }
   LobeOptions lobes() const { return {lobe_kind(lobe), table_size, evaluate == "table"}; }
+  Blocking blocked_by() const { return blocking_named(blocking); }
   LobeTime lobes_made() const { return lobe_time == "kernel" ? LobeTime::kernel : LobeTime::host; }
   TableStorage table_storage() const { return table == "image" ? TableStorage::image : TableStorage::buffer; }
   State travelling() const { return state == "fluxes" ? State::fluxes : State::coefficients; }

@@ -13,7 +13,7 @@
 
 namespace clpv {
 
-/// Generated text for kernels/transmit.cl, for one basis and transport: way_macros(), and CLPV_TRANSMITTANCE, which
+/// Generated text for kernels/transmit.cl, for one transport and what it is blocked by: way_macros(), and CLPV_TRANSMITTANCE, which
 /// declares `ways` from the cell's corners g0 .. g7 (bit 0 x, 1 y, 2 z).
 /// Ways are numbered as FaceTransport::faces are, or as the neighbours of an OperatorTransport but the cell itself.
 struct TransmitSource {
@@ -27,7 +27,7 @@ TransmitSource transmit_source(const Basis& basis, const Transport& transport);
 std::string way_macros(int ways);
 
 /// Evaluates 1 - B of every way once, so that each propagation step reads numbers in place of a basis: a step then
-/// costs the same whatever the basis that blocks.
+/// costs the same whatever blocks.
 class Transmitter {
  public:
   Transmitter(Session& session, const Basis& basis, const Transport& transport,

@@ -98,10 +98,12 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
                      rotated ? tolerance("inject-rotated") : tolerance_in("inject", options.format),
                      {}};
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
-  const auto size = static_cast<std::size_t>(basis.size());
+  const auto size = static_cast<std::size_t>(twin.coefficients);
+  const bool areas = twin.channels == 1 && options.blocking == Blocking::areas;
   double largest = 0, worst = 0;
   for (const glm::dvec3& w : directions()) {
-    const std::vector<double> b = basis.evaluate(w);
+    const std::vector<double> b =
+        areas ? blocking_weights(options.blocking, basis, options.lobes, w) : basis.evaluate(w);
     for (std::size_t at = 0; at < cells * static_cast<std::size_t>(twin.channels); ++at) {
       const std::size_t channel = at / cells, cell = at % cells;
       double found = 0, wanted = 0;
@@ -122,11 +124,16 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
   return result;
 }
 
+const char* blocking_label(Blocking blocking) {
+  if (blocking == Blocking::areas) return "/areas";
+  return blocking == Blocking::one_sided ? "/one-sided" : "";
+}
+
 std::string name_of(const Basis& basis, const char* stage, bool orthographic, RsmFormat format,
                     const InjectOptions& options) {
   return fmt::format("{}/{}/{}{}{}{}{}", basis.name(), stage, orthographic ? "orthographic" : "perspective",
                      format == RsmFormat::paper ? "/paper" : "", options.trilinear ? "/trilinear" : "",
-                     options.two_sided ? "" : "/one-sided", options.unit_flux_lobes ? "/unit-flux" : "") +
+                     blocking_label(options.blocking), options.unit_flux_lobes ? "/unit-flux" : "") +
          (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
          (options.table == TableStorage::buffer ? "" : "/image") +
          (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format));
@@ -147,8 +154,9 @@ CheckResult check_light(Session& session, const Basis& basis, const InjectOption
 /// Two surfaces, so that they are merged.
 CheckResult check_geometry(Session& session, const Basis& basis, const InjectOptions& options,
                            bool orthographic, RsmFormat format) {
-  clpv::Volume geometry(session, {kGrid + 1, basis.size(), 1}, "check: geometry", options.format);
-  Volume twin(kGrid + 1, basis.size(), 1);
+  const int numbers = blocking_size(options.blocking, basis);
+  clpv::Volume geometry(session, {kGrid + 1, numbers, 1}, "check: geometry", options.format);
+  Volume twin(kGrid + 1, numbers, 1);
   Injector injector(session, basis, options);
   for (const unsigned seed : {12u, 13u}) {
     const bool from_above = orthographic == (seed == 12u);
@@ -173,7 +181,7 @@ void check_rotated(Session& session, const Basis& basis, bool thorough, CheckRes
   if (!thorough) return;
   const InjectOptions spread{
       .grid = kGrid, .trilinear = true, .unit_flux_lobes = true, .lobes = rotated.lobes};
-  const InjectOptions one_sided{.grid = kGrid, .two_sided = false, .lobes = rotated.lobes};
+  const InjectOptions one_sided{.grid = kGrid, .blocking = Blocking::one_sided, .lobes = rotated.lobes};
   results.push_back(check_light(session, basis, spread, false, RsmFormat::float32));
   results.push_back(check_geometry(session, basis, one_sided, false, RsmFormat::float32));
 }
@@ -201,10 +209,14 @@ CheckResults check_inject(Session& session, bool thorough) {
     // What hardly depends on the basis, for the small ones: compiling takes most of the time.
     if (basis->size() > 4) continue;
     const InjectOptions trilinear{.grid = kGrid, .trilinear = true, .unit_flux_lobes = true};
-    const InjectOptions one_sided{.grid = kGrid, .two_sided = false};
+    const InjectOptions one_sided{.grid = kGrid, .blocking = Blocking::one_sided};
     results.push_back(check_light(session, *basis, trilinear, false, RsmFormat::float32));
     results.push_back(check_light(session, *basis, plain, false, RsmFormat::paper));
     results.push_back(check_geometry(session, *basis, one_sided, false, RsmFormat::paper));
+  }
+  for (const bool orthographic : {true, false}) {
+    const InjectOptions areas{.grid = kGrid, .blocking = Blocking::areas};  // whatever the basis
+    results.push_back(check_geometry(session, *make_basis("sh2"), areas, orthographic, RsmFormat::float32));
   }
   check_formats(session, results);
   return results;

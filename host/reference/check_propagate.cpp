@@ -37,10 +37,11 @@ Volume random_light(const Basis& basis, int n, std::mt19937& random) {
   return volume;
 }
 
-/// Two-sided surfels of random direction and cover on half the corners.
-Volume random_blockers(const Basis& basis, int n, std::mt19937& random) {
+/// Surfels of random direction and cover, two-sided or as areas, on half the corners.
+Volume random_blockers(const Basis& basis, const Transport& transport, int n, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  Volume volume(n + 1, basis.size(), 1);
+  const int numbers = blocking_size(transport.blocking, basis);
+  Volume volume(n + 1, numbers, 1);
   for (int z = 0; z <= n; ++z) {
     for (int y = 0; y <= n; ++y) {
       for (int x = 0; x <= n; ++x) {
@@ -48,8 +49,10 @@ Volume random_blockers(const Basis& basis, int n, std::mt19937& random) {
             glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
         const double cover = std::max(0.0, 1.5 * uniform(random));
         const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
-        for (std::size_t i = 0; i < front.size(); ++i) {
-          volume.at(0, static_cast<int>(i), x, y, z) = static_cast<float>(cover * (front[i] + back[i]));
+        for (int i = 0; i < numbers; ++i) {
+          const auto k = static_cast<std::size_t>(i);
+          const double share = transport.blocking == Blocking::areas ? std::abs(d[i]) : front[k] + back[k];
+          volume.at(0, i, x, y, z) = static_cast<float>(cover * share);
         }
       }
     }
@@ -83,26 +86,28 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   std::mt19937 random(7);
   const int n = options.grid;
   const Volume light = random_light(basis, n, random);
-  const Volume geometry = random_blockers(basis, n, random);
+  const Volume geometry = random_blockers(basis, transport, n, random);
   clpv::Volume injected(session, {n, basis.size(), 3}, "check: injected light", options.format);
   clpv::Volume accumulated(session, {n, basis.size(), 3}, "check: accumulated light", options.format);
-  clpv::Volume corners(session, {n + 1, basis.size(), 1}, "check: geometry", options.format);
+  clpv::Volume corners(session, {n + 1, geometry.coefficients, 1}, "check: geometry", options.format);
   injected.write(session, to_float(light.values));
   corners.write(session, to_float(geometry.values));
   Propagator propagator(session, basis, transport, options);
   propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
-  const Propagation twin = propagate(basis, transport, light, blockers ? &geometry : nullptr, kSteps);
-  return compare(
-      accumulated.read(session), twin.accumulated,
-      options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
-                                            : tolerance_in("propagate", options.format),
-      fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
-                  options.state == State::fluxes ? "fluxes" : "coefficients", blockers ? "blockers" : "free",
-                  transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
-                  options.lobe_time == LobeTime::host     ? ""
-                  : options.table == TableStorage::buffer ? "/kernel"
-                                                          : "/kernel image") +
-          (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format)));
+  const Propagation twin = propagate(transport, light, blockers ? &geometry : nullptr, kSteps);
+  return compare(accumulated.read(session), twin.accumulated,
+                 options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
+                                                       : tolerance_in("propagate", options.format),
+                 fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
+                             options.state == State::fluxes ? "fluxes" : "coefficients",
+                             !blockers                               ? "free"
+                             : transport.blocking == Blocking::areas ? "areas"
+                                                                     : "blockers",
+                             transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
+                             options.lobe_time == LobeTime::host     ? ""
+                             : options.table == TableStorage::buffer ? "/kernel"
+                                                                     : "/kernel image") +
+                     (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format)));
 }
 
 /// `full`: every transport in both states, with and without blockers.
@@ -138,6 +143,18 @@ void check_run_time_lobes(Session& session, const Basis& basis, bool full, Check
   add("exact", LobeKind::rotate, TableStorage::image);
 }
 
+/// Blockers as areas: what the basis is hardly matters, which ways there are does.
+void check_areas(Session& session, bool thorough, CheckResults& results) {
+  for (const char* name : {"sh2", "bins24"}) {
+    if (!thorough && std::string(name) != "sh2") continue;
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    for (const std::string& transport : transport_names()) {
+      results.push_back(check_one(session, *basis, make_transport(transport, *basis, {}, Blocking::areas),
+                                  {.grid = kGrid}, true));
+    }
+  }
+}
+
 /// Every other way for volumes to lie in memory: one basis and transport, since these have no part in it.
 void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
@@ -167,6 +184,7 @@ CheckResults check_propagate(Session& session, bool thorough) {
       check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
     }
   }
+  check_areas(session, thorough, results);
   check_formats(session, results);
   return results;
 }

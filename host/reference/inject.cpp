@@ -66,15 +66,19 @@ bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
 Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                    const InjectOptions& options) {
   const Lobes lobes(basis, options.lobes);
-  Volume blocking(static_cast<int>(grid.n) + 1, basis.size(), 1);
+  Volume blocking(static_cast<int>(grid.n) + 1, blocking_size(options.blocking, basis), 1);
   for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
     if (!has_surface(surface, pixel)) continue;
     const glm::dvec3 normal = vector(surface.normal[pixel]);
     const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
     const double share = footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
     const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
+    if (options.blocking == Blocking::areas) {
+      add(blocking, 0, corner, share, {std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+      continue;
+    }
     add(blocking, 0, corner, share, lobes(normal));
-    if (options.two_sided) add(blocking, 0, corner, share, lobes(-normal));
+    if (options.blocking == Blocking::two_sided) add(blocking, 0, corner, share, lobes(-normal));
   }
   return blocking;
 }
@@ -125,10 +129,11 @@ void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Ba
   for (int z = 0; z < geometry.n; ++z) {
     for (int y = 0; y < geometry.n; ++y) {
       for (int x = 0; x < geometry.n; ++x) {
-        const std::vector<double> found = cell_of(blocking, x, y, z);
-        if (basis.energy(found) <= basis.energy(cell_of(geometry, x, y, z))) continue;
-        for (int i = 0; i < geometry.coefficients; ++i) {
-          geometry.at(0, i, x, y, z) = found[static_cast<std::size_t>(i)];
+        const std::vector<double> found = cell_of(blocking, x, y, z), kept = cell_of(geometry, x, y, z);
+        const bool areas = options.blocking == Blocking::areas;
+        if (!areas && basis.energy(found) <= basis.energy(kept)) continue;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          geometry.at(0, static_cast<int>(i), x, y, z) = areas ? std::max(found[i], kept[i]) : found[i];
         }
       }
     }

@@ -25,11 +25,10 @@ int column_of(const glm::ivec3& normal) {
   return static_cast<int>(std::find(kAxes.begin(), kAxes.end(), normal) - kAxes.begin());
 }
 
-void add_faces(const Basis& basis, const FaceTransport& scheme, const Volume& from, const Volume* geometry,
-               bool clamp, const glm::ivec3& p, Volume& to) {
+void add_faces(const FaceTransport& scheme, const Volume& from, const Volume* geometry, bool clamp,
+               const glm::ivec3& p, Volume& to) {
   for (const Face& face : scheme.faces) {
-    const double open =
-        geometry == nullptr ? 1.0 : transmitted(basis, *geometry, p, face.normal, face.against);
+    const double open = geometry == nullptr ? 1.0 : transmitted(*geometry, p, face.normal, face.blocked_by);
     for (int channel = 0; channel < from.channels; ++channel) {
       const double flux = open * flux_through(face, cell(from, channel, p - face.travel), clamp);
       for (int i = 0; i < from.coefficients; ++i)
@@ -38,11 +37,11 @@ void add_faces(const Basis& basis, const FaceTransport& scheme, const Volume& fr
   }
 }
 
-void add_operators(const Basis& basis, const OperatorTransport& scheme, const Volume& from,
-                   const Volume* geometry, const glm::ivec3& p, Volume& to) {
+void add_operators(const OperatorTransport& scheme, const Volume& from, const Volume* geometry,
+                   const glm::ivec3& p, Volume& to) {
   for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
     const bool blocks = geometry != nullptr && neighbour.offset != glm::ivec3(0);
-    const double open = blocks ? transmitted(basis, *geometry, p, -neighbour.offset, neighbour.against) : 1.0;
+    const double open = blocks ? transmitted(*geometry, p, -neighbour.offset, neighbour.blocked_by) : 1.0;
     for (int channel = 0; channel < from.channels; ++channel) {
       const std::vector<double> arrived = neighbour.weights * cell(from, channel, p - neighbour.offset);
       for (int i = 0; i < from.coefficients; ++i)
@@ -62,25 +61,24 @@ void for_each_cell(int n, Visit visit) {
 
 }  // namespace
 
-Volume propagate_step(const Basis& basis, const Transport& transport, const Volume& travelling,
-                      const Volume* geometry, bool clamp) {
+Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
+                      bool clamp) {
   Volume next(travelling.n, travelling.coefficients, travelling.channels);
   for_each_cell(next.n, [&](const glm::ivec3& p) {
     if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-      add_faces(basis, *faces, travelling, geometry, clamp, p, next);
+      add_faces(*faces, travelling, geometry, clamp, p, next);
     } else {
-      add_operators(basis, std::get<OperatorTransport>(transport.scheme), travelling, geometry, p, next);
+      add_operators(std::get<OperatorTransport>(transport.scheme), travelling, geometry, p, next);
     }
   });
   return next;
 }
 
-Propagation propagate(const Basis& basis, const Transport& transport, const Volume& injected,
-                      const Volume* geometry, int iterations, bool clamp) {
+Propagation propagate(const Transport& transport, const Volume& injected, const Volume* geometry,
+                      int iterations, bool clamp) {
   Propagation result{injected, injected};
   for (int step = 1; step <= iterations; ++step) {
-    result.travelling =
-        propagate_step(basis, transport, result.travelling, step > 1 ? geometry : nullptr, clamp);
+    result.travelling = propagate_step(transport, result.travelling, step > 1 ? geometry : nullptr, clamp);
     for (std::size_t i = 0; i < result.accumulated.values.size(); ++i) {
       result.accumulated.values[i] += result.travelling.values[i];
     }

@@ -9,18 +9,18 @@
 
 namespace clpv::reference {
 
-/// One step. `travelling`: n^3 cells, N coefficients [W/sr]; `geometry`: (n+1)^3 corners, one channel, or
-/// null. `clamp`: fluxes below 0 are dropped, as the kernels do; without it energy is conserved exactly.
-Volume propagate_step(const Basis& basis, const Transport& transport, const Volume& travelling,
-                      const Volume* geometry, bool clamp = true);
+/// One step. `travelling`: n^3 cells, N coefficients [W/sr]; `geometry`: (n+1)^3 corners of what transport.blocking says,
+/// one channel, or null. `clamp`: fluxes below 0 are dropped, as the kernels do; without it energy is conserved exactly.
+Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
+                      bool clamp = true);
 
 struct Propagation {
   Volume travelling;   ///< after the last step
   Volume accumulated;  ///< the injected field and every step's output
 };
 /// `iterations` steps; the first does not block.
-Propagation propagate(const Basis& basis, const Transport& transport, const Volume& injected,
-                      const Volume* geometry, int iterations, bool clamp = true);
+Propagation propagate(const Transport& transport, const Volume& injected, const Volume* geometry,
+                      int iterations, bool clamp = true);
 
 /// Int f dw summed over all cells, a channel [W].
 std::array<double, 3> energy(const Basis& basis, const Volume& volume);

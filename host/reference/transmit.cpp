@@ -4,9 +4,9 @@
 
 namespace clpv::reference {
 
-double transmitted(const Basis& basis, const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
-                   const std::vector<double>& against) {
-  std::vector<double> mean(static_cast<std::size_t>(basis.size()), 0.0);
+double transmitted(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
+                   const std::vector<double>& weights) {
+  std::vector<double> mean(weights.size(), 0.0);
   int corners = 0;
   for (int c = 0; c < 8; ++c) {
     const glm::ivec3 corner(c & 1, (c >> 1) & 1, c >> 2);
@@ -21,7 +21,7 @@ double transmitted(const Basis& basis, const Volume& geometry, const glm::ivec3&
       mean[i] += geometry.value(0, static_cast<int>(i), p.x, p.y, p.z);
   }
   double blocked = 0;
-  for (std::size_t i = 0; i < mean.size(); ++i) blocked += mean[i] / corners * against[i];
+  for (std::size_t i = 0; i < mean.size(); ++i) blocked += mean[i] / corners * weights[i];
   return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
