@@ -3,10 +3,12 @@
 // CLPV_GEOMETRY 0, light: a texel's virtual point light is at p + n s/2, half a cell off its surface, so that the surface
 // does not light itself. CLPV_GEOMETRY 1, blocking: its surfel is at p.
 //
-// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis.
+// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_STRIDE (thinned.h), CLPV_SURFACE_PAPER. Nothing here
+// depends on the basis.
 #include "cell_keys.h"
 #include "shared/grid.h"
 #include "surface.h"
+#include "thinned.h"
 
 // A cosine floored here bounds the surfel behind a pixel seen edge-on.
 #define CLPV_LEAST_COSINE 0.1f
@@ -26,25 +28,29 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
                                   const float depth, const float3 normal) {
   const float3 ray = clpv_ray(view, px, py);
   const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
-  return clpv_footprint(view, px, py, depth) / (fmax(cosine, CLPV_LEAST_COSINE) * grid.cell * grid.cell);
+  return (CLPV_STRIDE * CLPV_STRIDE) * clpv_footprint(view, px, py, depth) /
+         (fmax(cosine, CLPV_LEAST_COSINE) * grid.cell * grid.cell);
 }
 
-// keys[texel]: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
-// details, geometry: the share of a cell's cross-section that the texel's surfel covers, seen along its normal.
+// keys[i] of taken texel i: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
+// details, geometry: the share of a cell's cross-section that the surfel covers, seen along its normal: of all the texels
+// that one taken stands for.
 // Trilinear light: where it is between the 8 cells' centres, in [0, 1): all texels' x, all y, all z.
 //
-// One work-item a strip of CLPV_STRIP texels of a row: CPU devices vectorise the loop (which they do not across
+// One work-item a strip of CLPV_STRIP taken texels of a row: CPU devices vectorise the loop (which they do not across
 // work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
 __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* restrict depths,
                          __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
                          const float colour_scale, __global uint* restrict keys, __global float* restrict details) {
-  const uint first = get_global_id(0) * CLPV_STRIP, py = get_global_id(1);
-  if (first >= view.width || py >= view.height) return;
-  const uint last = min(first + CLPV_STRIP, view.width);
+  const uint width = taken(view.width), height = taken(view.height);
+  const uint first = get_global_id(0) * CLPV_STRIP, row = get_global_id(1);
+  if (first >= width || row >= height) return;
+  const uint last = min(first + CLPV_STRIP, width);
+  const uint py = taken_texel(row);
   const uint n = CLPV_KEYS(grid.n);
   const float per_metre = 1.0f / grid.cell;
-  for (uint px = first; px < last; ++px) {
-    const uint texel = py * view.width + px;
+  for (uint column = first; column < last; ++column) {
+    const uint px = taken_texel(column), texel = py * view.width + px, i = row * width + column;
     const float depth = depths[texel];
     const float3 normal = clpv_load_normal(normals, texel);
     const float3 position = clpv_position(view, (float)px, (float)py, depth);
@@ -52,7 +58,7 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
           z = (position.z - grid.origin[2]) * per_metre;
     int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
 #if CLPV_GEOMETRY
-    details[texel] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
+    details[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
 #else
     x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
     const float3 flux = clpv_load_colour(colours, texel, colour_scale);
@@ -61,12 +67,12 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
     x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
     counts = counts & in_grid((float)n, x, y, z);  // no point that is not finite is
     const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
-    keys[texel] = counts ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
+    keys[i] = counts ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
 #if CLPV_TRILINEAR
-    const uint texels = view.width * view.height;
-    details[texel] = x - (float)cx;
-    details[texels + texel] = y - (float)cy;
-    details[2 * texels + texel] = z - (float)cz;
+    const uint texels = width * height;
+    details[i] = x - (float)cx;
+    details[texels + i] = y - (float)cy;
+    details[2 * texels + i] = z - (float)cz;
 #endif
   }
 }

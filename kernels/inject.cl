@@ -9,20 +9,22 @@
 // add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_STRIDE (thinned.h),
+// CLPV_SURFACE_PAPER; as text
 // what host/pipeline/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
 #include "deliver.h"
 #include "surface.h"
+#include "thinned.h"
 
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-// What texels are summed from; `details`: see find_cells.cl.
+// What the taken texels are summed from; `width` of the surface's rows; `details`: see find_cells.cl.
 #define CLPV_TEXELS                                                                                     \
   __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale, \
-      __global const float *details, const uint texels
-#define CLPV_PASS_TEXELS normals, colours, colour_scale, details, texels
+      __global const float *details, const uint texels, const uint width
+#define CLPV_PASS_TEXELS normals, colours, colour_scale, details, texels, width
 
 static inline Sums no_sums(void) {
   Sums sums;
@@ -46,7 +48,7 @@ static inline Sum add_lobe(Sum sum, const Lanes weight, const Coefficients lobe)
 #if CLPV_GEOMETRY
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
-  const float3 n = clpv_load_normal(normals, texel);
+  const float3 n = clpv_load_normal(normals, taken_index(width, texel));
   sums.k0 = add_lobe(sums.k0, details[texel], clpv_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
@@ -65,9 +67,10 @@ static inline Lanes cell_weights(__global const float* details, const uint texel
 }
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
-  const float3 n = clpv_load_normal(normals, texel);
+  const uint seen = taken_index(width, texel);
+  const float3 n = clpv_load_normal(normals, seen);
   const Coefficients lobe = clpv_lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE);
-  float3 flux = clpv_load_colour(colours, texel, colour_scale);
+  float3 flux = clpv_load_colour(colours, seen, colour_scale);
 #if CLPV_UNIT_FLUX
   flux *= M_PI_F / clpv_flux(lobe);
 #endif

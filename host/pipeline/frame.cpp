@@ -182,7 +182,7 @@ void Frame::inject(int cascade) {
   for (const LitLight& lit : lights_) {
     for (const Surface& rsm : lit.rsms) injector_.inject_geometry(rsm, grid, *geometry_);
   }
-  injector_.inject_geometry(*camera_surface_, grid, *geometry_);
+  injector_.inject_geometry(*camera_surface_, grid, *geometry_, options_.blocker_stride);
 }
 
 void Frame::light_cascade(int cascade, const CascadeObserver& observer) {

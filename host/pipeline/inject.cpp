@@ -30,8 +30,10 @@ std::string flag(bool on) {
   return on ? "1" : "0";
 }
 
-std::size_t texel_count(const Surface& surface) {
-  return std::size_t{surface.view.width} * surface.view.height;
+/// As in kernels/thinned.h.
+std::size_t taken(std::size_t texels, int stride) {
+  const auto step = static_cast<std::size_t>(stride);
+  return (texels + step - 1 - step / 2) / step;
 }
 
 void require_fit(const Volume& volume, const VolumeShape& wanted, const VolumeFormat& format,
@@ -62,21 +64,23 @@ bool Injector::looks_up(Kind kind) const {
   return kind == Kind::light || options_.blocking != Blocking::areas;
 }
 
-Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
-  const auto [found, made] = kernels_.try_emplace({kind, format});
+Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format, int stride) {
+  const auto [found, made] = kernels_.try_emplace({kind, format, stride});
   if (made) {
     const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
-    const std::string paper = flag(format == RsmFormat::paper);
+    const std::string paper = flag(format == RsmFormat::paper), steps = fmt::format("{}u", stride);
     const ProgramSource find{"find_cells.cl",
                              {{"CLPV_GEOMETRY", flag(!light)},
                               {"CLPV_TRILINEAR", flag(trilinear)},
                               {"CLPV_SURFACE_PAPER", paper},
+                              {"CLPV_STRIDE", steps},
                               {"CLPV_STRIP", fmt::format("{}u", strip_)}},
                              {}};
     ProgramSource sum{"inject.cl",
                       {{"CLPV_GEOMETRY", flag(!light)},
                        {"CLPV_TRILINEAR", flag(trilinear)},
                        {"CLPV_SURFACE_PAPER", paper},
+                       {"CLPV_STRIDE", steps},
                        {"CLPV_GRID", std::to_string(options_.grid)},
                        {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
                       light ? table_.macros() + inject_source(basis_, options_.lobes, trilinear)
@@ -104,28 +108,29 @@ void Injector::reserve(std::size_t texels) {
   capacity_ = texels;
 }
 
-void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume) {
+void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume) {
   if (volume.updates_in_place()) {
-    inject_in_place(kind, surface, grid, volume);
+    inject_in_place(kind, surface, grid, stride, volume);
     return;
   }
   PlaneStage& stage =
       stages_.try_emplace(kind, session_, volume.shape(), volume.format().storage).first->second;
   stage.take(volume);
-  inject_in_place(kind, surface, grid, stage.planes());
+  inject_in_place(kind, surface, grid, stride, stage.planes());
   stage.give(volume);
 }
 
-void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume) {
+void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                               Volume& volume) {
   const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
-  const std::size_t texels = texel_count(surface);
+  const std::size_t width = taken(surface.view.width, stride), height = taken(surface.view.height, stride);
+  const std::size_t texels = width * height;
   if (texels == 0) return;
   reserve(texels);
-  Kernels& kernel = kernels(kind, surface.format);
+  Kernels& kernel = kernels(kind, surface.format, stride);
   set_arguments(kernel.find_cells, surface.view, grid, surface.depth, surface.normal, surface.colour,
                 surface.colour_scale, sorter_.keys(), details_);
-  session_.launch(kernel.find_cells,
-                  cl::NDRange((surface.view.width + strip_ - 1) / strip_, surface.view.height),
+  session_.launch(kernel.find_cells, cl::NDRange((width + strip_ - 1) / strip_, height),
                   strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
   sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
 
@@ -134,7 +139,7 @@ void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid
   for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
     set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
                   surface.normal, surface.colour, surface.colour_scale, details_,
-                  static_cast<cl_uint>(texels), volume.memory(), partials_, firsts_);
+                  static_cast<cl_uint>(texels), surface.view.width, volume.memory(), partials_, firsts_);
     if (looks_up(kind)) table_.set(kernel.sum_segments);
     session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
     set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(),
@@ -145,13 +150,14 @@ void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid
 
 void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
   require_fit(light, {options_.grid, basis_.size(), 3}, options_.format, "light");
-  inject(Kind::light, rsm, grid, light);
+  inject(Kind::light, rsm, grid, 1, light);
 }
 
-void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry) {
+void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride) {
+  if (stride < 1) throw Error(ExitCode::usage, "inject: stride {} is not at least 1", stride);
   require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1}, options_.format,
               "geometry");
-  inject(Kind::geometry, surface, grid, geometry);
+  inject(Kind::geometry, surface, grid, stride, geometry);
 }
 
 }  // namespace clpv

@@ -3,7 +3,7 @@
 
 #include <CL/opencl.hpp>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
@@ -40,18 +40,19 @@ class Injector {
   /// Merges what `surface`, an RSM or a G-buffer, sees into `geometry`: grid + 1 samples a side, 1 channel, numbers as
   /// `blocking` says. Surfaces see the same walls: a sample becomes the surface's blocking share where that has the
   /// larger mean; of areas it keeps the larger one of each.
-  void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry);
+  /// `stride`: of the surface's pixels every so many each way are taken, each for those round it; 1 or more.
+  void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride = 1);
 
  private:
   enum class Kind { light, geometry };
   struct Kernels {
     cl::Kernel find_cells, sum_segments, join_segments;
   };
-  Kernels& kernels(Kind kind, RsmFormat format);
+  Kernels& kernels(Kind kind, RsmFormat format, int stride);
   bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);
-  void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);
-  void inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, Volume& volume);
+  void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
+  void inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
 
   Session& session_;
   const Basis& basis_;
@@ -59,7 +60,7 @@ class Injector {
   LookupTable table_;
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
-  std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;
+  std::map<std::tuple<Kind, RsmFormat, int>, Kernels> kernels_;  ///< int: the stride
   std::map<Kind, PlaneStage> stages_;  ///< of images: a launch cannot both read and write one
   std::size_t capacity_ = 0;
   cl::Buffer details_, partials_, firsts_;

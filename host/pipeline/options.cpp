@@ -18,6 +18,7 @@ namespace {
 constexpr double kMostCells = 512, kMostSteps = 4096, kMostTexels = 8192, kMostPixels = 16384,
                  kMostMetres = 1e6;
 constexpr int kMostCascades = 8;
+constexpr int kMostStride = 16;
 constexpr int kMostEntries = 65536;  // what the least of devices with images takes as an image of a buffer
 
 struct Range {
@@ -78,6 +79,8 @@ void for_each_option(Options& o, Visit&& visit) {
         "how surfaces block light: by their area across each axis, or by lobes, from both sides or what "
         "meets their lit one",
         blocking_names());
+  visit("blocker-stride", o.blocker_stride, "of the camera's pixels every so many each way become blockers",
+        Range{1, kMostStride});
   visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight",
         std::vector<std::string>{"nearest", "trilinear"});
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});

@@ -43,7 +43,8 @@ struct RenderOptions {
   int shadow_size = 1024;
   bool occlusion = true;
   std::string blocking = "areas";
-  std::string injection = "trilinear";
+  int blocker_stride = 3;
+  std::string injection = "nearest";
   double gather_offset = 0.75;
   double gather_floor = 0.15;
   bool late_light = true;

@@ -153,7 +153,7 @@ CheckResult check_light(Session& session, const Basis& basis, const InjectOption
 
 /// Two surfaces, so that they are merged.
 CheckResult check_geometry(Session& session, const Basis& basis, const InjectOptions& options,
-                           bool orthographic, RsmFormat format) {
+                           bool orthographic, RsmFormat format, int stride = 1) {
   const int numbers = blocking_size(options.blocking, basis);
   clpv::Volume geometry(session, {kGrid + 1, numbers, 1}, "check: geometry", options.format);
   Volume twin(kGrid + 1, numbers, 1);
@@ -162,11 +162,12 @@ CheckResult check_geometry(Session& session, const Basis& basis, const InjectOpt
     const bool from_above = orthographic == (seed == 12u);
     const Surface surface = upload_surface(
         session, random_surface(basis, options.lobes, from_above, false, format, seed), format);
-    injector.inject_geometry(surface, kCells, geometry);
-    inject_geometry(read_surface(session, surface), kCells, basis, options, twin);
+    injector.inject_geometry(surface, kCells, geometry, stride);
+    inject_geometry(read_surface(session, surface), kCells, basis, options, twin, stride);
   }
   return compare(basis, options, geometry.read(session), twin,
-                 name_of(basis, "geometry", orthographic, format, options));
+                 name_of(basis, "geometry", orthographic, format, options) +
+                     (stride == 1 ? "" : fmt::format("/stride {}", stride)));
 }
 
 /// Lobes rotated at run time. Reading an image hardly depends on the basis.
@@ -216,7 +217,11 @@ CheckResults check_inject(Session& session, bool thorough) {
   }
   for (const bool orthographic : {true, false}) {
     const InjectOptions areas{.grid = kGrid, .blocking = Blocking::areas};  // whatever the basis
-    results.push_back(check_geometry(session, *make_basis("sh2"), areas, orthographic, RsmFormat::float32));
+    for (const int stride : {1, 2, 3}) {
+      if (orthographic && stride > 1) continue;
+      results.push_back(
+          check_geometry(session, *make_basis("sh2"), areas, orthographic, RsmFormat::float32, stride));
+    }
   }
   check_formats(session, results);
   return results;

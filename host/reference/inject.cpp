@@ -64,14 +64,18 @@ bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
 
 /// One source's blocking shares, before it is merged with others.
 Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
-                   const InjectOptions& options) {
+                   const InjectOptions& options, int stride) {
   const Lobes lobes(basis, options.lobes);
   Volume blocking(static_cast<int>(grid.n) + 1, blocking_size(options.blocking, basis), 1);
+  const auto every = static_cast<std::size_t>(stride);
   for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
-    if (!has_surface(surface, pixel)) continue;
+    const bool taken =
+        pixel % surface.view.width % every == every / 2 && pixel / surface.view.width % every == every / 2;
+    if (!taken || !has_surface(surface, pixel)) continue;
     const glm::dvec3 normal = vector(surface.normal[pixel]);
     const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
-    const double share = footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
+    const double share =
+        stride * stride * footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
     const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
     if (options.blocking == Blocking::areas) {
       add(blocking, 0, corner, share, {std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
@@ -124,8 +128,8 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
 }
 
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
-                     const InjectOptions& options, Volume& geometry) {
-  const Volume blocking = blocking_of(surface, grid, basis, options);
+                     const InjectOptions& options, Volume& geometry, int stride) {
+  const Volume blocking = blocking_of(surface, grid, basis, options, stride);
   for (int z = 0; z < geometry.n; ++z) {
     for (int y = 0; y < geometry.n; ++y) {
       for (int x = 0; x < geometry.n; ++x) {

@@ -13,9 +13,10 @@ namespace clpv::reference {
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
                   const InjectOptions& options, Volume& light);
 
-/// Merges what `surface` sees into `geometry`: grid.n + 1 samples a side, 1 channel.
+/// Merges what `surface` sees into `geometry`: grid.n + 1 samples a side, 1 channel. Of its pixels every `stride`-th each
+/// way, the middle one of those it stands for.
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
-                     const InjectOptions& options, Volume& geometry);
+                     const InjectOptions& options, Volume& geometry, int stride = 1);
 
 /// Where a pixel's surface is, in units of cells from the grid's origin. Light: moved half a cell off the
 /// surface.
