@@ -12,6 +12,8 @@
 //                                              the outermost centres take their value
 //   float3 clpv_weigh(weights, sampled)        weights . coefficients, a channel
 //
+// `unit`: what a stored 1 stands for [W/sr].
+//
 // The host writes, beside the literals below and the functions of n,
 //   Coefficients clpv_gather_weights(float3 n CLPV_PASS_TABLE), Coefficients clpv_floor_weights(void)
 // Where b comes from a look-up table, `gather` has it as its last argument.
@@ -53,7 +55,7 @@ CLPV_INLINE void clpv_add_cascade(float3* sum, float* left, const ClpvGrid grid,
 }
 
 __kernel void gather(const ClpvView view, __global const float* depths, __global const SurfaceTexel* normals,
-                     __global const ClpvGrid* grids, const uint cascades, __global float4* irradiance
+                     __global const ClpvGrid* grids, const uint cascades, const float unit, __global float4* irradiance
                      CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
   const uint px = get_global_id(0), py = get_global_id(1);
   if (px >= view.width || py >= view.height) return;
@@ -68,5 +70,5 @@ __kernel void gather(const ClpvView view, __global const float* depths, __global
 #define CLPV_ADD_CASCADE(c, volume) clpv_add_cascade(&sum, &left, grids[c], position, normal, weights, volume)
     CLPV_ADD_CASCADES
   }
-  irradiance[pixel] = (float4)(sum.x, sum.y, sum.z, 0.0f);
+  irradiance[pixel] = (float4)(unit * sum.x, unit * sum.y, unit * sum.z, 0.0f);
 }

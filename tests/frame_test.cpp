@@ -9,6 +9,7 @@
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
+#include "pipeline/light_scale.hpp"
 #include "scene/load.hpp"
 
 namespace clpv {
@@ -101,6 +102,20 @@ TEST(Frame, RedLightFallsNearTheRedWallAndGreenNearTheGreenOne) {
   }
 }
 
+TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
+  Scene scene = load_scene(scene_path("cornell.json"));
+  RenderOptions options = small_options(scene);
+  const Image usual = render(scene, options, Show::indirect);
+  for (const float brightness : {1e-5f, 1e6f}) {
+    Scene other = scene;
+    for (Light& light : other.lights) light.data = scaled(light.data, brightness);
+    Image image = render(other, options, Show::indirect);
+    for (std::size_t at = 0; at < image.pixels.size(); ++at)
+      if (at % 4 != 3) image.pixels[at] /= brightness;
+    EXPECT_LT(compare(image, "other", usual, "usual").nrmse, 1e-3) << brightness;
+  }
+}
+
 TEST(Frame, TwoRunsAreTheSameToTheBit) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   const RenderOptions options = small_options(scene);
@@ -127,6 +142,7 @@ std::vector<float> finest_light(const Scene& scene, const RenderOptions& options
   std::vector<float> light;
   frame.render(camera, [&](const CascadeVolumes& volumes) {
     if (volumes.cascade == 0) light = volumes.accumulated.read(session);
+    for (float& value : light) value /= volumes.light_scale;
   });
   return light;
 }

@@ -89,7 +89,8 @@ void write_images(Frame& frame, const Options& options, const std::vector<Show>&
 }
 
 void dump_volume(Session& session, const Options& options, const CascadeVolumes& volumes) {
-  const std::vector<float> values = volumes.accumulated.read(session);
+  std::vector<float> values = volumes.accumulated.read(session);
+  for (float& value : values) value /= volumes.light_scale;
   const VolumeShape& shape = volumes.accumulated.shape();
   const fs::path stem = fs::path(options.dump) / fmt::format("cascade{}", volumes.cascade);
   write_volume_npy(stem.string() + ".npy", values, shape.n, shape.coefficients);

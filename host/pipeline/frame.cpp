@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/light_scale.hpp"
 #include "pipeline/view.hpp"
 #include "support/error.hpp"
 
@@ -162,7 +163,7 @@ void Frame::rasterize_rsms(int cascade) {
     for (std::size_t v = 0; v < views.size(); ++v) {
       if (lit.rsms.size() <= v) lit.rsms.push_back(make_surface(session_, views[v], options_.rsm(), false));
       lit.rsms[v].view = views[v];
-      rasterizer_.rasterize_rsm(lit.light, lit.rsms[v]);
+      rasterizer_.rasterize_rsm(scaled(lit.light, light_scale_), lit.rsms[v]);
     }
   }
 }
@@ -194,7 +195,7 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
     propagator_.propagate({injected_, geometry_.get(), *accumulated_[c], late_[c].get()},
                           options_.iterations);
   }
-  if (observer) observer({cascade, grids_[c], injected_, geometry_.get(), *accumulated_[c]});
+  if (observer) observer({cascade, grids_[c], injected_, geometry_.get(), *accumulated_[c], light_scale_});
 }
 
 void Frame::carry_late_light() {
@@ -209,6 +210,9 @@ void Frame::carry_late_light() {
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   prepare_lights(camera);
   grids_ = cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
+  std::vector<ClpvLight> lights;
+  for (const LitLight& lit : lights_) lights.push_back(lit.light);
+  light_scale_ = light_scale(options_.format(), lights, grids_.back().cell);
   rasterize_camera(camera);
   rasterize_shadows();
   for (int cascade = 0; cascade < options_.cascades; ++cascade) light_cascade(cascade, observer);
@@ -217,7 +221,7 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   for (const auto& volume : accumulated_) accumulated.push_back(volume.get());
   {
     const StageScope scope(session_, {"gather"});
-    gatherer_.gather(*camera_surface_, grids_, accumulated, irradiance_);
+    gatherer_.gather(*camera_surface_, grids_, accumulated, irradiance_, light_scale_);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);

@@ -30,6 +30,7 @@ struct CascadeVolumes {
   const Volume& injected;
   const Volume* geometry;  ///< null without occlusion
   const Volume& accumulated;
+  float light_scale;  ///< the volumes hold so many times the light
 };
 using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 
@@ -82,6 +83,7 @@ class Frame {
   std::vector<LitLight> lights_;
   std::string lit_by_;  ///< Camera::light that lights_ were prepared for
   std::vector<ClpvGrid> grids_;
+  float light_scale_ = 1;  ///< what volumes hold in place of 1 W/sr
   Volume injected_;
   std::unique_ptr<Volume> geometry_;
   std::vector<std::unique_ptr<Volume>> accumulated_;

@@ -54,8 +54,12 @@ void FrameStats::end_frame(Session& session) {
 }
 
 void FrameStats::add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes) {
-  energies_.push_back({volumes.cascade, volume_energy(session, basis, volumes.injected),
-                       volume_energy(session, basis, volumes.accumulated)});
+  const auto energy = [&](const Volume& volume) {
+    std::array<double, 3> stored = volume_energy(session, basis, volume);
+    for (double& watts : stored) watts /= volumes.light_scale;
+    return stored;
+  };
+  energies_.push_back({volumes.cascade, energy(volumes.injected), energy(volumes.accumulated)});
 }
 
 nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {

@@ -11,7 +11,7 @@ namespace {
 
 // Neighbours in a row share cells. Of 64 x 1, 64 x 4, 32 x 8, 16 x 16 and 8 x 8 none was faster on a CPU.
 constexpr std::size_t kLocalX = 64, kLocalY = 1;
-constexpr cl_uint kVolumeArgument = 6;  // of kernel gather: the packed volumes, or the first image
+constexpr cl_uint kVolumeArgument = 7;  // of kernel gather: the packed volumes, or the first image
 
 /// Gathering by the cosine evaluates no basis function.
 LobeOptions looked_up(const Transport& transport, const GatherOptions& options) {
@@ -132,13 +132,13 @@ void Gatherer::pack(const Volume& volume, std::size_t slot) {
 }
 
 void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                      const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance) {
+                      const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance, float scale) {
   require_fit(camera, grids, accumulated);
   reserve(grids.size());
   session_.write(grids_, grids);
   cl::Kernel& kernel = gather_kernel(grids.size());
   set_arguments(kernel, camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()),
-                irradiance);
+                1 / scale, irradiance);
   if (packs()) kernel.setArg(kVolumeArgument, packed_);
   for (std::size_t c = 0; c < grids.size(); ++c) {
     if (packs()) {

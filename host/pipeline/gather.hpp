@@ -41,10 +41,10 @@ class Gatherer {
 
   /// Finest cascade first; `accumulated` a volume a grid.
   /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
-  /// there is no surface. Throws Error(run_time) where counts or shapes do not fit, or the device's memory
+  /// there is no surface. `scale`: the volumes hold so many times the light (light_scale.hpp). Throws Error(run_time) where counts or shapes do not fit, or the device's memory
   /// does not suffice.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-              const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance);
+              const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance, float scale = 1);
 
  private:
   /// Images are sampled as they are, unless they hold more than irradiance needs.

@@ -23,7 +23,7 @@ enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal
 /// published scheme's cost (docs/method.md, 'Two ways to use clpv').
 struct RenderOptions {
   std::string preset = "best";  ///< the one set last; options set after it may differ from it
-  std::string basis = "srbf8v2";
+  std::string basis = "bins24";
   std::string centres;  ///< file of an SRBF set that replaces `basis`; none: empty
   double lambda = 0.25;
   std::string lobe = "exact";
@@ -31,9 +31,9 @@ struct RenderOptions {
   int table_size = 256;
   std::string table = "buffer";
   std::string evaluate = "exact";
-  std::string transport = "upwind";
+  std::string transport = "semi-lagrangian";
   std::string state = "coefficients";
-  std::string layout = "soa", storage = "float";
+  std::string layout = "soa", storage = "half";
   int iterations = 8;
   int grid = 32;
   int cascades = 3;
@@ -45,8 +45,8 @@ struct RenderOptions {
   std::string blocking = "areas";
   int blocker_stride = 3;
   std::string injection = "nearest";
-  double gather_offset = 0.75;
-  double gather_floor = 0.15;
+  double gather_offset = 0.5;
+  double gather_floor = 0;
   bool late_light = true;
   int width = 960, height = 540;
 
