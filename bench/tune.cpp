@@ -90,7 +90,8 @@ std::vector<Tuned> tune(Session& session, const TuneOptions& options) {
     std::vector<Tuned> found;
     for (const std::string& layout : layouts) {
       Variant variant = plain_variant(options.suite, basis);
-      variant.transport = options.transport, variant.state = options.state, variant.storage = options.storage;
+      variant.transport = options.render.transport, variant.state = options.render.state;
+      variant.storage = options.render.storage;
       variant.occlusion = options.occlusion, variant.layout = layout;
       if (auto tuned = best_shape(*bench, variant, options, progress)) found.push_back(*tuned);
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/suites.hpp"
+#include "pipeline/options.hpp"
 #include "pipeline/tuning.hpp"
 
 namespace clpv::bench {
@@ -12,7 +13,7 @@ namespace clpv::bench {
 struct TuneOptions {
   SuiteOptions suite;                ///< bases: those to tune
   std::vector<std::string> layouts;  ///< to choose from; empty: all
-  std::string transport = "upwind", state = "coefficients", storage = "float";
+  RenderOptions render;  ///< whose transport, state and storage are tuned for; the defaults of rendering
   bool occlusion = true;
   int repetitions = 7;
 };

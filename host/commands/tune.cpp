@@ -56,8 +56,8 @@ void run(Options options, const Shared& shared) {
   options.tune.occlusion = options.occlusion == "on";
   for (const std::string& basis : options.tune.suite.bases) {
     const auto made = make_basis(basis);
-    const Transport transport = make_transport(options.tune.transport, *made);
-    if (options.tune.state == "fluxes" && !std::holds_alternative<FaceTransport>(transport.scheme))
+    const Transport transport = make_transport(options.tune.render.transport, *made);
+    if (options.tune.render.state == "fluxes" && !std::holds_alternative<FaceTransport>(transport.scheme))
       throw Error(ExitCode::usage, "--state fluxes: transport '{}' has no faces; allowed: coefficients",
                   transport.name);
   }
@@ -83,18 +83,18 @@ void add_tune(CLI::App& app, Shared& shared) {
       "tune",
       "Find the fastest launch shapes and layout for propagation here; render and bench then use them");
   auto options = std::make_shared<Options>();
-  options->tune.suite.bases = {"srbf8v2"};
+  options->tune.suite.bases = {options->tune.render.basis};
   command->add_option("--basis", options->tune.suite.bases, "bases, between commas")
       ->delimiter(',')
       ->capture_default_str()
       ->type_name("NAME");
-  command->add_option("--transport", options->tune.transport, "how light moves")
+  command->add_option("--transport", options->tune.render.transport, "how light moves")
       ->capture_default_str()
       ->check(CLI::IsMember(transport_names()));
-  command->add_option("--state", options->tune.state, "what travels")
+  command->add_option("--state", options->tune.render.state, "what travels")
       ->capture_default_str()
       ->check(CLI::IsMember({"coefficients", "fluxes"}));
-  command->add_option("--storage", options->tune.storage, "of volumes")
+  command->add_option("--storage", options->tune.render.storage, "of volumes")
       ->capture_default_str()
       ->check(CLI::IsMember(storage_names()));
   command
