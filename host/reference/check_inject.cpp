@@ -136,7 +136,7 @@ std::string name_of(const Basis& basis, const char* stage, bool orthographic, Rs
                      blocking_label(options.blocking), options.unit_flux_lobes ? "/unit-flux" : "") +
          (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
          (options.table == TableStorage::buffer ? "" : "/image") +
-         (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format));
+         (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
 }
 
 CheckResult check_light(Session& session, const Basis& basis, const InjectOptions& options, bool orthographic,

@@ -95,19 +95,20 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   Propagator propagator(session, basis, transport, options);
   propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
   const Propagation twin = propagate(transport, light, blockers ? &geometry : nullptr, kSteps);
-  return compare(accumulated.read(session), twin.accumulated,
-                 options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
-                                                       : tolerance_in("propagate", options.format),
-                 fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
-                             options.state == State::fluxes ? "fluxes" : "coefficients",
-                             !blockers                               ? "free"
-                             : transport.blocking == Blocking::areas ? "areas"
-                                                                     : "blockers",
-                             transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
-                             options.lobe_time == LobeTime::host     ? ""
-                             : options.table == TableStorage::buffer ? "/kernel"
-                                                                     : "/kernel image") +
-                     (options.format == VolumeFormat{} ? "" : "/" + format_name(options.format)));
+  return compare(
+      accumulated.read(session), twin.accumulated,
+      options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
+                                            : tolerance_in("propagate", options.format),
+      fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
+                  options.state == State::fluxes ? "fluxes" : "coefficients",
+                  !blockers                               ? "free"
+                  : transport.blocking == Blocking::areas ? "areas"
+                                                          : "blockers",
+                  transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
+                  options.lobe_time == LobeTime::host     ? ""
+                  : options.table == TableStorage::buffer ? "/kernel"
+                                                          : "/kernel image") +
+          (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format))));
 }
 
 /// `full`: every transport in both states, with and without blockers.
