@@ -38,7 +38,7 @@ ProgramSource source_of(const GatherForm& form, const GatherOptions& options, bo
                      {"CLPV_FLOORED", options.floor > 0 ? "1" : "0"}};
   if (!packed) {
     add_format_literals(source.literals, options.format);
-    source.literals["CLPV_FILTERED"] = options.filtered ? "1" : "0";
+    source.literals["CLPV_FILTERED"] = std::to_string(options.filtered ? 1 : 0);
   }
   source.generated =
       table.macros() + gather_source(form, packed, table.exists(), options.lobes, options.floor);

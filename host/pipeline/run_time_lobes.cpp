@@ -40,9 +40,9 @@ RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport
 }
 
 void RunTimeLobes::add_literals(Literals& literals) const {
-  literals["CLPV_LOBES_AT_RUN_TIME"] = "1";
+  literals["CLPV_LOBES_AT_RUN_TIME"] = std::to_string(1);
   literals["CLPV_FACES"] = std::to_string(faces_);
-  literals["CLPV_UNIT_FLUX"] = unit_flux_ ? "1" : "0";
+  literals["CLPV_UNIT_FLUX"] = std::to_string(unit_flux_ ? 1 : 0);
 }
 
 void RunTimeLobes::set(cl::Kernel& step) const {

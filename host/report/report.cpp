@@ -81,7 +81,8 @@ std::string views_section(const std::vector<View>& views) {
 std::string described(const json& options) {
   std::string text;
   for (const auto& [name, value] : options.items())
-    text += (text.empty() ? "" : " ") + (value.is_string() ? value.get<std::string>() : value.dump());
+    text += fmt::format("{}{}", text.empty() ? "" : " ",
+                        value.is_string() ? value.get<std::string>() : value.dump());
   return text;
 }
 
