@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+#include "device/device.hpp"
+#include "pipeline/volume_format.hpp"
 #include "support/error.hpp"
 #include "tests/run_program.hpp"
 
@@ -89,6 +91,16 @@ TEST(TuneProgram, RenderUsesWhatWasFoundUnlessToldNotTo) {
   const auto damaged = user.run(render);
   EXPECT_EQ(damaged.exit_code, 0) << damaged.err;
   EXPECT_THAT(damaged.err, HasSubstr("tuning ignored"));
+}
+
+TEST(TuneProgram, EveryLayoutIsTried) {
+  const User user;
+  const auto tuned = user.run("tune --basis sh2 --transport upwind --grid 8 --repetitions 1 --json");
+  ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
+  for (const std::string& layout : layout_names()) {
+    if (layout == "image" && !choose_device().images) continue;
+    EXPECT_THAT(tuned.out, HasSubstr("\"layout\": \"" + layout + "\""));
+  }
 }
 
 TEST(TuneProgram, RefusesBadUsage) {
