@@ -19,7 +19,7 @@ std::vector<Tuning> candidates(const Device& device, const Variant& variant) {
   const auto limits = device.handle.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
   const auto most = device.handle.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
   for (const int lanes : {1, 8}) {
-    if (variant.layout == "image" && lanes != 1) continue;  // a texel is of one cell
+    if (lanes > most_lanes(format_of(variant))) continue;
     if (variant.layout == "soa" && variant.storage == "float" && lanes != usual_lanes && device.type == "cpu")
       continue;
     const std::size_t row = static_cast<std::size_t>((variant.grid + lanes - 1) / lanes);

@@ -3,12 +3,16 @@
 // CLPV_GEOMETRY 0, light: a texel's virtual point light is at p + n s/2, half a cell off its surface, so that the surface
 // does not light itself. CLPV_GEOMETRY 1, blocking: its surfel is at p.
 //
-// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_STRIDE (thinned.h), CLPV_SURFACE_PAPER. Nothing here
+// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_STRIDE (shared/thinned.h), CLPV_SURFACE_PAPER. Nothing here
 // depends on the basis.
 #include "cell_keys.h"
 #include "shared/grid.h"
+#include "shared/thinned.h"
 #include "surface.h"
-#include "thinned.h"
+
+#ifndef CLPV_STRIDE
+#define CLPV_STRIDE 1u
+#endif
 
 // A cosine floored here bounds the surfel behind a pixel seen edge-on.
 #define CLPV_LEAST_COSINE 0.1f
@@ -42,15 +46,15 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* restrict depths,
                          __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
                          const float colour_scale, __global uint* restrict keys, __global float* restrict details) {
-  const uint width = taken(view.width), height = taken(view.height);
+  const uint width = CLPV_TAKEN(view.width, CLPV_STRIDE), height = CLPV_TAKEN(view.height, CLPV_STRIDE);
   const uint first = get_global_id(0) * CLPV_STRIP, row = get_global_id(1);
   if (first >= width || row >= height) return;
   const uint last = min(first + CLPV_STRIP, width);
-  const uint py = taken_texel(row);
+  const uint py = CLPV_TAKEN_TEXEL(row, CLPV_STRIDE);
   const uint n = CLPV_KEYS(grid.n);
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
-    const uint px = taken_texel(column), texel = py * view.width + px, i = row * width + column;
+    const uint px = CLPV_TAKEN_TEXEL(column, CLPV_STRIDE), texel = py * view.width + px, i = row * width + column;
     const float depth = depths[texel];
     const float3 normal = clpv_load_normal(normals, texel);
     const float3 position = clpv_position(view, (float)px, (float)py, depth);

@@ -9,14 +9,18 @@
 // add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_STRIDE (thinned.h),
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_STRIDE (shared/thinned.h),
 // CLPV_SURFACE_PAPER; as text
 // what host/pipeline/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
 #include "deliver.h"
+#include "shared/thinned.h"
 #include "surface.h"
-#include "thinned.h"
+
+#ifndef CLPV_STRIDE
+#define CLPV_STRIDE 1u
+#endif
 
 #define CLPV_NO_SEGMENT 0xffffffffu
 
@@ -25,6 +29,16 @@
   __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale, \
       __global const float *details, const uint texels, const uint width
 #define CLPV_PASS_TEXELS normals, colours, colour_scale, details, texels, width
+
+// Where the i-th taken texel of a surface of rows of `width` texels is.
+static inline uint taken_index(const uint width, const uint i) {
+#if CLPV_STRIDE == 1
+  return i;
+#else
+  const uint of_row = CLPV_TAKEN(width, CLPV_STRIDE);
+  return CLPV_TAKEN_TEXEL(i / of_row, CLPV_STRIDE) * width + CLPV_TAKEN_TEXEL(i % of_row, CLPV_STRIDE);
+#endif
+}
 
 static inline Sums no_sums(void) {
   Sums sums;

@@ -2,6 +2,7 @@
 
 #include "device/arguments.hpp"
 #include "kernels/shared/sort.h"
+#include "kernels/shared/thinned.h"
 #include "pipeline/inject_source.hpp"
 #include "support/error.hpp"
 
@@ -28,12 +29,6 @@ std::size_t block_count(std::size_t texels) {
 
 std::string flag(bool on) {
   return on ? "1" : "0";
-}
-
-/// As in kernels/thinned.h.
-std::size_t taken(std::size_t texels, int stride) {
-  const auto step = static_cast<std::size_t>(stride);
-  return (texels + step - 1 - step / 2) / step;
 }
 
 void require_fit(const Volume& volume, const VolumeShape& wanted, const VolumeFormat& format,
@@ -123,8 +118,9 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, i
 void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
                                Volume& volume) {
   const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
-  const std::size_t width = taken(surface.view.width, stride), height = taken(surface.view.height, stride);
-  const std::size_t texels = width * height;
+  const auto step = static_cast<unsigned>(stride);
+  const std::size_t width = CLPV_TAKEN(surface.view.width, step),
+                    height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
   if (texels == 0) return;
   reserve(texels);
   Kernels& kernel = kernels(kind, surface.format, stride);

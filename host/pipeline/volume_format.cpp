@@ -118,13 +118,17 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
   }
 }
 
+int most_lanes(const VolumeFormat& format) {
+  return format.layout == Layout::image ? 1 : kMostLanes;
+}
+
 int preferred_lanes(const Device& device, const VolumeFormat& format) {
   const bool across_work_items = format == VolumeFormat{};
-  return device.type == "cpu" && format.layout != Layout::image && !across_work_items ? kMostLanes : 1;
+  return across_work_items ? 1 : preferred_row_lanes(device, format);
 }
 
 int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
-  return device.type == "cpu" && format.layout != Layout::image ? kMostLanes : 1;
+  return device.type == "cpu" ? most_lanes(format) : 1;
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {

@@ -50,6 +50,9 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
 /// Throws Error(device) "unsupported: ..." where one of them gives a reason.
 void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape);
 
+/// Cells along x that a work-item of a stencil can serve, or one alone: 8; of images, whose texels are of one cell, 1.
+int most_lanes(const VolumeFormat& format);
+
 /// Cells along x that a work-item of a stencil should serve: 8 on CPU devices where they do not vectorise over
 /// work-items, which is all but soa/float; else 1.
 int preferred_lanes(const Device& device, const VolumeFormat& format);
