@@ -21,7 +21,7 @@ Results run_suite(Session& session, const Suite& suite, const BenchOptions& opti
     wanted.push_back(filtered(group.cases(), options.filter));
     count += wanted.back().size();
   }
-  if (count == 0) throw Error(ExitCode::usage, "--filter: no row of suite {} matches", suite.name);
+  if (count == 0) throw Error(ExitCode::usage, "filter: no row of suite {} matches", suite.name);
   const bool ceilings_asked = suite.name == "ceilings";
   std::vector<Case> ceilings = ceiling_cases(session);
   if (!ceilings_asked) count += ceilings.size();

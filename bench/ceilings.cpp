@@ -61,10 +61,6 @@ Case ceiling_case(const std::string& what, std::function<Job()> make) {
   result.row.suite = "ceilings";
   result.row.stage = "ceiling";
   result.row.name = "ceiling/" + what;
-  result.row.variant = {};
-  Variant& v = result.row.variant;  // none of it applies
-  v.layout = v.storage = v.state = v.lobe = v.transport = {};
-  v.grid = v.iterations = 0;
   result.make = std::move(make);
   return result;
 }

@@ -24,15 +24,19 @@ struct Gathering {
   cl::Buffer irradiance;
 
   Gathering(Session& session, const Variant& v)
-      : basis(make_basis(v.basis, v.lambda)),
-        transport(make_transport(v.transport, *basis, lobe_options(v))),
-        options{.grid = v.grid, .format = format_of(v), .filtered = v.filtered},
-        gatherer(session, *basis, transport, options) {}
+      : basis(make_basis(v.options)),
+        transport(make_transport(v.options, *basis)),
+        options(gather_options(v.options)),
+        gatherer(session, *basis, transport, with_filter(options, v.filtered)) {}
+  static const GatherOptions& with_filter(GatherOptions& options, bool filtered) {
+    options.filtered = filtered;
+    return options;
+  }
 };
 
 /// Whether the device's filter interpolates.
 bool filters(const Variant& v) {
-  return v.layout == "image" && v.filtered;
+  return v.options.layout == Layout::image && v.filtered;
 }
 
 /// Where a pixel's surface lies [m].
@@ -90,8 +94,9 @@ Job gather_job(Bench& bench, const Variant& variant) {
   const auto p = std::make_shared<Gathering>(session, variant);
   p->grids = bench.inputs().grids();
   for (std::size_t c = 0; c < p->grids.size(); ++c) {
-    p->volumes.push_back(std::make_unique<Volume>(session, VolumeShape{variant.grid, p->basis->size(), 3},
-                                                  "bench: accumulated light", format_of(variant)));
+    p->volumes.push_back(std::make_unique<Volume>(session,
+                                                  VolumeShape{variant.options.grid, p->basis->size(), 3},
+                                                  "bench: accumulated light", variant.options.format()));
     p->volumes.back()->write(session, bench.inputs().light(*p->basis, static_cast<int>(c)));
     p->accumulated.push_back(p->volumes.back().get());
   }
@@ -102,14 +107,14 @@ Job gather_job(Bench& bench, const Variant& variant) {
   job.reset = [p, &session, bytes] { session.fill_zero(p->irradiance, bytes); };
   job.run = [p, &seen] { p->gatherer.gather(seen.camera, p->grids, p->accumulated, p->irradiance); };
   job.verify = [p, &bench, &seen, variant, pixels] {
-    const std::string key = fmt::format("gather {} {} {} {} {}", variant.basis, variant.lambda,
-                                        variant.transport, variant.lobe, variant.grid);
+    const RenderOptions& o = variant.options;
+    const std::string key =
+        fmt::format("gather {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport), lobes_of(o), o.grid);
     const auto twin = bench.twin(key, [&] { return twin_of(*p, bench.inputs(), seen.camera_image); });
-    return compare(
-        bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
-        reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", format_of(variant)));
+    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
+                   reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", o.format()));
   };
-  const VolumeFormat format = format_of(variant);
+  const VolumeFormat format = variant.options.format();
   const int n = GatherForm(*p->basis, p->transport).functions().size();
   double volumes = 0;  // read once; buffers are packed first: read, written and read again
   for (const auto& volume : p->volumes)

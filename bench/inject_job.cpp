@@ -18,19 +18,14 @@ struct Injection {
   std::unique_ptr<Volume> geometry;
   Injector injector;
 
-  Injection(Session& session, const Variant& v)
-      : basis(make_basis(v.basis, v.lambda)),
-        light(session, {v.grid, basis->size(), 3}, "bench: injected light", format_of(v)),
-        injector(session, *basis, options_of(v)) {
-    if (v.occlusion)
-      geometry = std::make_unique<Volume>(session, VolumeShape{v.grid + 1, basis->size(), 1},
-                                          "bench: geometry volume", format_of(v));
-  }
-  static InjectOptions options_of(const Variant& v) {
-    InjectOptions options = Inputs::published_injection(v.grid);
-    options.format = format_of(v);
-    options.lobes = lobe_options(v);
-    return options;
+  Injection(Session& session, const RenderOptions& o)
+      : basis(make_basis(o)),
+        light(session, {o.grid, basis->size(), 3}, "bench: injected light", o.format()),
+        injector(session, *basis, inject_options(o, false)) {
+    if (o.occlusion)
+      geometry =
+          std::make_unique<Volume>(session, VolumeShape{o.grid + 1, blocking_size(o.blocking, *basis), 1},
+                                   "bench: geometry volume", o.format());
   }
 };
 
@@ -99,7 +94,7 @@ void compare(const Basis& basis, const std::vector<float>& device, const double*
 
 Job inject_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
-  const auto p = std::make_shared<Injection>(session, variant);
+  const auto p = std::make_shared<Injection>(session, variant.options);
   const Inputs::Seen& seen = bench.inputs().seen(variant.cascade.value_or(0));
   Job job;
   job.reset = [p, &session] {
@@ -113,20 +108,20 @@ Job inject_job(Bench& bench, const Variant& variant) {
     p->injector.inject_geometry(seen.camera, seen.grid, *p->geometry);
   };
   job.verify = [p, &bench, &seen, variant] {
-    const std::string key =
-        fmt::format("inject {} {} {} {} {} {}", variant.basis, variant.lambda, variant.lobe,
-                    variant.occlusion, variant.grid, variant.cascade.value_or(0));
-    const auto twin = bench.twin(key, [&] { return twin_of(*p, seen, Injection::options_of(variant)); });
+    const RenderOptions& o = variant.options;
+    const std::string key = fmt::format("inject {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o),
+                                        o.occlusion, o.grid, variant.cascade.value_or(0));
+    const auto twin = bench.twin(key, [&] { return twin_of(*p, seen, inject_options(o, false)); });
     Deviation deviation{
         0,
         reference::tolerance_in(
-            variant.lobe == "exact" || variant.storage == "half" ? "inject" : "inject-rotated",
-            format_of(variant)),
+            o.lobe == LobeKind::exact || o.storage == Storage::float16 ? "inject" : "inject-rotated",
+            o.format()),
         {}};
     const std::vector<float> light = p->light.read(bench.session);
-    compare(*p->basis, light, twin->data(), variant.grid, "light", deviation);
+    compare(*p->basis, light, twin->data(), o.grid, "light", deviation);
     if (p->geometry)
-      compare(*p->basis, p->geometry->read(bench.session), twin->data() + light.size(), variant.grid + 1,
+      compare(*p->basis, p->geometry->read(bench.session), twin->data() + light.size(), o.grid + 1,
               "geometry", deviation);
     return deviation;
   };

@@ -32,20 +32,20 @@ SurfaceImage without_doubt(SurfaceImage image, const ClpvGrid& grid) {
 
 }  // namespace
 
-Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const Settings& settings)
-    : session_(session), settings_(settings) {
+Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const RenderOptions& options)
+    : session_(session), options_(options) {
   const std::vector<Light> lights = scene.lights_for(camera);
   if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light shines; bench needs one", scene.name);
   const SceneBuffers buffers = upload_scene(session, scene);
   Rasterizer rasterizer(session, buffers);
   Surface seen =
-      make_surface(session, camera_view(camera, settings.width, settings.height), RsmFormat::float32, false);
+      make_surface(session, camera_view(camera, options.width, options.height), RsmFormat::float32, false);
   rasterizer.rasterize_camera(seen);
   const SurfaceImage image = read_surface(session, seen);
   for (const ClpvGrid& grid :
-       cascade_grids(camera.eye, settings.cascades, settings.cascade_size, settings.grid)) {
+       cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
     Surface rsm =
-        make_surface(session, rsm_views(lights.front().data, grid, buffers.bounds, settings.rsm_size).front(),
+        make_surface(session, rsm_views(lights.front().data, grid, buffers.bounds, options.rsm_size).front(),
                      RsmFormat::float32, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
     Seen result{grid, {}, {}, without_doubt(read_surface(session, rsm), grid), without_doubt(image, grid)};
@@ -64,7 +64,7 @@ std::vector<ClpvGrid> Inputs::grids() const {
 const Inputs::Injected& Inputs::injected(const Basis& basis, int cascade) {
   const auto [entry, made] = injected_.try_emplace({basis.name(), cascade});
   if (made) {
-    const int grid = settings_.grid;
+    const int grid = options_.grid;
     Injector injector(session_, basis, published_injection(grid));
     Volume light(session_, {grid, basis.size(), 3}, "bench: injected light");
     Volume geometry(session_, {grid + 1, basis.size(), 1}, "bench: geometry volume");

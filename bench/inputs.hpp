@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/row.hpp"
 #include "device/session.hpp"
+#include "options/render_options.hpp"
 #include "pipeline/inject.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/surface.hpp"
@@ -15,21 +15,13 @@
 
 namespace clpv::bench {
 
-/// The published settings; a scene may wish for other cascades.
-struct Settings {
-  int cascades = 3;
-  double cascade_size = 12.5;  ///< edge of the finest [m]
-  int rsm_size = 256;
-  int width = 960, height = 540;  ///< [pixels]
-  int grid = 32;
-};
-
 /// Views of one scene, rasterised on the device once. Texels within rounding of where their cell changes are emptied
 /// (some per mille of them), so that a stage and its twin put every one into the same cell.
 class Inputs {
  public:
-  /// Sees `scene` through `camera`, lit by the first light that shines there. Throws Error(bad_input) without a light.
-  Inputs(Session& session, const Scene& scene, const Camera& camera, const Settings& settings);
+  /// Sees `scene` through `camera`, lit by the first light that shines there; sizes and cascades as `options` say. Throws
+  /// Error(bad_input) without a light.
+  Inputs(Session& session, const Scene& scene, const Camera& camera, const RenderOptions& options);
 
   struct Seen {
     ClpvGrid grid{};
@@ -38,7 +30,6 @@ class Inputs {
   };
   const Seen& seen(int cascade) const { return seen_.at(static_cast<std::size_t>(cascade)); }
   std::vector<ClpvGrid> grids() const;
-  const Settings& settings() const { return settings_; }
 
   /// Injected light and blocking of a cascade in a basis, the published way (nearest cell, one-sided), by layout `soa`
   /// in float: Volume's host order. Made once.
@@ -56,7 +47,7 @@ class Inputs {
   const Injected& injected(const Basis& basis, int cascade);
 
   Session& session_;
-  Settings settings_;
+  RenderOptions options_;
   std::vector<Seen> seen_;
   std::map<std::pair<std::string, int>, Injected> injected_;
 };

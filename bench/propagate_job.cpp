@@ -28,20 +28,21 @@ struct Propagation {
 
   Propagation(Session& session, const Variant& v)
       : variant(v),
-        basis(make_basis(v.basis, v.lambda)),
-        transport(make_transport(v.transport, *basis, lobe_options(v))),
-        injected(session, {v.grid, basis->size(), 3}, "bench: injected light", format_of(v)),
-        accumulated(session, {v.grid, basis->size(), 3}, "bench: accumulated light", format_of(v)),
-        propagator(session, *basis, transport,
-                   {.grid = v.grid,
-                    .state = state_of(v),
-                    .lobe_time = v.lobe == kRunTimeLobes ? LobeTime::kernel : LobeTime::host,
-                    .format = format_of(v),
-                    .lanes = v.lanes,
-                    .local = v.local}) {
-    if (v.occlusion)
-      geometry = std::make_unique<Volume>(session, VolumeShape{v.grid + 1, basis->size(), 1},
-                                          "bench: geometry volume", format_of(v));
+        basis(make_basis(v.options)),
+        transport(make_transport(v.options, *basis)),
+        injected(session, light_shape(), "bench: injected light", v.options.format()),
+        accumulated(session, light_shape(), "bench: accumulated light", v.options.format()),
+        propagator(session, *basis, transport, options_of(v)) {
+    if (v.options.occlusion)
+      geometry = std::make_unique<Volume>(
+          session, VolumeShape{v.options.grid + 1, blocking_size(v.options.blocking, *basis), 1},
+          "bench: geometry volume", v.options.format());
+  }
+  VolumeShape light_shape() const { return {variant.options.grid, basis->size(), 3}; }
+  static PropagateOptions options_of(const Variant& v) {
+    PropagateOptions options = propagate_options(v.options);
+    options.lanes = v.lanes, options.local = v.local;
+    return options;
   }
 };
 
@@ -55,8 +56,8 @@ struct Access {
 /// A step's share of the cost. Values a cell needs are read once by count of bytes, however often by count of reads.
 void add_step(Cost& cost, Propagation& p, const TransportSource& source, bool apart, double blocker_bytes,
               double blocker_reads) {
-  const double cells = std::pow(p.variant.grid, 3);
-  const Access access{format_of(p.variant)};
+  const double cells = std::pow(p.variant.options.grid, 3);
+  const Access access{p.variant.options.format()};
   const int carried = source.target_count;
   const double sum_in = apart ? access.bytes(carried) : 0.0;  // else the source is the sum so far
   cost.bytes +=
@@ -71,12 +72,12 @@ void add_step(Cost& cost, Propagation& p, const TransportSource& source, bool ap
 
 /// Counted for the kernels as generated, after a run has made them. Reads and writes are those of a later step.
 Cost cost_of(Propagation& p) {
-  const Variant& v = p.variant;
+  const RenderOptions& o = p.variant.options;
   const int n = p.basis->size();
-  const bool fluxes = v.state == "fluxes";
+  const bool fluxes = o.state == State::fluxes;
   const int carried = fluxes ? 6 : n;
-  const double cells = std::pow(v.grid, 3), corners = std::pow((v.grid + 1.0) / v.grid, 3);
-  const Access access{format_of(v)};
+  const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
+  const Access access{o.format()};
   // Blocking is evaluated once for all steps, as a number a way, or in each step from the eight corners.
   const Transmitter* transmitter = p.propagator.transmitter();
   const int ways = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
@@ -85,7 +86,7 @@ Cost cost_of(Propagation& p) {
   const OperationCount evaluation =
       p.geometry ? transmit_source(*p.basis, p.transport).operations : OperationCount{};
   Cost cost;
-  for (int step = 1; step <= v.iterations; ++step) {
+  for (int step = 1; step <= o.iterations; ++step) {
     const bool blocked = p.geometry && step > 1;
     if (step == 1 && fluxes) {
       add_step(cost, p, transport_source(*p.basis, p.transport, {State::coefficients, State::fluxes, false}),
@@ -104,14 +105,15 @@ Cost cost_of(Propagation& p) {
     cost.bytes += cells * kChannels * (2 * access.bytes(n) + access.bytes(carried));
     cost.flops += cells * kChannels * (2.0 * carried * n + n);
   }
-  if (v.lobe == kRunTimeLobes) cost.flops = 0;  // the kernel's own code is not counted
+  if (o.lobe_time == LobeTime::kernel) cost.flops = 0;  // the kernel's own code is not counted
   cost.working_set = cells * (3 * kChannels * access.bytes(carried) + (p.geometry ? blocker_bytes : 0));
   return cost;
 }
 
 std::string twin_key(const Variant& v) {
-  return fmt::format("propagate {} {} {} {} {} {} {} {}", v.basis, v.lambda, v.transport, v.lobe, v.occlusion,
-                     v.grid, v.iterations, v.cascade.value_or(0));
+  const RenderOptions& o = v.options;
+  return fmt::format("propagate {} {} {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
+                     lobes_of(o), o.occlusion, o.grid, o.iterations, v.cascade.value_or(0));
 }
 
 /// The variant with the user's tuning for it, where it names no shape itself.
@@ -119,7 +121,7 @@ Variant tuned(const Device& device, Variant v) {
   if (v.lanes != 0 || v.local[0] != 0) return v;
   const auto cache = TuningCache::of_user();
   if (!cache) return v;
-  const auto tuning = cache->load(device, {v.basis, v.transport, v.state, v.grid, v.storage, v.layout});
+  const auto tuning = cache->load(device, tuning_subject(v.options));
   if (!tuning) return v;
   spdlog::debug("tuned: {} cells a work-item, work-groups of {} x {}", tuning->lanes, tuning->local[0],
                 tuning->local[1]);
@@ -154,25 +156,27 @@ Job propagate_job(Bench& bench, const Variant& variant) {
   p->injected.write(session, bench.inputs().light(*p->basis, cascade));
   if (p->geometry) p->geometry->write(session, bench.inputs().geometry(*p->basis, cascade));
   const PropagateVolumes volumes{p->injected, p->geometry.get(), p->accumulated};
-  p->propagator.propagate(volumes, std::min(2, variant.iterations));  // makes the kernels that are counted
+  p->propagator.propagate(volumes,
+                          std::min(2, variant.options.iterations));  // makes the kernels that are counted
   Job job;
   job.cost = cost_of(*p);
   job.reset = [p, &session] { p->accumulated.clear(session); };
   job.run = [p] {
-    p->propagator.propagate({p->injected, p->geometry.get(), p->accumulated}, p->variant.iterations);
+    p->propagator.propagate({p->injected, p->geometry.get(), p->accumulated}, p->variant.options.iterations);
   };
   job.verify = [p, &bench, cascade] {
-    const int grid = p->variant.grid, n = p->basis->size();
+    const int grid = p->variant.options.grid, n = p->basis->size();
     const auto twin = bench.twin(twin_key(p->variant), [&] {
       const auto light = to_reference(bench.inputs().light(*p->basis, cascade), grid, n, 3);
-      if (!p->geometry) return propagated(p->transport, light, nullptr, p->variant.iterations);
+      if (!p->geometry) return propagated(p->transport, light, nullptr, p->variant.options.iterations);
       const auto geometry = to_reference(bench.inputs().geometry(*p->basis, cascade), grid + 1, n, 1);
-      return propagated(p->transport, light, &geometry, p->variant.iterations);
+      return propagated(p->transport, light, &geometry, p->variant.options.iterations);
     });
+    const RenderOptions& o = p->variant.options;
+    const bool at_run_time = o.lobe_time == LobeTime::kernel;
     return compare_volumes(
         p->accumulated.read(bench.session), *twin, grid,
-        reference::tolerance_in(p->variant.lobe == kRunTimeLobes ? "propagate-run-time-lobes" : "propagate",
-                                format_of(p->variant)));
+        reference::tolerance_in(at_run_time ? "propagate-run-time-lobes" : "propagate", o.format()));
   };
   return job;
 }

@@ -26,20 +26,21 @@ struct Rasterization {
   Surface surface;
   bool rsm;
 
-  Rasterization(Session& session, std::shared_ptr<const Scene> lit, bool of_light, const Settings& settings)
+  Rasterization(Session& session, std::shared_ptr<const Scene> lit, bool of_light,
+                const RenderOptions& options)
       : scene(std::move(lit)),
         buffers(upload_scene(session, *scene)),
         rasterizer(session, buffers),
         rsm(of_light) {
     const Camera& camera = scene->camera({});
-    ClpvView view = camera_view(camera, settings.width, settings.height);
+    ClpvView view = camera_view(camera, options.width, options.height);
     if (rsm) {
       const std::vector<Light> lights = scene->lights_for(camera);
       if (lights.empty())
         throw Error(ExitCode::bad_input, "{}: no light shines; bench needs one", scene->name);
       light = lights.front().data;
-      const ClpvGrid grid = cascade_grids(camera.eye, 1, settings.cascade_size, settings.grid).front();
-      view = rsm_views(light, grid, buffers.bounds, settings.rsm_size).front();
+      const ClpvGrid grid = cascade_grids(camera.eye, 1, options.cascade_size, options.grid).front();
+      view = rsm_views(light, grid, buffers.bounds, options.rsm_size).front();
     }
     surface = make_surface(session, view, RsmFormat::float32, false);
   }
@@ -72,12 +73,9 @@ Deviation compare(const Rasterization& r, const SurfaceImage& image) {
   return deviation;
 }
 
-}  // namespace
-
-Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& kind,
-                  const Settings& settings) {
-  const auto r =
-      std::make_shared<Rasterization>(session, std::move(scene), kind == "rasterize-rsm", settings);
+Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, bool rsm,
+                  const RenderOptions& options) {
+  const auto r = std::make_shared<Rasterization>(session, std::move(scene), rsm, options);
   const std::size_t pixels = std::size_t{r->surface.view.width} * r->surface.view.height;
   Job job;
   job.reset = [r, &session, pixels] { session.fill_zero(r->surface.depth, pixels * sizeof(float)); };
@@ -94,6 +92,16 @@ Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const st
                    static_cast<double>(pixels) * (sizeof(float) + 2 * sizeof(cl_float4));
   job.cost.working_set = job.cost.bytes;
   return job;
+}
+
+}  // namespace
+
+Job rasterize_rsm_job(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options) {
+  return rasterize_job(session, std::move(scene), true, options);
+}
+
+Job rasterize_camera_job(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options) {
+  return rasterize_job(session, std::move(scene), false, options);
 }
 
 }  // namespace clpv::bench

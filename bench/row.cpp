@@ -1,5 +1,7 @@
 #include "bench/row.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace clpv::bench {
@@ -14,7 +16,43 @@ nlohmann::json number_or_null(const std::optional<double>& value) {
   return value && *value == *value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
+nlohmann::json variant_json(const Variant& variant) {
+  const RenderOptions& o = variant.options;
+  return {{"basis", o.basis},
+          {"layout", name_of(o.layout)},
+          {"storage", name_of(o.storage)},
+          {"state", name_of(o.state)},
+          {"lobe", lobes_of(o)},
+          {"transport", name_of(o.transport)},
+          {"occlusion", o.occlusion},
+          {"grid", o.grid},
+          {"iterations", o.iterations},
+          {"cascade", variant.cascade ? nlohmann::json(*variant.cascade) : nlohmann::json(nullptr)}};
+}
+
+/// The same keys, of a row without volumes.
+nlohmann::json no_variant_json() {
+  nlohmann::json json = variant_json({});
+  for (auto& value : json) value = nullptr;
+  json["occlusion"] = false;
+  return json;
+}
+
 }  // namespace
+
+RenderOptions timed_options() {
+  RenderOptions options;
+  options.transport = TransportKind::sampled;
+  options.storage = Storage::float32;
+  options.blocking = Blocking::one_sided;
+  options.occlusion = false;
+  return options;
+}
+
+std::string lobes_of(const RenderOptions& options) {
+  const bool in_kernel = options.lobe_time == LobeTime::kernel;
+  return fmt::format("{}{}", name_of(options.lobe), in_kernel ? "-kernel" : "");
+}
 
 const char* name_of(Status status) {
   switch (status) {
@@ -37,8 +75,6 @@ double Row::gbps() const {
 }
 
 nlohmann::json to_json(const Row& row, int index) {
-  const Variant& v = row.variant;
-  const bool propagated = v.iterations > 0;
   nlohmann::json json = {{"name", row.name},
                          {"run_name", row.name},
                          {"run_type", "iteration"},
@@ -52,17 +88,8 @@ nlohmann::json to_json(const Row& row, int index) {
                          {"time_unit", "ms"}};
   json.update({{"suite", row.suite},
                {"stage", row.stage},
-               {"basis", text_or_null(v.basis)},
-               {"n", row.n > 0 ? nlohmann::json(row.n) : nlohmann::json(nullptr)},
-               {"layout", text_or_null(v.layout)},
-               {"storage", text_or_null(v.storage)},
-               {"state", text_or_null(v.state)},
-               {"lobe", text_or_null(v.lobe)},
-               {"transport", text_or_null(v.transport)},
-               {"occlusion", v.occlusion},
-               {"grid", v.grid > 0 ? nlohmann::json(v.grid) : nlohmann::json(nullptr)},
-               {"iterations", propagated ? nlohmann::json(v.iterations) : nlohmann::json(nullptr)},
-               {"cascade", v.cascade ? nlohmann::json(*v.cascade) : nlohmann::json(nullptr)}});
+               {"n", row.n > 0 ? nlohmann::json(row.n) : nlohmann::json(nullptr)}});
+  json.update(row.variant ? variant_json(*row.variant) : no_variant_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
                {"timer", row.from_events ? "event" : "wall"},

@@ -8,25 +8,25 @@
 #include <vector>
 
 #include "bench/statistics.hpp"
+#include "options/render_options.hpp"
 
 namespace clpv::bench {
 
-/// What is timed: the stage and every choice that shapes it. Empty text, and numbers of 0, where it does not apply.
+/// What stages are timed with where a suite says nothing else: transport, lobes and blocking as published, volumes as
+/// planes of floats, and nothing in the way.
+RenderOptions timed_options();
+
+/// What is timed of a stage: every choice that shapes it.
 struct Variant {
-  std::string basis;
-  double lambda = 0.25;
-  std::string layout = "soa", storage = "float";
-  std::string state = "coefficients";
-  std::string lobe = "exact";  ///< "exact", "rotate"; "rotate-kernel": rotated at run time, in the kernel
-  std::string transport = "sampled";
-  bool occlusion = false;
-  int grid = 32;
-  int iterations = 8;
+  RenderOptions options = timed_options();
   std::optional<int> cascade;
   bool filtered = true;  ///< gathering from images: by the device's filter, else from texels
   int lanes = 0;         ///< of propagation's kernels, as is `local` (pipeline/propagate.hpp); 0: as usual
   std::array<std::size_t, 2> local = {0, 1};
 };
+
+/// How a variant's lobes come about: "exact", "rotate", and "rotate-kernel", at run time in the kernel.
+std::string lobes_of(const RenderOptions& options);
 
 /// What the timed work comes to, counted rather than measured.
 struct Cost {
@@ -42,8 +42,8 @@ const char* name_of(Status status);
 
 struct Row {
   std::string suite, stage, name;
-  int n = 0;  ///< coefficients of the basis
-  Variant variant;
+  int n = 0;                       ///< coefficients of the basis
+  std::optional<Variant> variant;  ///< none: no volumes, as of rasterising and of ceilings
   Status status = Status::ok;
   std::string reason;  ///< why unsupported, or where wrong
 

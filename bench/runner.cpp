@@ -59,7 +59,7 @@ double run_once(Session& session, Running& running) {
   if (job.own_stages) {
     job.run();
   } else {
-    const StageScope scope(session, {running.row.stage});
+    const StageScope scope(session, {Pass::whole});
     job.run();
   }
   session.queue().finish();

@@ -5,18 +5,17 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "basis/rotated_lobe.hpp"
 #include "bench/inputs.hpp"
 #include "bench/job.hpp"
-#include "pipeline/transport_source.hpp"
+#include "options/render_options.hpp"
+#include "options/stages.hpp"
+#include "pipeline/volume_format.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::bench {
-
-/// Variant::lobe of lobes that are rotated in propagation's kernel, as the paper does.
-inline constexpr const char* kRunTimeLobes = "rotate-kernel";
 
 /// What the jobs of a suite share.
 struct Bench {
@@ -43,7 +42,7 @@ struct Bench {
 
 /// A row for `stage` of `variant`: n, and the name STAGE/BASIS/LAYOUT/STORAGE with what else is not the default, then
 /// `more` ("/grid:64").
-Row make_row(const std::string& suite, const std::string& stage, const Variant& variant,
+Row make_row(const std::string& suite, std::string_view stage, const Variant& variant,
              const std::string& more = {});
 
 /// RSM -> light volume, and with occlusion RSM and G-buffer -> geometry volume; of variant.cascade (default 0).
@@ -54,20 +53,32 @@ Job propagate_job(Bench& bench, const Variant& variant);
 Job gather_job(Bench& bench, const Variant& variant);
 inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
 
-/// RSM of a scene's cascade, or its G-buffer (kind "rasterize-rsm", "rasterize-camera").
-Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& kind,
-                  const Settings& settings);
+/// A stage that works on volumes, and its job.
+struct StageJob {
+  Stage stage;
+  Job (*make)(Bench& bench, const Variant& variant);
+};
+inline constexpr StageJob kInject{Stage::inject, inject_job}, kPropagate{Stage::propagate, propagate_job},
+    kGather{Stage::gather, gather_job};
+inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kGather};
+
+/// RSM of a scene's finest cascade, or its G-buffer.
+Job rasterize_rsm_job(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options);
+Job rasterize_camera_job(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options);
+
+/// A part of rasterising, and its job.
+struct RasterJob {
+  Pass pass;
+  Job (*make)(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options);
+};
+inline constexpr RasterJob kRasterizeRsm{Pass::rasterize_rsm, rasterize_rsm_job},
+    kRasterizeCamera{Pass::rasterize_camera, rasterize_camera_job};
 
 /// Light volumes of n^3 cells in Volume's host order: the largest difference, over the twin's largest value.
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
                           double tolerance);
 
-LobeOptions lobe_options(const Variant& variant);
-VolumeFormat format_of(const Variant& variant);
-State state_of(const Variant& variant);
-
-/// The job of that name: "inject", "propagate", "gather".
-Case stage_case(Bench& bench, const std::string& suite, const std::string& stage, const Variant& variant,
+Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant,
                 const std::string& more = {});
 
 }  // namespace clpv::bench

@@ -12,9 +12,8 @@ const std::vector<Suite>& suites() {
 
 Variant plain_variant(const SuiteOptions& options, const std::string& basis) {
   Variant variant;
-  variant.basis = basis;
-  variant.grid = options.settings.grid;
-  variant.iterations = options.iterations;
+  variant.options = options.settings;
+  variant.options.basis = basis;
   return variant;
 }
 
@@ -23,7 +22,8 @@ std::shared_ptr<const Scene> scene_of(const SuiteOptions& options) {
   return std::make_shared<const Scene>(make_hall(kHallTriangles));
 }
 
-std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options, const Settings& settings) {
+std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
+                                  const RenderOptions& settings) {
   const auto see = [&session, options, settings] {
     const auto scene = scene_of(options);
     return std::make_shared<Inputs>(session, *scene, scene->camera(options.camera), settings);

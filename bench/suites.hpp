@@ -16,10 +16,9 @@ namespace clpv::bench {
 struct SuiteOptions {
   std::shared_ptr<const Scene> scene;  ///< none: the hall of hall.hpp
   std::string camera;
-  std::vector<std::string> bases;  ///< named by the user; empty: the suite's own
-  Settings settings;
-  int iterations = 8;  ///< propagation steps
-  bool tuned = false;  ///< propagation takes the shapes that `clpv tune` found
+  std::vector<std::string> bases;            ///< named by the user; empty: the suite's own
+  RenderOptions settings = timed_options();  ///< of every row, but for what the suite varies
+  bool tuned = false;                        ///< propagation takes the shapes that `clpv tune` found
 };
 
 /// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.
@@ -50,6 +49,7 @@ Variant plain_variant(const SuiteOptions& options, const std::string& basis);
 
 /// The scene a suite works on: the one given, else the hall.
 std::shared_ptr<const Scene> scene_of(const SuiteOptions& options);
-std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options, const Settings& settings);
+std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
+                                  const RenderOptions& settings);
 
 }  // namespace clpv::bench

@@ -1,21 +1,21 @@
 // Finds the launch shapes and the layout that propagate fastest on a device.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "bench/suites.hpp"
-#include "pipeline/options.hpp"
+#include "options/render_options.hpp"
 #include "pipeline/tuning.hpp"
 
 namespace clpv::bench {
 
 struct TuneOptions {
-  SuiteOptions suite;                ///< bases: those to tune
-  std::vector<std::string> layouts;  ///< to choose from; empty: all
-  RenderOptions render;  ///< whose transport, state and storage are tuned for; the defaults of rendering
-  bool occlusion = true;
+  SuiteOptions suite = rendering();  ///< bases: those to tune; settings: what is propagated
+  std::vector<Layout> layouts;       ///< to choose from; empty: all
   int repetitions = 7;
+
+  /// What frames propagate by default.
+  static SuiteOptions rendering();
 };
 
 /// One subject's outcome: the shape that is used without tuning, and the best.

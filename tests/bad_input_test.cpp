@@ -237,7 +237,7 @@ TEST_F(BadSceneFileTest, NamesTwiceOrOfNothing) {
 
 TEST_F(BadSceneFileTest, AModelThatIsNotThere) {
   EXPECT_THAT(refused_file(R"({"model": "absent.gltf"})"),
-              AllOf(HasSubstr("/model"), HasSubstr("absent.gltf"), HasSubstr("--model")));
+              AllOf(HasSubstr("/model"), HasSubstr("absent.gltf"), HasSubstr("option model")));
   EXPECT_THAT(refused_file("{}"), AllOf(HasSubstr("/model"), HasSubstr("nothing")));
 }
 

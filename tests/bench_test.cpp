@@ -62,12 +62,12 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
-class FastTwin : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+class FastTwin : public ::testing::TestWithParam<std::pair<const char*, TransportKind>> {};
 
 TEST_P(FastTwin, IsThePlainTwin) {
-  const auto& [name, transport_name] = GetParam();
+  const auto& [name, kind] = GetParam();
   const auto basis = make_basis(name);
-  const Transport transport = make_transport(transport_name, *basis);
+  const Transport transport = make_transport(kind, *basis);
   const Scene scene(*basis, 5);
   for (const reference::Volume* geometry :
        {static_cast<const reference::Volume*>(nullptr), &scene.geometry}) {
@@ -80,14 +80,15 @@ TEST_P(FastTwin, IsThePlainTwin) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Transports, FastTwin,
-                         ::testing::Values(std::pair{"sh2", "sampled"}, std::pair{"srbf4", "exact"},
-                                           std::pair{"srbf8v2", "upwind"},
-                                           std::pair{"sh2", "semi-lagrangian"}));
+                         ::testing::Values(std::pair{"sh2", TransportKind::sampled},
+                                           std::pair{"srbf4", TransportKind::exact},
+                                           std::pair{"srbf8v2", TransportKind::upwind},
+                                           std::pair{"sh2", TransportKind::semi_lagrangian}));
 
 TEST(BenchBaseline, IsThePlainTwin) {
   if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
   const auto basis = make_basis("sh2");
-  const Transport transport = make_transport("sampled", *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   const Scene scene(*basis, 8);
   Baseline baseline(*basis, transport, 8);
   const std::vector<float> light(scene.light.values.begin(), scene.light.values.end());

@@ -93,12 +93,12 @@ TEST(CarryLate, UniformLightGivesTheSameIrradianceFromTheFinerCascade) {
              (lobe[static_cast<std::size_t>(i)] + basis->constant()[static_cast<std::size_t>(i)]);
     });
     const auto fine = carried(light, two[1], reference::Volume(kGrid, basis->size()), two[0]);
-    for (const char* of : {"sampled", "upwind"}) {
+    for (const TransportKind of : {TransportKind::sampled, TransportKind::upwind}) {
       const Transport transport = make_transport(of, *basis);
       const double coarse = irradiance(*basis, transport, two[1], light, position, normal);
       ASSERT_GT(coarse, 0.1);
       EXPECT_NEAR(irradiance(*basis, transport, two[0], fine, position, normal), coarse, kFloat * coarse)
-          << name << ' ' << of;
+          << name << ' ' << name_of(of);
     }
   }
 }
@@ -174,7 +174,7 @@ Lit lit(int cascades, bool late, const std::string& layout = "soa") {
     result = {};
     for (std::size_t i = 0; i < pixels.size(); ++i) result.irradiance += i % 4 == 3 ? 0.0 : pixels[i];
     for (const StageTime& time : test_session().timeline().times()) {
-      if (time.mark.stage == "carry-late") result.carried_to.push_back(time.mark.cascade.value());
+      if (time.mark.pass == Pass::carry_late) result.carried_to.push_back(time.mark.cascade.value());
     }
   }
   return result;

@@ -151,7 +151,7 @@ TEST(ClError, NamesCodeCallAndAdvice) {
   EXPECT_EQ(memory.code(), ExitCode::run_time);
   EXPECT_THAT(memory.what(), HasSubstr("kernel 'x': clEnqueueNDRangeKernel failed with "
                                        "CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"));
-  EXPECT_THAT(memory.what(), HasSubstr("--grid"));
+  EXPECT_THAT(memory.what(), HasSubstr("smaller grid"));
   EXPECT_EQ(cl_error(cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs")).code(), ExitCode::device);
 }
 

@@ -88,7 +88,7 @@ TEST(Frame, SponzaLooksAsItDid) {
 
 TEST(Frame, RedLightFallsNearTheRedWallAndGreenNearTheGreenOne) {
   const Scene scene = load_scene(scene_path("cornell.json"));
-  for (const char* transport : {"sampled", "upwind"}) {
+  for (const TransportKind transport : {TransportKind::sampled, TransportKind::upwind}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
     const Image light = render(scene, options, Show::irradiance);
@@ -98,7 +98,7 @@ TEST(Frame, RedLightFallsNearTheRedWallAndGreenNearTheGreenOne) {
         mean(light, left, top, left + 8, low, 0) / mean(light, left, top, left + 8, low, 1);
     const double green_side =
         mean(light, right - 8, top, right, low, 0) / mean(light, right - 8, top, right, low, 1);
-    EXPECT_GT(red_side, 1.1 * green_side) << transport;
+    EXPECT_GT(red_side, 1.1 * green_side) << name_of(transport);
   }
 }
 

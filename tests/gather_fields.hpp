@@ -21,14 +21,11 @@ inline constexpr unsigned kPixels = 241;
 
 /// What E = 4 I(-n) / s^2 needs to know of a transport.
 inline Transport intensity_transport() {
-  Transport transport;
-  transport.name = "intensity";
-  return transport;
+  return {};
 }
 
 inline Transport cosine_transport(const Matrix& k) {
   Transport transport;
-  transport.name = "cosine";
   transport.gathers_cosine = true;
   transport.gather = k;
   return transport;

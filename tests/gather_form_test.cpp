@@ -62,13 +62,13 @@ Errors errors(const Basis& basis, const Transport& transport, const std::vector<
 }
 
 constexpr const char* kLarge[] = {"srbf14", "sh4", "sh5", "bins24"};
-constexpr const char* kOperators[] = {"upwind", "semi-lagrangian"};
+constexpr TransportKind kOperators[] = {TransportKind::upwind, TransportKind::semi_lagrangian};
 
 TEST(GatherForm, NineNumbersStandForTheIrradianceOfALobe) {
   std::mt19937 random(3);
   for (const char* name : kLarge) {
     const auto basis = make_basis(name);
-    for (const char* of : kOperators) {
+    for (const TransportKind of : kOperators) {
       const Transport transport = make_transport(of, *basis);
       ASSERT_TRUE(GatherForm(*basis, transport).projects());
       Errors worst;
@@ -76,8 +76,8 @@ TEST(GatherForm, NineNumbersStandForTheIrradianceOfALobe) {
         const Errors e = errors(*basis, transport, basis->clamped_cosine(random_direction(random)), random);
         worst = {std::max(worst.rms, e.rms), std::max(worst.worst, e.worst)};
       }
-      RecordProperty(std::string(name) + "_" + of, std::to_string(worst.worst));
-      EXPECT_LT(worst.worst, 0.03) << name << ' ' << of;
+      RecordProperty(fmt::format("{}_{}", name, name_of(of)), std::to_string(worst.worst));
+      EXPECT_LT(worst.worst, 0.03) << name << ' ' << name_of(of);
     }
   }
 }
@@ -87,14 +87,15 @@ TEST(GatherForm, NineNumbersStandForTheIrradianceOfAMixture) {
   std::uniform_real_distribution<double> positive(0, 1);
   for (const char* name : kLarge) {
     const auto basis = make_basis(name);
-    for (const char* of : kOperators) {
+    for (const TransportKind of : kOperators) {
       std::vector<double> c(static_cast<std::size_t>(basis->size()), 0.0);
       for (int lobe = 0; lobe < 12; ++lobe) {
         const double power = positive(random);
         const std::vector<double> one = basis->clamped_cosine(random_direction(random));
         for (std::size_t i = 0; i < c.size(); ++i) c[i] += power * one[i];
       }
-      EXPECT_LT(errors(*basis, make_transport(of, *basis), c, random).rms, 0.01) << name << ' ' << of;
+      EXPECT_LT(errors(*basis, make_transport(of, *basis), c, random).rms, 0.01)
+          << name << ' ' << name_of(of);
     }
   }
 }
@@ -104,7 +105,7 @@ TEST(GatherForm, UniformRadianceIsPiL) {
   std::mt19937 random(5);
   for (const char* name : {"sh2", "sh3", "sh4", "sh5", "bins24"}) {
     const auto basis = make_basis(name);
-    const GatherForm form(*basis, make_transport("semi-lagrangian", *basis));
+    const GatherForm form(*basis, make_transport(TransportKind::semi_lagrangian, *basis));
     for (int i = 0; i < 20; ++i)
       EXPECT_NEAR(with_window(form, basis->constant(), random_direction(random)), pi, 1e-9) << name;
   }
@@ -114,7 +115,7 @@ TEST(GatherForm, SmallBasesAreGatheredAsTheyAre) {
   std::mt19937 random(6);
   for (const char* name : {"sh2", "sh3", "srbf4", "srbf8v2"}) {
     const auto basis = make_basis(name);
-    const Transport transport = make_transport("upwind", *basis);
+    const Transport transport = make_transport(TransportKind::upwind, *basis);
     EXPECT_FALSE(GatherForm(*basis, transport).projects());
     const std::vector<double> c = basis->clamped_cosine(random_direction(random));
     EXPECT_LT(errors(*basis, transport, c, random).worst, 1e-12) << name;
@@ -125,7 +126,7 @@ TEST(GatherForm, FaceTransportsGatherFourTimesTheIntensity) {
   std::mt19937 random(7);
   for (const char* name : {"sh2", "bins24"}) {
     const auto basis = make_basis(name);
-    const GatherForm form(*basis, make_transport("sampled", *basis));
+    const GatherForm form(*basis, make_transport(TransportKind::sampled, *basis));
     EXPECT_EQ(form.window(), 0);
     const std::vector<double> c = basis->clamped_cosine(random_direction(random));
     const glm::dvec3 n = random_direction(random);
@@ -136,11 +137,11 @@ TEST(GatherForm, FaceTransportsGatherFourTimesTheIntensity) {
 TEST(GatherForm, TheWindowIsTheLeastThatLeavesNoLobeNegative) {
   // sh2's lobe (1/4 + cos/2) gives kappa (pi/4 - pi/3) at worst and kappa pi/4 in the mean: a window of a quarter.
   const auto sh2 = make_basis("sh2");
-  EXPECT_NEAR(GatherForm(*sh2, make_transport("upwind", *sh2)).window(), 0.25, 5e-3);
+  EXPECT_NEAR(GatherForm(*sh2, make_transport(TransportKind::upwind, *sh2)).window(), 0.25, 5e-3);
   std::mt19937 random(8);
   for (const char* name : {"sh2", "srbf4", "srbf8v2", "sh4"}) {
     const auto basis = make_basis(name);
-    const GatherForm form(*basis, make_transport("upwind", *basis));
+    const GatherForm form(*basis, make_transport(TransportKind::upwind, *basis));
     double least = 0, most = 0;
     for (int i = 0; i < 400; ++i) {
       const double e =

@@ -64,7 +64,8 @@ TEST(MeanError, IsAsTabled) {
 
 TEST(EnergyAfter, IsAsTabled) {
   const auto basis = make_basis("srbf14");
-  const Transport sampled = make_transport("sampled", *basis), exact = make_transport("exact", *basis);
+  const Transport sampled = make_transport(TransportKind::sampled, *basis),
+                  exact = make_transport(TransportKind::exact, *basis);
   EXPECT_NEAR(energy_after(*basis, std::get<FaceTransport>(sampled.scheme), 8), .565, 5.1e-4);
   EXPECT_NEAR(energy_after(*basis, std::get<FaceTransport>(sampled.scheme), 24), .153, 5.1e-4);
   EXPECT_NEAR(energy_after(*basis, std::get<FaceTransport>(exact.scheme), 24), 1, 1e-13);

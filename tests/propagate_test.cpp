@@ -68,14 +68,14 @@ TEST(Propagate, KernelsAgreeWithTheTwin) {
 
 TEST(Propagate, EmptyFieldStaysExactlyZero) {
   const auto basis = make_basis("srbf8v2");
-  const Transport transport = make_transport("sampled", *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   for (const double e : device_energies(*basis, transport, reference::Volume(6, basis->size()), 4))
     EXPECT_EQ(e, 0.0);
 }
 
 TEST(Propagate, IsotropicSourceKeepsItsEnergyWithSampledSh2) {
   const auto basis = make_basis("sh2");
-  const Transport transport = make_transport("sampled", *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   for (const double e :
        device_energies(*basis, transport, one_source(*basis, 19, isotropic(*basis), {9, 9, 9}), 8)) {
     EXPECT_NEAR(e, 1.0, 1e-5);
@@ -84,7 +84,8 @@ TEST(Propagate, IsotropicSourceKeepsItsEnergyWithSampledSh2) {
 
 TEST(Propagate, AxisLobeGainsByClampingOnceAndKeepsIt) {
   const auto basis = make_basis("sh2");
-  const Transport sampled = make_transport("sampled", *basis), exact = make_transport("exact", *basis);
+  const Transport sampled = make_transport(TransportKind::sampled, *basis),
+                  exact = make_transport(TransportKind::exact, *basis);
   const auto light = one_source(*basis, 19, axis_lobe(*basis), {9, 9, 9});
   const auto energies = device_energies(*basis, sampled, light, 8);
   EXPECT_NEAR(energies[1] / energies[0], 1.1382, 1e-4);
@@ -97,7 +98,7 @@ TEST(Propagate, UnclampedExactTransportConservesEnergyOfEveryBasis) {
   for (const std::string& name : basis_names()) {
     const auto basis = make_basis(name);
     if (basis->size() > 30) continue;  // bins96 take too long
-    const Transport transport = make_transport("exact", *basis);
+    const Transport transport = make_transport(TransportKind::exact, *basis);
     const auto light = one_source(*basis, 9, isotropic(*basis), {4, 4, 4});
     const auto end = reference::propagate(transport, light, nullptr, 3, false);
     EXPECT_NEAR(reference::energy(*basis, end.travelling)[0] / reference::energy(*basis, light)[0], 1.0,
@@ -108,7 +109,7 @@ TEST(Propagate, UnclampedExactTransportConservesEnergyOfEveryBasis) {
 
 TEST(Propagate, UniformIsotropicFieldStaysAsItIsAwayFromTheBorder) {
   const auto basis = make_basis("sh2");
-  const Transport transport = make_transport("sampled", *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   reference::Volume light(9, basis->size());
   const auto c = isotropic(*basis);
   for (int channel = 0; channel < 3; ++channel) {
@@ -124,7 +125,7 @@ TEST(Propagate, UniformIsotropicFieldStaysAsItIsAwayFromTheBorder) {
 
 TEST(Propagate, LittleLightArrivesBehindAWallOfFullBlockers) {
   const auto basis = make_basis("sh2");
-  const Transport transport = make_transport("sampled", *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   const int n = 16, wall = 8;
   const auto light = one_source(*basis, n, isotropic(*basis), {8, 8, 4});
   reference::Volume blockers(n + 1, basis->size(), 1);
@@ -148,7 +149,7 @@ TEST(Propagate, LittleLightArrivesBehindAWallOfFullBlockers) {
 
 TEST(Propagate, WhatIsLostIsWhatLeavesTheGrid) {
   const auto basis = make_basis("sh2");
-  const Transport transport = make_transport("sampled", *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   // Isotropic light is never clamped: before = after + lost.
   const auto light = one_source(*basis, 3, isotropic(*basis), {0, 1, 1});
   const auto next = reference::propagate_step(transport, light, nullptr);
@@ -160,7 +161,7 @@ TEST(Propagate, WhatIsLostIsWhatLeavesTheGrid) {
 TEST(Propagate, LateLightIsWhatTheSecondHalfOfTheStepsAdded) {
   const auto basis = make_basis("srbf8v2");
   for (const State state : {State::coefficients, State::fluxes}) {
-    const Transport transport = make_transport("sampled", *basis);
+    const Transport transport = make_transport(TransportKind::sampled, *basis);
     const auto light = one_source(*basis, 9, axis_lobe(*basis), {4, 4, 4});
     Session& session = test_session();
     const VolumeShape shape{light.n, basis->size(), 3};
@@ -182,11 +183,11 @@ TEST(Propagate, AnAlteredLiteralIsCaught) {
   // The twin takes its constants from the transport; so does the kernel. Alter one on the kernel's side
   // alone.
   const auto basis = make_basis("sh2");
-  Transport altered = make_transport("sampled", *basis);
+  Transport altered = make_transport(TransportKind::sampled, *basis);
   std::get<FaceTransport>(altered.scheme).faces[3].flux[0] *= 1.001;
   const auto light = one_source(*basis, 5, isotropic(*basis), {2, 2, 2});
   const auto kernel = device_energies(*basis, altered, light, 2);
-  const auto twin = reference::propagate(make_transport("sampled", *basis), light, nullptr, 2);
+  const auto twin = reference::propagate(make_transport(TransportKind::sampled, *basis), light, nullptr, 2);
   EXPECT_GT(std::abs(kernel[2] - reference::energy(*basis, twin.travelling)[0]), 1e-5);
 }
 

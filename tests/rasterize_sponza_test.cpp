@@ -44,7 +44,7 @@ struct Sponza {
 
 void print_times(const char* what) {
   for (const StageTime& time : test_session().timeline().times()) {
-    fmt::print("{}: {} {:.1f} ms{}\n", what, time.mark.stage, time.ms,
+    fmt::print("{}: {} {:.1f} ms{}\n", what, name_of(time.mark.pass), time.ms,
                time.from_events ? "" : " (wall time)");
   }
 }
@@ -69,7 +69,7 @@ TEST_F(SponzaRasterizeTest, CamerasSeeNoHolesAndTheSameTwice) {
     for (int run = 0; run < 2; ++run) {
       session.timeline().clear();
       {
-        const StageScope scope(session, {.stage = "rasterize-camera"});
+        const StageScope scope(session, {.pass = Pass::rasterize_camera});
         rasterizer.rasterize_camera(surface);
       }
       const SurfaceImage image = read_surface(session, surface);
@@ -97,10 +97,10 @@ TEST_F(SponzaRasterizeTest, SunSeesTheRoofAndTheFloor) {
   for (int run = 0; run < 2; ++run) {  // the first one compiles
     session.timeline().clear();
     {
-      const StageScope scope(session, {.stage = "rasterize-rsm"});
+      const StageScope scope(session, {.pass = Pass::rasterize_rsm});
       rasterizer.rasterize_rsm(sun, surface);
     }
-    const StageScope scope(session, {.stage = "rasterize-shadow"});
+    const StageScope scope(session, {.pass = Pass::rasterize_shadow});
     rasterizer.rasterize_shadow(shadow, depth);
   }
   print_times("sun");

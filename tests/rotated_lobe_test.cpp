@@ -113,8 +113,8 @@ TEST(RotatedLobes, TowardsMinusZAreTheLobeUpsideDown) {
 TEST(RotatedLobes, MakeTheTransportsLobes) {
   const auto basis = make_basis("srbf8v2");
   const Lobes lobes(*basis, kTable);
-  for (const char* name : {"sampled", "exact"}) {
-    const Transport transport = make_transport(name, *basis, kTable);
+  for (const TransportKind kind : {TransportKind::sampled, TransportKind::exact}) {
+    const Transport transport = make_transport(kind, *basis, kTable);
     const Matrix& columns = std::get<FaceTransport>(transport.scheme).lobes;
     for (int a = 0; a < 6; ++a) {
       const std::vector<double> lobe = lobes(glm::dvec3(kAxes[static_cast<std::size_t>(a)]));
@@ -175,12 +175,6 @@ TEST(ZonalTable, HoldsTheBasisFunctions) {
   }
   const auto harmonics = make_basis("sh3");
   EXPECT_EQ(evaluate(*harmonics, fine, kOblique), harmonics->evaluate(kOblique));
-}
-
-TEST(LobeKind, IsNamed) {
-  EXPECT_EQ(lobe_kind("exact"), LobeKind::exact);
-  EXPECT_EQ(lobe_kind("rotate"), LobeKind::rotate);
-  EXPECT_THROW(lobe_kind("turn"), Error);
 }
 
 // Int over each bin of max(0, w . d), split at d's horizon.

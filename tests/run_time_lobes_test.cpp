@@ -9,7 +9,7 @@
 
 #include "basis/table_kernel.hpp"
 #include "on_device.hpp"
-#include "pipeline/options.hpp"
+#include "options/render_options.hpp"
 #include "pipeline/propagate.hpp"
 #include "run_program.hpp"
 #include "support/error.hpp"
@@ -107,15 +107,15 @@ INSTANTIATE_TEST_SUITE_P(Names, RunTimeLobesOf, ::testing::Values("sh2", "srbf4"
 TEST_P(RunTimeLobesOf, GiveTheLightOfConstantOnes) {
   const auto basis = make_basis(GetParam());
   for (const LobeKind kind : {LobeKind::exact, LobeKind::rotate}) {
-    for (const char* name : {"sampled", "exact"}) {
-      const Transport transport = make_transport(name, *basis, {.kind = kind});
+    for (const TransportKind transported : {TransportKind::sampled, TransportKind::exact}) {
+      const Transport transport = make_transport(transported, *basis, {.kind = kind});
       const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid});
       const std::vector<float> made =
           accumulated(*basis, transport, {.grid = kGrid, .lobe_time = LobeTime::kernel});
       double largest = 0;
       for (const float value : constant) largest = std::max(largest, std::abs(static_cast<double>(value)));
       for (std::size_t i = 0; i < constant.size(); ++i)
-        ASSERT_NEAR(made[i], constant[i], 1e-5 * largest) << name << " " << i;
+        ASSERT_NEAR(made[i], constant[i], 1e-5 * largest) << name_of(transported) << " " << i;
     }
   }
 }
@@ -123,8 +123,8 @@ TEST_P(RunTimeLobesOf, GiveTheLightOfConstantOnes) {
 TEST(RunTimeLobes, DoNotDependOnWhatHoldsTheTable) {
   if (!test_session().device().images) GTEST_SKIP() << "no images on this device";
   const auto basis = make_basis("srbf8v2");
-  const Transport rotated = make_transport("sampled", *basis, {.kind = LobeKind::rotate}),
-                  exact = make_transport("sampled", *basis);
+  const Transport rotated = make_transport(TransportKind::sampled, *basis, {.kind = LobeKind::rotate}),
+                  exact = make_transport(TransportKind::sampled, *basis);
   const PropagateOptions buffer{.grid = kGrid, .lobe_time = LobeTime::kernel};
   const PropagateOptions image{.grid = kGrid, .lobe_time = LobeTime::kernel, .table = TableStorage::image};
   EXPECT_EQ(accumulated(*basis, rotated, buffer), accumulated(*basis, rotated, image));
@@ -133,7 +133,7 @@ TEST(RunTimeLobes, DoNotDependOnWhatHoldsTheTable) {
 
 TEST(RunTimeLobes, AreRefusedWhereNoStepMakesAny) {
   const auto basis = make_basis("sh2");
-  const auto refused = [&](const char* transport, State state, const char* word) {
+  const auto refused = [&](TransportKind transport, State state, const char* word) {
     const Transport made = make_transport(transport, *basis);
     try {
       Propagator(test_session(), *basis, made, {.grid = 3, .state = state, .lobe_time = LobeTime::kernel});
@@ -143,8 +143,8 @@ TEST(RunTimeLobes, AreRefusedWhereNoStepMakesAny) {
       EXPECT_THAT(error.what(), HasSubstr(word));
     }
   };
-  refused("upwind", State::coefficients, "upwind");
-  refused("sampled", State::fluxes, "--state fluxes");
+  refused(TransportKind::upwind, State::coefficients, "upwind");
+  refused(TransportKind::sampled, State::fluxes, "state fluxes");
 }
 
 // The paper's lobes and tables from end to end, and a set of a user's own.

@@ -61,11 +61,11 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
     const std::size_t bytes = 8u << 20;
     const cl::Buffer buffer = session.buffer(bytes, "filled");
     for (int i = 0; i < 2; ++i) {
-      const StageScope inject(session, {"inject", 0});
+      const StageScope inject(session, {Pass::inject_light, 0});
       session.fill_zero(buffer, bytes);
     }
     {
-      const StageScope inject(session, {"inject", 1});
+      const StageScope inject(session, {Pass::inject_light, 1});
       session.fill_zero(buffer, bytes);
     }
     const auto times = session.timeline().times();

@@ -91,8 +91,7 @@ TEST(Shade, EachViewShowsItsShare) {
   }
   const std::vector<MappedLight> lights = {sun({0, -1, 0}, 7)};
   std::vector<std::vector<glm::vec4>> shown;
-  for (const std::string& name : show_names())
-    shown.push_back(show(show_named(name), image, lights, indirect));
+  for (const Show view : values_of<Show>()) shown.push_back(show(view, image, lights, indirect));
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
     const bool background = image.depth[pixel] <= 0;
     const glm::vec3 albedo(image.colour[pixel]), e(indirect[pixel].s[0], 2, 3), normal(0, 1, 0);
@@ -105,17 +104,10 @@ TEST(Shade, EachViewShowsItsShare) {
       const glm::vec4 wanted = background ? glm::vec4(0) : glm::vec4(expected[s], 1);
       for (int c = 0; c < 4; ++c) {
         ASSERT_NEAR(shown[s][pixel][c], wanted[c], background ? 0 : 1e-5)
-            << show_names()[s] << ", pixel " << pixel;
+            << names_of<Show>()[s] << ", pixel " << pixel;
       }
     }
   }
-}
-
-TEST(Shade, NamesOfViewsRoundTrip) {
-  for (const std::string& name : show_names()) EXPECT_EQ(name_of(show_named(name)), name);
-  EXPECT_EQ(show_named("irradiance"), Show::irradiance);
-  EXPECT_EQ(show_named("depth"), Show::depth);
-  EXPECT_THROW(show_named("ambient"), Error);
 }
 
 TEST(Shade, RefusesMapsThatDoNotFit) {

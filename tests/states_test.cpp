@@ -62,14 +62,14 @@ std::vector<float> propagated(const Basis& basis, const Transport& transport, St
 }
 
 TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
-  for (const char* name : {"sampled", "exact"}) {
-    const Transport transport = make_transport(name, *basis_);
+  for (const TransportKind kind : {TransportKind::sampled, TransportKind::exact}) {
+    const Transport transport = make_transport(kind, *basis_);
     std::vector<float> before;
     for (const bool blockers : {false, true}) {
       const std::vector<float> coefficients = propagated(*basis_, transport, State::coefficients, blockers),
                                fluxes = propagated(*basis_, transport, State::fluxes, blockers);
       EXPECT_LE(largest_difference(fluxes, coefficients), 1e-5 * largest(coefficients))
-          << name << (blockers ? ", blockers" : "");
+          << name_of(kind) << (blockers ? ", blockers" : "");
       if (blockers) {
         EXPECT_GT(largest_difference(coefficients, before), 0.01 * largest(before)) << "blocked";
       }
@@ -82,7 +82,7 @@ TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
 // light does not leave.
 TEST_P(EveryBasis, EnergyIsKeptInSinglePrecision) {
   constexpr int kTravels = 24, kCells = 2 * kTravels + 1;
-  const Transport transport = make_transport("exact", *basis_);
+  const Transport transport = make_transport(TransportKind::exact, *basis_);
   const std::size_t plane = static_cast<std::size_t>(kCells) * kCells * kCells;
   std::vector<float> light(plane * static_cast<std::size_t>(basis_->size()) * 3, 0.0f);
   std::vector<double> source = basis_->constant();
@@ -114,7 +114,7 @@ TEST(Sh4, GivesTheImageOfSh3) {
   const Scene scene = load_scene(CLPV_SOURCE_DIR "/scenes/cornell.json", {});
   const auto indirect = [&](const char* basis) {
     RenderOptions options;
-    options.basis = basis, options.transport = "exact";
+    options.basis = basis, options.transport = TransportKind::exact;
     options.width = options.height = 24, options.cascade_size = scene.cascade_size.value_or(2);
     options.grid = 10, options.cascades = 1, options.shadow_size = 64, options.rsm_size = 48;
     Frame frame(test_session(), scene, options);

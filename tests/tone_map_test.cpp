@@ -67,19 +67,6 @@ TEST(ToneCurve, RisesAndStaysInRange) {
   }
 }
 
-TEST(ToneCurve, NamesRoundTripAndOthersAreRefused) {
-  for (const ToneMap curve : {ToneMap::none, ToneMap::reinhard, ToneMap::aces}) {
-    EXPECT_EQ(parse_tone_map(name_of(curve)), curve);
-  }
-  try {
-    parse_tone_map("filmic");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_NE(std::string(error.what()).find("reinhard"), std::string::npos);
-  }
-}
-
 TEST(DisplayImage, ExposureDoublesAndBackgroundStaysClear) {
   Image image = make_image(2, 1, {"R", "G", "B", "A"});
   image.pixels = {0.1f, 0.2f, 0.3f, 1, 5, 5, 5, 0};

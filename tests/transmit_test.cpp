@@ -91,15 +91,15 @@ std::vector<double> times(double s, std::vector<double> c) {
   return c;
 }
 
-class EachTransport : public ::testing::TestWithParam<std::string> {
+class EachTransport : public ::testing::TestWithParam<TransportKind> {
  protected:
   Transport transport(const Basis& basis, Blocking blocking = Blocking::two_sided) const {
     return make_transport(GetParam(), basis, {}, blocking);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport, ::testing::ValuesIn(transport_names()),
+INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport, ::testing::ValuesIn(values_of<TransportKind>()),
                          [](const auto& info) {
-                           std::string name = info.param;
+                           std::string name(name_of(info.param));
                            std::ranges::replace(name, '-', '_');
                            return name;
                          });

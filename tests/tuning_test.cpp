@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "device/device.hpp"
-#include "pipeline/volume_format.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 #include "tests/run_program.hpp"
 
 namespace clpv {
@@ -23,8 +23,9 @@ Device some_device() {
   return device;
 }
 
-const TuningSubject kSubject{"sh2", "sampled", "coefficients", 32, "float", "soa"};
-const Tuning kTuning{{16, 2}, 8, "soa"};
+const TuningSubject kSubject{"sh2", TransportKind::sampled, State::coefficients,
+                             32,    Storage::float32,       Layout::soa};
+const Tuning kTuning{{16, 2}, 8, Layout::soa};
 
 TEST(Tuning, IsFoundAgainForItsOwnDeviceAndSubject) {
   const test::TemporaryFolder folder;
@@ -97,7 +98,7 @@ TEST(TuneProgram, EveryLayoutIsTried) {
   const User user;
   const auto tuned = user.run("tune --basis sh2 --transport upwind --grid 8 --repetitions 1 --json");
   ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
-  for (const std::string& layout : layout_names()) {
+  for (const std::string& layout : names_of<Layout>()) {
     if (layout == "image" && !choose_device().images) continue;
     EXPECT_THAT(tuned.out, HasSubstr("\"layout\": \"" + layout + "\""));
   }

@@ -8,6 +8,7 @@
 #include "bench/suites.hpp"
 #include "reference/check.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -19,33 +20,33 @@ struct Native {
   Transport transport;
   Baseline baseline;
   explicit Native(const Variant& v)
-      : basis(make_basis(v.basis)),
-        transport(make_transport(v.transport, *basis)),
-        baseline(*basis, transport, v.grid) {}
+      : basis(make_basis(v.options)),
+        transport(make_transport(v.options, *basis)),
+        baseline(*basis, transport, v.options.grid) {}
 };
 
 Job native_job(Bench& bench, const Variant& variant) {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
   const auto p = std::make_shared<Native>(variant);
+  const RenderOptions& o = variant.options;
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
   const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
-  p->baseline.set(light, variant.occlusion ? &geometry : nullptr);
+  p->baseline.set(light, o.occlusion ? &geometry : nullptr);
   Job job;
   job.own_stages = true;  // nothing runs on the device: wall time
-  job.run = [p, variant] { p->baseline.propagate(variant.iterations); };
-  job.verify = [p, variant, &light, &geometry] {
+  job.run = [p, steps = o.iterations] { p->baseline.propagate(steps); };
+  job.verify = [p, o, &light, &geometry] {
     const int n = p->basis->size();
-    const reference::Volume injected = to_reference(light, variant.grid, n, 3),
-                            corners = to_reference(geometry, variant.grid + 1, n, 1);
-    return compare_volumes(
-        p->baseline.accumulated(),
-        propagated(p->transport, injected, variant.occlusion ? &corners : nullptr, variant.iterations),
-        variant.grid, reference::tolerance_in("propagate", format_of(variant)));
+    const reference::Volume injected = to_reference(light, o.grid, n, 3),
+                            corners = to_reference(geometry, o.grid + 1, n, 1);
+    return compare_volumes(p->baseline.accumulated(),
+                           propagated(p->transport, injected, o.occlusion ? &corners : nullptr, o.iterations),
+                           o.grid, reference::tolerance_in("propagate", o.format()));
   };
-  job.cost.flops = p->baseline.flops(variant.iterations);
-  job.cost.bytes = p->baseline.bytes(variant.iterations);
+  job.cost.flops = p->baseline.flops(o.iterations);
+  job.cost.bytes = p->baseline.bytes(o.iterations);
   job.cost.working_set =
-      sizeof(float) * std::pow(variant.grid, 3) * (3 * 3.0 * p->basis->size() + (variant.occlusion ? 30 : 0));
+      sizeof(float) * std::pow(o.grid, 3) * (3 * 3.0 * p->basis->size() + (o.occlusion ? 30 : 0));
   return job;
 }
 
@@ -53,12 +54,12 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
     Variant variant = plain_variant(options, kBasis);
-    variant.occlusion = occlusion;
-    for (const std::string state : {"coefficients", "fluxes"}) {
-      variant.state = state;
-      cases.push_back(stage_case(bench, "baseline", "propagate", variant));
+    variant.options.occlusion = occlusion;
+    for (const State state : values_of<State>()) {
+      variant.options.state = state;
+      cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
     }
-    variant.state = "coefficients";
+    variant.options.state = State::coefficients;
     Row row = make_row("baseline", "native", variant);
     cases.push_back({row, [&bench, variant] { return native_job(bench, variant); }});
   }

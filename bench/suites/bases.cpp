@@ -1,6 +1,7 @@
 // Suite `bases`: the cost of every basis, with either state and either lobe.
 #include "basis/basis.hpp"
 #include "bench/suites.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -10,17 +11,17 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
   std::vector<Case> cases;
   const Variant plain = plain_variant(options, basis);
   Variant variant = plain;
-  cases.push_back(stage_case(*bench, "bases", "inject", variant));
-  for (const std::string lobe : {"exact", "rotate"}) {
-    for (const std::string state : {"coefficients", "fluxes"}) {
+  cases.push_back(stage_case(*bench, "bases", kInject, variant));
+  for (const LobeKind lobe : values_of<LobeKind>()) {
+    for (const State state : values_of<State>()) {
       for (const bool occlusion : {false, true}) {
-        variant.lobe = lobe, variant.state = state, variant.occlusion = occlusion;
-        cases.push_back(stage_case(*bench, "bases", "propagate", variant));
+        variant.options.lobe = lobe, variant.options.state = state, variant.options.occlusion = occlusion;
+        cases.push_back(stage_case(*bench, "bases", kPropagate, variant));
       }
     }
   }
   variant = plain;
-  cases.push_back(stage_case(*bench, "bases", "gather", variant));
+  cases.push_back(stage_case(*bench, "bases", kGather, variant));
   return cases;
 }
 

@@ -8,7 +8,8 @@
 #include <map>
 
 #include "bench/suites.hpp"
-#include "pipeline/presets.hpp"
+#include "options/presets.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -43,7 +44,7 @@ struct Path {
 
   void add(const std::vector<StageTime>& times) {
     std::map<std::string, double> sums;  // over cascades and lights
-    for (const StageTime& time : times) sums[time.mark.stage] += time.ms;
+    for (const StageTime& time : times) sums[std::string(name_of(time.mark.pass))] += time.ms;
     if (warm) {  // the first run compiles
       for (const auto& [stage, ms] : sums) stage_ms[stage].push_back(ms);
     }
@@ -103,22 +104,17 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   return job;
 }
 
-Case frame_case(Session& session, const SuiteOptions& options, const std::string& preset,
-                const std::string& basis) {
+Case frame_case(Session& session, const SuiteOptions& options, PresetName preset, const std::string& basis) {
   RenderOptions render;
   apply_preset(render, preset);
   render.basis = basis;
-  render.grid = options.settings.grid, render.iterations = options.iterations;
   render.cascades = options.settings.cascades, render.cascade_size = options.settings.cascade_size;
-  render.rsm_size = options.settings.rsm_size;
-  render.width = options.settings.width, render.height = options.settings.height;
-  Variant variant = plain_variant(options, basis);
-  variant.transport = render.transport;
-  variant.state = render.state;
-  variant.layout = render.layout, variant.storage = render.storage;
-  variant.occlusion = render.occlusion;
+  Variant variant;
+  variant.options = render;
+  variant.options.lobe = LobeKind::exact;  // the preset's name tells which they are
+  variant.options.lobe_time = LobeTime::host;
   Case result;
-  result.row = make_row("frame", "frame", variant, "/" + preset);
+  result.row = make_row("frame", "frame", variant, fmt::format("/{}", name_of(preset)));
   result.make = [&session, options, render] { return frame_job(session, options, render); };
   return result;
 }
@@ -143,7 +139,7 @@ Suite frame_suite() {
       [](Session& session, const SuiteOptions& options) {
         const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
-        for (const std::string& preset : preset_names()) {
+        for (const PresetName preset : values_of<PresetName>()) {
           groups.push_back({[&session, options, bases, preset] {
             std::vector<Case> cases;
             for (const std::string& basis : bases)

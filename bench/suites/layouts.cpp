@@ -11,11 +11,10 @@ namespace clpv::bench {
 namespace {
 
 // As the paper has it: what the others' speed-up is told over.
-constexpr const char* kPaperLayout = "image";
-constexpr const char* kPaperStorage = "half";
+constexpr VolumeFormat kPaperFormat{Layout::image, Storage::float16};
 
 struct Timed {
-  std::string stage;
+  StageJob job;
   bool occlusion;
 };
 
@@ -25,12 +24,12 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::st
   std::vector<Case> cases;
   for (const VolumeFormat& format : all_formats()) {
     Variant variant = plain_variant(options, basis);
-    variant.layout = layout_name(format.layout), variant.storage = storage_name(format.storage);
-    variant.occlusion = timed.occlusion;
-    cases.push_back(stage_case(bench, "layouts", timed.stage, variant));
-    if (timed.stage != "gather" || format.layout != Layout::image) continue;
+    variant.options.layout = format.layout, variant.options.storage = format.storage;
+    variant.options.occlusion = timed.occlusion;
+    cases.push_back(stage_case(bench, "layouts", timed.job, variant));
+    if (timed.job.stage != Stage::gather || format.layout != Layout::image) continue;
     variant.filtered = false;
-    cases.push_back(stage_case(bench, "layouts", timed.stage, variant));
+    cases.push_back(stage_case(bench, "layouts", timed.job, variant));
   }
   return cases;
 }
@@ -38,9 +37,9 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::st
 /// The row of half-float images that does the same work.
 const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
   for (const Row& other : rows) {
-    const Variant &a = row.variant, &b = other.variant;
+    const RenderOptions &a = row.variant->options, &b = other.variant->options;
     if (other.status == Status::ok && other.stage == row.stage && a.basis == b.basis &&
-        a.occlusion == b.occlusion && b.layout == kPaperLayout && b.storage == kPaperStorage && b.filtered)
+        a.occlusion == b.occlusion && b.format() == kPaperFormat && other.variant->filtered)
       return &other;
   }
   return nullptr;
@@ -80,7 +79,7 @@ Suite layouts_suite() {
         const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
         for (const Timed& timed :
-             {Timed{"inject", false}, {"propagate", false}, {"propagate", true}, {"gather", false}}) {
+             {Timed{kInject, false}, {kPropagate, false}, {kPropagate, true}, {kGather, false}}) {
           for (const std::string& basis : bases)
             groups.push_back(
                 {[bench, options, basis, timed] { return cases(*bench, options, basis, timed); }});

@@ -16,21 +16,21 @@ namespace clpv::bench {
 namespace {
 
 /// A row's axis and value are the end of its name: "/grid:64".
-Case stage_at(const std::shared_ptr<Bench>& bench, const std::string& stage, const Variant& variant,
+Case stage_at(const std::shared_ptr<Bench>& bench, const StageJob& job, const Variant& variant,
               const std::string& axis, int value) {
-  return stage_case(*bench, "scaling", stage, variant, fmt::format("/{}:{}", axis, value));
+  return stage_case(*bench, "scaling", job, variant, fmt::format("/{}:{}", axis, value));
 }
 
 std::vector<Case> grids(Session& session, const SuiteOptions& options, const std::string& basis) {
   std::vector<Case> cases;
   for (const int grid : {16, 32, 48, 64, 96, 128}) {
-    Settings settings = options.settings;
+    RenderOptions settings = options.settings;
     settings.grid = grid, settings.cascades = 1;
     const auto bench = make_bench(session, options, settings);
     Variant variant = plain_variant(options, basis);
-    variant.grid = grid;
-    for (const std::string stage : {"propagate", "inject"}) {
-      Case made = stage_at(bench, stage, variant, "grid", grid);
+    variant.options.grid = grid;
+    for (const StageJob& job : {kPropagate, kInject}) {
+      Case made = stage_at(bench, job, variant, "grid", grid);
       made.make = [bench, make = std::move(made.make)] { return make(); };  // the bench lives as long
       cases.push_back(std::move(made));
     }
@@ -43,8 +43,7 @@ std::vector<Case> coefficients(const std::shared_ptr<Bench>& bench, const SuiteO
   for (const std::string basis : {"sh2", "srbf6", "srbf8v2", "sh3", "srbf14", "sh4", "sh5"}) {
     const Variant variant = plain_variant(options, basis);
     const int n = make_basis(basis)->size();
-    for (const std::string stage : {"inject", "propagate", "gather"})
-      cases.push_back(stage_at(bench, stage, variant, "n", n));
+    for (const StageJob& job : kStageJobs) cases.push_back(stage_at(bench, job, variant, "n", n));
   }
   return cases;
 }
@@ -54,24 +53,21 @@ std::vector<Case> steps(const std::shared_ptr<Bench>& bench, const SuiteOptions&
   std::vector<Case> cases;
   for (const int iterations : {4, 8, 16, 32, 64}) {
     Variant variant = plain_variant(options, basis);
-    variant.iterations = iterations;
-    cases.push_back(stage_at(bench, "propagate", variant, "iterations", iterations));
+    variant.options.iterations = iterations;
+    cases.push_back(stage_at(bench, kPropagate, variant, "iterations", iterations));
   }
   return cases;
 }
 
 /// A row for rasterising alone: no basis, no volumes.
-Case raster_case(Session& session, std::shared_ptr<const Scene> scene, const std::string& kind,
-                 const Settings& settings, const std::string& axis, int value) {
+Case raster_case(Session& session, std::shared_ptr<const Scene> scene, const RasterJob& job,
+                 const RenderOptions& settings, const std::string& axis, int value) {
   Case result;
   Row& row = result.row;
-  row.suite = "scaling", row.stage = kind;
-  row.name = fmt::format("{}/{}:{}", kind, axis, value);
-  row.variant.layout = row.variant.storage = row.variant.state = row.variant.lobe =
-      row.variant.transport = {};
-  row.variant.grid = row.variant.iterations = 0;
-  result.make = [&session, scene = std::move(scene), kind, settings] {
-    return rasterize_job(session, scene, kind, settings);
+  row.suite = "scaling", row.stage = name_of(job.pass);
+  row.name = fmt::format("{}/{}:{}", row.stage, axis, value);
+  result.make = [&session, scene = std::move(scene), make = job.make, settings] {
+    return make(session, scene, settings);
   };
   return result;
 }
@@ -80,13 +76,13 @@ std::vector<Case> rsms(Session& session, const SuiteOptions& options, const std:
   std::vector<Case> cases;
   const auto scene = scene_of(options);
   for (const int size : {128, 256, 512, 1024}) {
-    Settings settings = options.settings;
+    RenderOptions settings = options.settings;
     settings.rsm_size = size, settings.cascades = 1;
     const auto bench = make_bench(session, options, settings);
-    Case made = stage_at(bench, "inject", plain_variant(options, basis), "rsm", size);
+    Case made = stage_at(bench, kInject, plain_variant(options, basis), "rsm", size);
     made.make = [bench, make = std::move(made.make)] { return make(); };
     cases.push_back(std::move(made));
-    cases.push_back(raster_case(session, scene, "rasterize-rsm", settings, "rsm", size));
+    cases.push_back(raster_case(session, scene, kRasterizeRsm, settings, "rsm", size));
   }
   return cases;
 }
@@ -95,8 +91,8 @@ std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const int count : {1000, 4000, 16000, 64000, 256000}) {
     const auto hall = std::make_shared<const Scene>(make_hall(count));
-    for (const std::string kind : {"rasterize-rsm", "rasterize-camera"}) {
-      cases.push_back(raster_case(session, hall, kind, options.settings, "triangles",
+    for (const RasterJob& job : {kRasterizeRsm, kRasterizeCamera}) {
+      cases.push_back(raster_case(session, hall, job, options.settings, "triangles",
                                   static_cast<int>(hall->triangles.size())));
     }
   }
@@ -127,10 +123,10 @@ std::shared_ptr<Session> part_of(const Device& device, unsigned units) {
 Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
   Case result;
   const Variant variant = plain_variant(options, basis);
-  result.row = make_row("scaling", "propagate", variant, fmt::format("/units:{}", units));
+  result.row = make_row("scaling", name_of(Stage::propagate), variant, fmt::format("/units:{}", units));
   result.make = [&session, options, variant, units] {
     const auto part = part_of(session.device(), units);
-    Settings settings = options.settings;
+    RenderOptions settings = options.settings;
     settings.cascades = 1;
     const auto bench = make_bench(*part, options, settings);
     Job job = propagate_job(*bench, variant);
@@ -159,8 +155,15 @@ bool split(const Row& row, std::string& series, std::string& axis, double& value
   if (slash == std::string::npos || colon == std::string::npos || colon < slash) return false;
   axis = row.name.substr(slash + 1, colon - slash - 1);
   value = std::stod(row.name.substr(colon + 1));
-  series = row.stage + (axis == "n" || row.variant.basis.empty() ? "" : "/" + row.variant.basis);
+  series = row.stage + (axis == "n" || !row.variant ? "" : "/" + row.variant->options.basis);
   return true;
+}
+
+/// Of a propagation [ns].
+std::string a_cell_step(const Row& row) {
+  if (row.stage != name_of(Stage::propagate) || !row.variant) return "-";
+  const RenderOptions& o = row.variant->options;
+  return fmt::format("{:.3f}", row.times.median * 1e6 / (std::pow(o.grid, 3) * o.iterations));
 }
 
 std::string table(const std::vector<Row>& rows) {
@@ -172,11 +175,9 @@ std::string table(const std::vector<Row>& rows) {
       text += fmt::format("{:<44} unsupported: {}\n", row.name, row.reason);
       continue;
     }
-    const double cells = std::pow(row.variant.grid, 3) * row.variant.iterations;
     text +=
         fmt::format("{:<44} {:>10.3f} {:>9.3f} {:>14} {:>14}{}\n", row.name, row.times.median, row.times.mad,
-                    row.stage == "propagate" ? fmt::format("{:.3f}", row.times.median * 1e6 / cells) : "-",
-                    fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
+                    a_cell_step(row), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
                     row.status == Status::wrong ? "  WRONG" : "");
     std::string series, axis;
     double value = 0;

@@ -23,27 +23,48 @@ std::vector<std::string> bases_of(const SuiteOptions& options) {
 
 /// What the paper says of its times on a Radeon HD 6870, as ratios to sh2; no other figure of it is known here.
 struct Published {
-  const char* stage;
+  Stage stage;
   bool occlusion;
   const char* basis;
   double ratio;
 };
-constexpr Published kPublished[] = {{"propagate", true, "srbf8v2", 4.3}};
+constexpr Published kPublished[] = {{Stage::propagate, true, "srbf8v2", 4.3}};
 
 /// Where a row stands in the table.
 struct Line {
-  std::string lobe;
+  LobeKind lobe;
+  LobeTime lobe_time;
   bool occlusion;
   std::string stage;
   int cascade;  ///< -1: of all
   auto operator<=>(const Line&) const = default;
 };
 
+/// What the paper calls a stage.
+struct Title {
+  Stage stage;
+  const char* text;
+};
+constexpr Title kTitles[] = {
+    {Stage::inject, "injection"}, {Stage::propagate, "propagation"}, {Stage::gather, "light buffer"}};
+
 std::string title(const Line& line) {
-  const std::string what = line.stage == "inject"      ? "injection"
-                           : line.stage == "propagate" ? "propagation"
-                                                       : "light buffer";
+  std::string what = line.stage;
+  for (const Title& known : kTitles) {
+    if (line.stage == name_of(known.stage)) what = known.text;
+  }
   return line.cascade < 0 ? what : fmt::format("{}, cascade {}", what, line.cascade);
+}
+
+const char* lobes_title(const Line& line) {
+  if (line.lobe_time == LobeTime::kernel) return "rotated at run time";
+  switch (line.lobe) {
+    case LobeKind::exact:
+      return "exact, constants";
+    case LobeKind::rotate:
+      return "rotated, constants";
+  }
+  return "";
 }
 
 std::string cell(const Row* row) {
@@ -59,7 +80,7 @@ std::string ratio(const Row* row, const Row* first) {
 
 std::string published_ratio(const Line& line, const std::string& basis) {
   for (const Published& p : kPublished) {
-    if (line.stage == p.stage && line.occlusion == p.occlusion && basis == p.basis)
+    if (line.stage == name_of(p.stage) && line.occlusion == p.occlusion && basis == p.basis)
       return fmt::format("{:.1f}", p.ratio);
   }
   return "";
@@ -70,11 +91,12 @@ std::string table(const std::vector<Row>& rows) {
   std::vector<Line> lines;  // in the order of the rows
   std::map<std::pair<Line, std::string>, const Row*> at;
   for (const Row& row : rows) {
-    if (row.suite != "table1") continue;
-    const Line line{row.variant.lobe, row.variant.occlusion, row.stage, row.variant.cascade.value_or(-1)};
-    if (std::count(bases.begin(), bases.end(), row.variant.basis) == 0) bases.push_back(row.variant.basis);
+    if (!row.variant) continue;
+    const RenderOptions& o = row.variant->options;
+    const Line line{o.lobe, o.lobe_time, o.occlusion, row.stage, row.variant->cascade.value_or(-1)};
+    if (std::count(bases.begin(), bases.end(), o.basis) == 0) bases.push_back(o.basis);
     if (std::count(lines.begin(), lines.end(), line) == 0) lines.push_back(line);
-    at[{line, row.variant.basis}] = &row;
+    at[{line, o.basis}] = &row;
   }
   const auto found = [&](const Line& line, const std::string& basis) -> const Row* {
     const auto entry = at.find({line, basis});
@@ -86,11 +108,10 @@ std::string table(const std::vector<Row>& rows) {
   text += "  paper\n";
   const Line* before = nullptr;
   for (const Line& line : lines) {
-    if (before == nullptr || before->lobe != line.lobe || before->occlusion != line.occlusion) {
-      text += fmt::format("\nlobes {}, {} indirect shadows\n",
-                          line.lobe == "exact"    ? "exact, constants"
-                          : line.lobe == "rotate" ? "rotated, constants"
-                                                  : "rotated at run time",
+    const bool same = before != nullptr && before->lobe == line.lobe && before->lobe_time == line.lobe_time &&
+                      before->occlusion == line.occlusion;
+    if (!same) {
+      text += fmt::format("\nlobes {}, {} indirect shadows\n", lobes_title(line),
                           line.occlusion ? "with" : "without");
     }
     before = &line;
@@ -107,16 +128,24 @@ std::string table(const std::vector<Row>& rows) {
   return text + "\npaper: on a Radeon HD 6870, the ratios to sh2 that are known of it; its times are not.\n";
 }
 
-std::vector<Case> cases(Bench& bench, const SuiteOptions& options, bool occlusion, const std::string& lobe) {
+/// How lobes come about in a part of the table.
+struct LobeWay {
+  LobeKind kind;
+  LobeTime time;
+};
+
+std::vector<Case> cases(Bench& bench, const SuiteOptions& options, bool occlusion, const LobeWay& lobes) {
   std::vector<Case> cases;
-  for (const std::string stage : {"inject", "propagate", "gather"}) {
-    const int count = stage == "gather" ? 1 : options.settings.cascades;
+  for (const StageJob& job : kStageJobs) {
+    const bool of_all = job.stage == Stage::gather;
+    const int count = of_all ? 1 : options.settings.cascades;
     for (int cascade = 0; cascade < count; ++cascade) {
       for (const std::string& basis : bases_of(options)) {
         Variant variant = plain_variant(options, basis);
-        variant.lobe = lobe, variant.occlusion = occlusion;
-        if (stage != "gather") variant.cascade = cascade;
-        cases.push_back(stage_case(bench, "table1", stage, variant));
+        variant.options.lobe = lobes.kind, variant.options.lobe_time = lobes.time;
+        variant.options.occlusion = occlusion;
+        if (!of_all) variant.cascade = cascade;
+        cases.push_back(stage_case(bench, "table1", job, variant));
       }
     }
   }
@@ -130,10 +159,12 @@ Suite table1_suite() {
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
             std::vector<Group> groups;
-            for (const std::string lobe : {kRunTimeLobes, "exact"}) {
+            for (const LobeWay& lobes :
+                 {LobeWay{LobeKind::rotate, LobeTime::kernel}, {LobeKind::exact, LobeTime::host}}) {
               for (const bool occlusion : {false, true})
-                groups.push_back(
-                    {[bench, options, occlusion, lobe] { return cases(*bench, options, occlusion, lobe); }});
+                groups.push_back({[bench, options, occlusion, lobes] {
+                  return cases(*bench, options, occlusion, lobes);
+                }});
             }
             return groups;
           },

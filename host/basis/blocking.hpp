@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -13,16 +13,27 @@ namespace clpv {
 
 /// A surfel that covers the share A of a cell's cross-section, its normal n.
 enum class Blocking {
-  one_sided,  ///< N coefficients: A times the clamped cosine round n; blocks what meets its front (the paper)
-  two_sided,  ///< N coefficients: that round n and that round -n
   /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, which is what it covers of a face across each axis. Two-sided lobes of few
   /// coefficients hardly know which way their surfel lies: |w . n| is even, and of sh2's functions the constant alone is.
   areas,
+  two_sided,  ///< N coefficients: those of one_sided round n and round -n
+  one_sided,  ///< N coefficients: A times the clamped cosine round n; blocks what meets its front (the paper)
 };
 
-/// "one-sided", "two-sided", "areas". Throws Error(usage) for another name.
-Blocking blocking_named(const std::string& name);
-std::vector<std::string> blocking_names();
+constexpr std::string_view name_of(Blocking blocking) {
+  switch (blocking) {
+    case Blocking::areas:
+      return "areas";
+    case Blocking::two_sided:
+      return "two-sided";
+    case Blocking::one_sided:
+      return "one-sided";
+  }
+  return {};
+}
+
+/// Whether a surfel is a lobe in the basis, or else numbers of its own.
+bool blocks_by_lobes(Blocking blocking);
 
 /// Numbers a sample of the geometry volume has.
 int blocking_size(Blocking blocking, const Basis& basis);

@@ -18,12 +18,6 @@ double gram_function(const Basis& basis, double t) {
 
 }  // namespace
 
-LobeKind lobe_kind(const std::string& name) {
-  if (name == "exact") return LobeKind::exact;
-  if (name == "rotate") return LobeKind::rotate;
-  throw Error(ExitCode::usage, "there is no lobe '{}'; there are exact, rotate", name);
-}
-
 ZonalTable::ZonalTable(int size, const std::function<double(double)>& function) {
   if (size < 2 || size > kLargestTable) {
     throw Error(ExitCode::usage, "table size is {}; allowed: 2..{}", size, kLargestTable);

@@ -5,7 +5,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -17,15 +17,22 @@ enum class LobeKind {
   rotate,  ///< projected towards +z, turned to the axis
 };
 
+constexpr std::string_view name_of(LobeKind kind) {
+  switch (kind) {
+    case LobeKind::exact:
+      return "exact";
+    case LobeKind::rotate:
+      return "rotate";
+  }
+  return {};
+}
+
 /// How lobes and basis functions are come by. Matters to bases with centres alone.
 struct LobeOptions {
   LobeKind kind = LobeKind::exact;
   int table_size = 256;          ///< entries of the tables of H and G; 0: H itself
   bool table_functions = false;  ///< basis functions are read from G's table where stages evaluate them
 };
-
-/// "exact", "rotate". Throws Error(usage) for another name.
-LobeKind lobe_kind(const std::string& name);
 
 /// A function of t in [-1, 1] as a table of `size` entries, the first for t = -1 and the last for t = 1, read without
 /// interpolation: entry floor((t + 1)/2 (size - 1) + 1/1024). The 1/1024 keeps a t that lies on an entry but for rounding
@@ -52,7 +59,7 @@ class ZonalTable {
 ZonalTable gram_table(const Basis& basis, int size);
 ZonalTable function_table(const Basis& basis, int size);
 
-/// b_i(w) with G from `function_table` (`--evaluate table`). A basis without centres has no table: its own evaluate().
+/// b_i(w) with G from `function_table` (Evaluation::table). A basis without centres has no table: its own evaluate().
 std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const glm::dvec3& w);
 /// b_i(w) as `options` want them.
 std::vector<double> evaluate(const Basis& basis, const LobeOptions& options, const glm::dvec3& w);

@@ -1,10 +1,7 @@
 #include "basis/transport.hpp"
 
-#include <fmt/ranges.h>
-
 #include "basis/face_transport.hpp"
 #include "basis/operator_transport.hpp"
-#include "support/error.hpp"
 
 namespace clpv {
 
@@ -28,31 +25,29 @@ void look_up_blockers(Transport& transport, const Basis& basis) {
 
 }  // namespace
 
-std::vector<std::string> transport_names() {
-  return {"sampled", "exact", "upwind", "semi-lagrangian"};
-}
-
-Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes,
+Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptions& lobes,
                          Blocking blocking) {
   Transport transport;
-  transport.name = name;
+  transport.kind = kind;
   transport.lobes = lobes;
   transport.blocking = blocking;
   transport.gather = Matrix::identity(basis.size());
-  if (name == "sampled") {
-    transport.scheme = make_face_transport(basis, FaceFlux::sampled, lobes);
-  } else if (name == "exact") {
-    transport.scheme = make_face_transport(basis, FaceFlux::exact, lobes);
-    transport.unit_flux_lobes = true;
-  } else if (name == "upwind") {
-    transport.scheme = make_upwind(basis, transport.gather);
-    transport.gathers_cosine = true;
-  } else if (name == "semi-lagrangian") {
-    transport.scheme = make_semi_lagrangian(basis);
-    transport.gathers_cosine = true;
-  } else {
-    throw Error(ExitCode::usage, "there is no transport '{}'; there are {}", name,
-                fmt::join(transport_names(), ", "));
+  switch (kind) {
+    case TransportKind::sampled:
+      transport.scheme = make_face_transport(basis, FaceFlux::sampled, lobes);
+      break;
+    case TransportKind::exact:
+      transport.scheme = make_face_transport(basis, FaceFlux::exact, lobes);
+      transport.unit_flux_lobes = true;
+      break;
+    case TransportKind::upwind:
+      transport.scheme = make_upwind(basis, transport.gather);
+      transport.gathers_cosine = true;
+      break;
+    case TransportKind::semi_lagrangian:
+      transport.scheme = make_semi_lagrangian(basis);
+      transport.gathers_cosine = true;
+      break;
   }
   look_up_blockers(transport, basis);
   return transport;

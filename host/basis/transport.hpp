@@ -4,7 +4,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -43,8 +43,29 @@ struct OperatorTransport {
   std::vector<Neighbour> neighbours;
 };
 
+enum class TransportKind {
+  sampled,          ///< the paper's: fluxes through faces, each seen along one direction
+  exact,            ///< fluxes through faces, integrated over each
+  upwind,           ///< an operator of finite volumes
+  semi_lagrangian,  ///< an operator that moves light along its own direction
+};
+
+constexpr std::string_view name_of(TransportKind kind) {
+  switch (kind) {
+    case TransportKind::sampled:
+      return "sampled";
+    case TransportKind::exact:
+      return "exact";
+    case TransportKind::upwind:
+      return "upwind";
+    case TransportKind::semi_lagrangian:
+      return "semi-lagrangian";
+  }
+  return {};
+}
+
 struct Transport {
-  std::string name;
+  TransportKind kind = TransportKind::sampled;
   LobeOptions lobes;  ///< that it was made with, and so is
   Blocking blocking = Blocking::two_sided;
   std::variant<FaceTransport, OperatorTransport> scheme;
@@ -58,12 +79,9 @@ struct Transport {
   bool unit_flux_lobes = false;
 };
 
-/// "sampled", "exact", "upwind", "semi-lagrangian". Operators have no lobes: `lobes` does not matter to them. `blocking`: what the
-/// geometry volume holds.
-/// Throws Error(usage) for another name.
-Transport make_transport(const std::string& name, const Basis& basis, const LobeOptions& lobes = {},
+/// Operators have no lobes: `lobes` does not matter to them. `blocking`: what the geometry volume holds.
+Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptions& lobes = {},
                          Blocking blocking = Blocking::two_sided);
-std::vector<std::string> transport_names();
 
 /// The six axes in the order used everywhere: +x -x +y -y +z -z.
 extern const std::array<glm::ivec3, 6> kAxes;

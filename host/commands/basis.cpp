@@ -9,6 +9,7 @@
 #include "basis/lobe_quality.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "commands/basis_figures.hpp"
+#include "commands/choices.hpp"
 #include "commands/commands.hpp"
 #include "commands/parse.hpp"
 #include "support/error.hpp"
@@ -17,9 +18,9 @@ namespace clpv {
 namespace {
 
 struct Options {
-  std::string name, centres_file, lobe = "exact", axis = "0,0,1", figures;
+  std::string name, centres_file, axis = "0,0,1", figures;
   double lambda = kDefaultLambda;
-  int table_size = LobeOptions{}.table_size;
+  LobeOptions lobes;
   bool json = false;
 };
 
@@ -32,11 +33,11 @@ glm::dvec3 unit_axis(const std::string& text) {
 }
 
 nlohmann::json describe(const Basis& basis, const Options& options, const glm::dvec3& axis) {
-  const LobeOptions lobes{lobe_kind(options.lobe), options.table_size};
+  const LobeOptions& lobes = options.lobes;
   const std::vector<double> c = Lobes(basis, lobes)(axis);
   const LobeQuality quality = lobe_quality(basis, c, axis);
-  const Transport sampled = make_transport("sampled", basis, lobes),
-                  exact = make_transport("exact", basis, lobes);
+  const Transport sampled = make_transport(TransportKind::sampled, basis, lobes),
+                  exact = make_transport(TransportKind::exact, basis, lobes);
   const auto energy = [&](const Transport& transport, int steps) {
     return energy_after(basis, std::get<FaceTransport>(transport.scheme), steps);
   };
@@ -45,7 +46,7 @@ nlohmann::json describe(const Basis& basis, const Options& options, const glm::d
   return {{"name", basis.name()},
           {"n", basis.size()},
           {"lambda", basis.lambda()},
-          {"lobe", options.lobe},
+          {"lobe", name_of(lobes.kind)},
           {"centres", centres},
           {"condition", basis.condition()},
           {"axis", {axis.x, axis.y, axis.z}},
@@ -91,8 +92,7 @@ std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {
 /// Of the bases that are named, or else of the paper's.
 void write_figures(const Options& options) {
   const bool named = !options.name.empty() || !options.centres_file.empty();
-  const BasisFigures figures{named ? bases_of(options) : paper_bases(options.lambda),
-                             {lobe_kind(options.lobe), options.table_size},
+  const BasisFigures figures{named ? bases_of(options) : paper_bases(options.lambda), options.lobes,
                              options.lambda};
   for (const auto& file : write_basis_figures(figures, options.figures)) fmt::print("{}\n", file.string());
 }
@@ -127,12 +127,9 @@ void add_basis(CLI::App& app, Shared&) {
   command->add_option("--axis", options->axis, "axis of the clamped cosine, any length")
       ->type_name("X,Y,Z")
       ->capture_default_str();
-  command
-      ->add_option("--lobe", options->lobe,
-                   "clamped cosine: projected exactly, or along +z and rotated through a table")
-      ->check(CLI::IsMember({"exact", "rotate"}))
-      ->capture_default_str();
-  command->add_option("--table-size", options->table_size, "entries of the table of rotated lobes")
+  add_choice(*command, "--lobe", options->lobes.kind,
+             "clamped cosine: projected exactly, or along +z and rotated through a table");
+  command->add_option("--table-size", options->lobes.table_size, "entries of the table of rotated lobes")
       ->capture_default_str();
   CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
   command

@@ -5,48 +5,21 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "commands/choices.hpp"
 #include "commands/commands.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
+#include "support/named_enum.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {
 namespace {
 
-struct Stage {
-  std::string name;
-  std::function<reference::CheckResults(Session&, bool thorough)> check;
-};
-
-const std::vector<Stage>& stages() {
-  // Stages that have no more to compare than they do at once ignore `thorough`.
-  const auto plain = [](reference::CheckResults (*check)(Session&)) {
-    return [check](Session& session, bool) { return check(session); };
-  };
-  static const std::vector<Stage> all = {
-      {"sizes", plain(reference::check_sizes)},
-      {"rasterize", plain(reference::check_rasterize)},
-      {"inject", reference::check_inject},
-      {"propagate", reference::check_propagate},
-      {"carry-late", plain(reference::check_carry_late)},
-      {"gather", reference::check_gather},
-      {"shade", plain(reference::check_shade)},
-  };
-  return all;
-}
-
-std::vector<std::string> stage_names() {
-  std::vector<std::string> names;
-  for (const Stage& stage : stages()) names.push_back(stage.name);
-  return names;
-}
-
 struct Options {
-  std::vector<std::string> only;
+  std::vector<Stage> only;
   bool json = false, thorough = false;
 };
 
@@ -59,7 +32,7 @@ const reference::CheckResult& worst_of(const reference::CheckResults& results) {
                            [&](const auto& a, const auto& b) { return share(a) < share(b); });
 }
 
-void print(const std::string& stage, const reference::CheckResults& results) {
+void print(std::string_view stage, const reference::CheckResults& results) {
   const auto failed =
       std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
   const reference::CheckResult& worst = worst_of(results);
@@ -92,14 +65,14 @@ void run(const Options& options, const Shared& shared) {
   spdlog::info("checking {} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
   reference::CheckResults all;
-  Progress progress("check", stages().size());
-  for (const Stage& stage : stages()) {
+  Progress progress("check", values_of<Stage>().size());
+  for (const Stage stage : values_of<Stage>()) {
     progress.advance();
-    if (!options.only.empty() && std::count(options.only.begin(), options.only.end(), stage.name) == 0)
-      continue;
-    const reference::CheckResults results = stage.check(session, options.thorough);
-    if (results.empty()) throw Error(ExitCode::validation, "stage {} was not compared at all", stage.name);
-    if (!options.json) print(stage.name, results);
+    if (!options.only.empty() && std::ranges::count(options.only, stage) == 0) continue;
+    const reference::CheckResults results = reference::check(stage, session, options.thorough);
+    if (results.empty())
+      throw Error(ExitCode::validation, "stage {} was not compared at all", name_of(stage));
+    if (!options.json) print(name_of(stage), results);
     all.insert(all.end(), results.begin(), results.end());
   }
   const auto failed = std::count_if(all.begin(), all.end(), [](const auto& r) { return !r.passed(); });
@@ -123,9 +96,7 @@ void add_check(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("check", "Hold every stage's kernels against double-precision twins on this device");
   auto options = std::make_shared<Options>();
-  command->add_option("--stage", options->only, "only these stages; default: all")
-      ->delimiter(',')
-      ->check(CLI::IsMember(stage_names()));
+  add_choices(*command, "--stage", options->only, "only these stages; default: all");
   command->add_flag("--thorough", options->thorough,
                     "every basis with every choice of lobes, tables, transport and state; takes minutes");
   command->add_flag("--json", options->json, "JSON on stdout");

@@ -4,8 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <string>
+#include <vector>
 
-#include "pipeline/options.hpp"
+#include "options/render_options.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -15,6 +16,13 @@ using GivenOptions = std::map<std::string, std::string>;
 
 /// Adds one option of text each; `given` must outlive the parse.
 void add_frame_options(CLI::App& command, GivenOptions& given);
+
+/// Adds those of these names to `command`: each sets `options` as it is parsed, and shows its present value as default.
+/// `options` must outlive the parse.
+void add_some_frame_options(CLI::App& command, RenderOptions& options, const std::vector<std::string>& names);
+
+/// As set_option; what it throws names the option as the command line does.
+void set_given(RenderOptions& options, const std::string& name, const std::string& value);
 
 /// The preset given, else the defaults; then what the scene wishes, then the other options given. Throws Error(usage) for a bad value.
 RenderOptions resolve_options(const GivenOptions& given, const Scene& scene);

@@ -8,12 +8,13 @@
 #include <optional>
 
 #include "commands/commands.hpp"
+#include "commands/frame_options.hpp"
 #include "commands/parse.hpp"
-#include "pipeline/options.hpp"
-#include "pipeline/presets.hpp"
+#include "options/render_options.hpp"
 #include "pipeline/volume_files.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -25,13 +26,27 @@ struct Source {
   glm::dvec3 flux{1};
 };
 
+/// What is propagated where neither a preset nor the command line says otherwise: the published scheme, in numbers in
+/// full.
+RenderOptions plain_options() {
+  RenderOptions options;
+  options.basis = "sh2";
+  options.transport = TransportKind::sampled;
+  options.storage = Storage::float32;
+  return options;
+}
+
+/// The options of a frame that matter to a propagation.
+const std::vector<std::string>& taken_options() {
+  static const std::vector<std::string> names{
+      "basis", "centres",   "lambda", "lobe",   "lobe-time", "evaluate",   "table-size",
+      "table", "transport", "state",  "layout", "storage",   "iterations", "grid"};
+  return names;
+}
+
 struct Options {
-  std::string basis = "sh2", transport = "sampled", state = "coefficients", preset;
-  std::string layout = "soa", storage = "float";
-  std::string centres, lobe = "exact", lobe_time = "host", evaluate = "exact", table = "buffer";
-  int table_size = LobeOptions{}.table_size;
-  double lambda = kDefaultLambda;
-  int grid = 32, iterations = 8;
+  RenderOptions frame = plain_options();
+  bool preset_given = false;
   std::vector<Source> sources;
   std::vector<std::pair<glm::ivec3, glm::ivec3>> blocks;
   std::string npy, vti;
@@ -55,9 +70,9 @@ void require_inside(const glm::ivec3& p, int limit, const char* option) {
 }
 
 reference::Volume injected_light(const Basis& basis, const Options& options) {
-  reference::Volume volume(options.grid, basis.size());
+  reference::Volume volume(options.frame.grid, basis.size());
   for (const Source& source : options.sources) {
-    require_inside(source.at, options.grid, "--at");
+    require_inside(source.at, options.frame.grid, "--at");
     const std::vector<double> c = lobe(basis, source);
     for (int channel = 0; channel < 3; ++channel) {
       for (int i = 0; i < basis.size(); ++i) {
@@ -71,11 +86,11 @@ reference::Volume injected_light(const Basis& basis, const Options& options) {
 
 /// Full blocking in all directions: B = 1 at every named corner.
 reference::Volume blocked_corners(const Basis& basis, const Options& options) {
-  reference::Volume volume(options.grid + 1, basis.size(), 1);
+  reference::Volume volume(options.frame.grid + 1, basis.size(), 1);
   const std::vector<double> one = basis.constant();
   for (const auto& [first, last] : options.blocks) {
-    require_inside(first, options.grid + 1, "--block");
-    require_inside(last, options.grid + 1, "--block");
+    require_inside(first, options.frame.grid + 1, "--block");
+    require_inside(last, options.frame.grid + 1, "--block");
     for (int z = first.z; z <= last.z; ++z) {
       for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
@@ -123,73 +138,32 @@ nlohmann::json options_json(const Options& options) {
         {{"at", {s.at.x, s.at.y, s.at.z}}, {"normal", normal}, {"flux", {s.flux.x, s.flux.y, s.flux.z}}});
   }
   for (const auto& [a, b] : options.blocks) blocks.push_back({{a.x, a.y, a.z}, {b.x, b.y, b.z}});
-  return {{"preset", options.preset.empty() ? nlohmann::json() : nlohmann::json(options.preset)},
-          {"basis", options.basis},
-          {"lambda", options.lambda},
-          {"centres", options.centres},
-          {"lobe", options.lobe},
-          {"lobe-time", options.lobe_time},
-          {"evaluate", options.evaluate},
-          {"table-size", options.table_size},
-          {"table", options.table},
-          {"transport", options.transport},
-          {"state", options.state},
-          {"layout", options.layout},
-          {"storage", options.storage},
-          {"grid", options.grid},
-          {"iterations", options.iterations},
-          {"sources", sources},
-          {"blocks", blocks}};
-}
-
-/// What a preset says of propagation, where the command line says nothing of its own.
-void take_preset(const CLI::App& command, Options& options) {
-  if (options.preset.empty()) return;
-  RenderOptions preset;
-  apply_preset(preset, options.preset);
-  const auto take = [&](const char* option, auto& member, const auto& value) {
-    if (command.count(option) == 0) member = value;
-  };
-  take("--basis", options.basis, preset.basis);
-  take("--lambda", options.lambda, preset.lambda);
-  take("--lobe", options.lobe, preset.lobe);
-  take("--lobe-time", options.lobe_time, preset.lobe_time);
-  take("--evaluate", options.evaluate, preset.evaluate);
-  take("--table-size", options.table_size, preset.table_size);
-  take("--table", options.table, preset.table);
-  take("--transport", options.transport, preset.transport);
-  take("--state", options.state, preset.state);
-  take("--layout", options.layout, preset.layout);
-  take("--storage", options.storage, preset.storage);
-}
-
-/// The same choices as a frame's.
-RenderOptions as_frame(const Options& options) {
-  RenderOptions frame;
-  frame.basis = options.basis, frame.centres = options.centres, frame.lambda = options.lambda;
-  frame.lobe = options.lobe, frame.lobe_time = options.lobe_time, frame.evaluate = options.evaluate;
-  frame.table_size = options.table_size, frame.table = options.table;
-  frame.state = options.state;
-  return frame;
+  const nlohmann::json frame = to_json(options.frame);
+  nlohmann::json json = {{"preset", nullptr}, {"sources", sources}, {"blocks", blocks}};
+  if (options.preset_given) json["preset"] = frame.at("preset");
+  for (const std::string& name : taken_options()) json[name] = frame.at(name);
+  return json;
 }
 
 void run(const Options& options, const Shared& shared) {
   for (const std::string& path : {options.npy, options.vti}) {
     if (!path.empty()) check_writable(path);
   }
-  const RenderOptions frame = as_frame(options);
+  const RenderOptions& frame = options.frame;
   const auto basis = make_basis(frame);
-  const Transport transport = make_transport(options.transport, *basis, frame.lobes());
-  const VolumeFormat format = volume_format(options.layout, options.storage);
+  // What blocks here does so in all directions: as coefficients, whatever a frame's blockers are.
+  const Transport transport = make_transport(frame.transport, *basis, frame.lobes(), Blocking::two_sided);
+  const VolumeFormat format = frame.format();
   const reference::Volume light = injected_light(*basis, options);
   Session session(choose_device(shared.device));
-  const VolumeShape shape{options.grid, basis->size(), 3};
+  const VolumeShape shape{options.frame.grid, basis->size(), 3};
   Volume injected(session, shape, "injected light", format),
       accumulated(session, shape, "accumulated light", format);
   injected.write(session, to_float(light.values));
   std::optional<Volume> corners;
   if (!options.blocks.empty()) {
-    corners.emplace(session, VolumeShape{options.grid + 1, basis->size(), 1}, "geometry volume", format);
+    corners.emplace(session, VolumeShape{options.frame.grid + 1, basis->size(), 1}, "geometry volume",
+                    format);
     corners->write(session, to_float(blocked_corners(*basis, options).values));
   }
 
@@ -197,17 +171,12 @@ void run(const Options& options, const Shared& shared) {
   std::array<double, 3> total = reference::energy(*basis, light), lost{};
   steps.push_back({{"step", 0}, {"travelling", total}, {"accumulated", total}, {"lost", lost}});
   reference::Volume before = light;
-  Propagator propagator(session, *basis, transport,
-                        {.grid = options.grid,
-                         .state = frame.travelling(),
-                         .lobe_time = frame.lobes_made(),
-                         .table = frame.table_storage(),
-                         .format = format});
+  Propagator propagator(session, *basis, transport, propagate_options(frame));
   propagator.propagate(
-      {injected, corners ? &*corners : nullptr, accumulated}, options.iterations,
+      {injected, corners ? &*corners : nullptr, accumulated}, options.frame.iterations,
       [&](int step, const Volume& travelling) {
         const auto out = reference::leaving(*basis, transport, before);
-        before = travelling_coefficients(*basis, transport, travelling.read(session), options.grid,
+        before = travelling_coefficients(*basis, transport, travelling.read(session), options.frame.grid,
                                          travelling.shape().coefficients);
         const auto now = reference::energy(*basis, before);
         for (std::size_t c = 0; c < 3; ++c) {
@@ -218,8 +187,8 @@ void run(const Options& options, const Shared& shared) {
       });
 
   const std::vector<float> values = accumulated.read(session);
-  const ClpvGrid grid{{0, 0, 0}, 1, static_cast<unsigned>(options.grid), {}};  // cells of 1 m
-  if (!options.npy.empty()) write_volume_npy(options.npy, values, options.grid, basis->size());
+  const ClpvGrid grid{{0, 0, 0}, 1, static_cast<unsigned>(options.frame.grid), {}};  // cells of 1 m
+  if (!options.npy.empty()) write_volume_npy(options.npy, values, options.frame.grid, basis->size());
   if (!options.vti.empty()) write_volume_vti(options.vti, values, grid, basis->size());
   fmt::print("{}\n",
              nlohmann::json{{"schema", 1}, {"options", options_json(options)}, {"steps", steps}}.dump(2));
@@ -232,49 +201,16 @@ void add_propagate(CLI::App& app, Shared& shared) {
       app.add_subcommand("propagate", "Propagate sources in an empty grid; energy of each step as JSON [W]");
   auto options = std::make_shared<Options>();
   command
-      ->add_option(
-          "--preset", options->preset,
+      ->add_option_function<std::string>(
+          "--preset",
+          [options](const std::string& name) {
+            set_given(options->frame, "preset", name);
+            options->preset_given = true;
+          },
           "basis, lambda, transport and state of that preset of clpv render, where not given themselves")
-      ->check(CLI::IsMember(preset_names()));
-  CLI::Option* basis =
-      command->add_option("--basis", options->basis, "basis of the sphere (clpv basis lists them)")
-          ->capture_default_str();
-  command->add_option("--centres", options->centres, "an SRBF set of your own (JSON), in place of a basis")
-      ->type_name("FILE")
-      ->excludes(basis);
-  const auto choice = [&](const char* name, std::string& member, const char* help,
-                          const std::vector<std::string>& allowed) {
-    command->add_option(name, member, help)->capture_default_str()->check(CLI::IsMember(allowed));
-  };
-  choice("--lobe", options->lobe, "cosine lobes: projected each, or that along +z turned through a table",
-         {"exact", "rotate"});
-  choice("--lobe-time", options->lobe_time, "lobes: constants, or made in the kernel as the paper does",
-         {"host", "kernel"});
-  choice("--evaluate", options->evaluate, "SRBF functions: computed, or read from a table",
-         {"exact", "table"});
-  choice("--table", options->table, "what kernels read tables as", {"buffer", "image"});
-  command->add_option("--table-size", options->table_size, "entries of those tables")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 65536));
-  command->add_option("--lambda", options->lambda, "SRBF bandwidth, in (0, 1)")->capture_default_str();
-  command->add_option("--transport", options->transport, "how light moves")
-      ->capture_default_str()
-      ->check(CLI::IsMember(transport_names()));
-  command->add_option("--state", options->state, "what travels")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"coefficients", "fluxes"}));
-  command->add_option("--layout", options->layout, "how volumes lie in memory")
-      ->capture_default_str()
-      ->check(CLI::IsMember(layout_names()));
-  command->add_option("--storage", options->storage, "numbers of the volumes")
-      ->capture_default_str()
-      ->check(CLI::IsMember(storage_names()));
-  command->add_option("--grid", options->grid, "cells along each axis")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 512));
-  command->add_option("--iterations", options->iterations, "steps")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
+      ->check(CLI::IsMember(names_of<PresetName>()));
+  add_some_frame_options(*command, options->frame, taken_options());  // after the preset, which they override
+  command->get_option("--centres")->excludes(command->get_option("--basis"));
   const auto last_source = [options]() -> Source& {
     if (options->sources.empty())
       throw CLI::ValidationError("--at must come before --normal, --isotropic and --flux");
@@ -330,10 +266,7 @@ void add_propagate(CLI::App& app, Shared& shared) {
   command->add_option("-o,--out", options->npy, "accumulated light as .npy, float32, shape 3,N,z,y,x [W/sr]")
       ->type_name("FILE.npy");
   command->add_option("--vti", options->vti, "accumulated light for ParaView")->type_name("FILE.vti");
-  command->callback([command, options, &shared] {
-    take_preset(*command, *options);
-    run(*options, shared);
-  });
+  command->callback([options, &shared] { run(*options, shared); });
 }
 
 }  // namespace clpv

@@ -12,6 +12,7 @@
 #include "commands/tracing_options.hpp"
 #include "pipeline/quality_report.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
 
@@ -42,7 +43,8 @@ std::vector<Variant> variants(const Options& options) {
     return options.given.contains(name) || std::ranges::count(varied, name, &VariedOption::name) > 0;
   };
   const bool preset = mentioned("preset");
-  if (!preset && !mentioned("transport")) varied.insert(varied.begin(), {"transport", transport_names()});
+  if (!preset && !mentioned("transport"))
+    varied.insert(varied.begin(), {"transport", names_of<TransportKind>()});
   if (!preset && !mentioned("basis")) varied.insert(varied.begin(), {"basis", basis_names()});
   return combinations(varied);
 }
@@ -64,7 +66,7 @@ class VariantRun {
         subject_(subject),
         variant_(variant),
         frame_options_(with(options, variant, subject.scene)),
-        show_(show_named(options.view)) {}
+        show_(named<Show>("--view", options.view)) {}
 
   QualityCell cell(std::size_t view) {
     const reference::Reference& truth = subject_.truths[view];
@@ -151,7 +153,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
 void run(const Options& options, const Shared& shared) {
   check_models(options.subjects);
   const std::vector<Variant> all = variants(options);
-  show_named(options.view);
+  named<Show>("--view", options.view);
   for (const std::string& output : {options.json, options.csv}) {
     if (!output.empty()) check_writable(output);
   }
@@ -190,7 +192,7 @@ void add_options(CLI::App& command, Options& options) {
           "transports vary\n"
           "over all there are, unless --preset, --basis or --transport fixes them or --vary names them")
       ->type_name("OPTION=a,b,c");
-  command.add_option("--view", options.view, fmt::format("{}", fmt::join(show_names(), "|")))
+  command.add_option("--view", options.view, fmt::format("{}", fmt::join(names_of<Show>(), "|")))
       ->type_name("VIEW")
       ->capture_default_str();
   command

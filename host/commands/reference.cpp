@@ -15,6 +15,7 @@
 #include "reference/traced_view.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -22,7 +23,7 @@ namespace {
 
 struct Options {
   std::string scene, model, camera, output, stats;
-  std::vector<std::string> views = {"full"};
+  std::vector<std::string> views = {std::string(name_of(Show::full))};
   int width = 960, height = 540;
   TracingOptions tracing;
 };
@@ -53,9 +54,10 @@ nlohmann::json resolved(const Options& options, const Camera& camera) {
 }
 
 Image compose(const reference::TracedImage& traced, const std::vector<std::string>& views) {
-  if (views.size() == 1) return traced_view(traced, show_named(views[0]));
+  if (views.size() == 1) return traced_view(traced, named<Show>("--view", views[0]));
   Image image;
-  for (const std::string& view : views) append_layer(image, traced_view(traced, show_named(view)), view);
+  for (const std::string& view : views)
+    append_layer(image, traced_view(traced, named<Show>("--view", view)), view);
   return image;
 }
 
@@ -81,7 +83,7 @@ void write_outputs(const Options& options, const Camera& camera, const reference
 
 void run(const Options& options) {
   const reference::PathTracerOptions tracing = options.tracing.resolved();
-  for (const std::string& view : options.views) show_named(view);
+  for (const std::string& view : options.views) named<Show>("--view", view);
   check_outputs(options);
   const Scene scene = load_scene(options.scene, {options.model});
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
@@ -107,7 +109,7 @@ void add_options(CLI::App& command, Options& options) {
       ->required();
   command.add_option("--model", options.model, "replaces the scene file's model")->type_name("PATH");
   command.add_option("--camera", options.camera, "by name (default: the scene's first)")->type_name("NAME");
-  command.add_option("--view", options.views, fmt::format("{}", fmt::join(show_names(), "|")))
+  command.add_option("--view", options.views, fmt::format("{}", fmt::join(names_of<Show>(), "|")))
       ->delimiter(',')
       ->type_name("VIEW")
       ->capture_default_str();

@@ -14,6 +14,7 @@
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
+#include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
 
@@ -32,15 +33,15 @@ struct Options {
 };
 
 /// FILE.png, or FILE.VIEW.png where there are several.
-fs::path png_path(const fs::path& output, const std::string& view, bool several) {
+fs::path png_path(const fs::path& output, Show view, bool several) {
   if (!several) return output;
   fs::path path = output;
-  return path.replace_extension("." + view + output.extension().string());
+  return path.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
 }
 
 std::vector<Show> parse_views(const std::vector<std::string>& names) {
   std::vector<Show> views;
-  for (const std::string& name : names) views.push_back(show_named(name));
+  for (const std::string& name : names) views.push_back(named<Show>("--view", name));
   if (views.empty()) views.push_back(Show::full);
   return views;
 }
@@ -54,7 +55,7 @@ void check_outputs(const Options& options, const std::vector<Show>& views) {
   }
   if (extension == ".exr") check_writable(options.output);
   for (const Show view : views) {
-    if (extension == ".png") check_writable(png_path(options.output, name_of(view), views.size() > 1));
+    if (extension == ".png") check_writable(png_path(options.output, view, views.size() > 1));
   }
   if (!options.stats.empty()) check_writable(options.stats);
   if (!options.dump.empty()) {
@@ -77,14 +78,16 @@ void write_images(Frame& frame, const Options& options, const std::vector<Show>&
   if (output.extension() == ".exr") {
     Image all;
     for (const Show view : views) {
-      append_layer(all, view_image(frame, view), views.size() == 1 ? "" : name_of(view));
+      append_layer(all, view_image(frame, view),
+                   views.size() == 1 ? std::string() : std::string(name_of(view)));
     }
     all.metadata = metadata;
     return write_exr(output, all);
   }
+  const ToneMap curve = named<ToneMap>("--tonemap", options.tonemap);
   for (const Show view : views) {
-    const Image shown = display_image(view_image(frame, view), exposure, parse_tone_map(options.tonemap));
-    write_png(png_path(output, name_of(view), views.size() > 1), shown);
+    const Image shown = display_image(view_image(frame, view), exposure, curve);
+    write_png(png_path(output, view, views.size() > 1), shown);
   }
 }
 
@@ -99,7 +102,7 @@ void dump_volume(Session& session, const Options& options, const CascadeVolumes&
 
 void run(const Options& options, const Shared& shared) {
   const std::vector<Show> views = parse_views(options.views);
-  parse_tone_map(options.tonemap);
+  named<ToneMap>("--tonemap", options.tonemap);
   check_outputs(options, views);
   FrameStats stats;
   Progress progress("render", 4);
@@ -166,7 +169,7 @@ void add_render(CLI::App& app, Shared& shared) {
   command
       ->add_option("--view", options->views,
                    fmt::format("what to write ({}); several: layers of one EXR, or FILE.VIEW.png",
-                               fmt::join(show_names(), "|")))
+                               fmt::join(names_of<Show>(), "|")))
       ->delimiter(',')
       ->type_name("VIEW")
       ->default_str("full");

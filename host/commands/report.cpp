@@ -131,7 +131,7 @@ void run(const Options& options, const Shared& shared) {
     add_views(contents.views, session, options, subject, quality_cache(options.cache) / "references");
   session.store_programs();
   const RenderOptions best;
-  contents.marked = {"paper", "best", best.basis + " " + best.transport};
+  contents.marked = {"paper", "best", fmt::format("{} {}", best.basis, name_of(best.transport))};
   contents.subtitle =
       fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels", CLPV_VERSION, session.device().name,
                   session.device().platform, session.device().driver, options.width, options.height);

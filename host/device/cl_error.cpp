@@ -11,7 +11,7 @@ std::string advice(cl_int code) {
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:
     case CL_OUT_OF_RESOURCES:
     case CL_OUT_OF_HOST_MEMORY:
-      return "; the device is out of memory or of registers: try a smaller --grid, --rsm-size or image";
+      return "; the device is out of memory or of registers: try a smaller grid, rsm-size or image";
     case CL_DEVICE_NOT_AVAILABLE:
       return "; the device is busy, was reset or is gone";
     case CL_INVALID_WORK_GROUP_SIZE:

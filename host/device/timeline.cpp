@@ -6,7 +6,7 @@ namespace clpv {
 
 void Timeline::begin(StageMark mark) {
   const auto same = [&](const Entry& entry) {
-    return entry.mark.stage == mark.stage && entry.mark.cascade == mark.cascade &&
+    return entry.mark.pass == mark.pass && entry.mark.cascade == mark.cascade &&
            entry.mark.light == mark.light;
   };
   const auto found = std::find_if(entries_.begin(), entries_.end(), same);

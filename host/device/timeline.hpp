@@ -4,14 +4,15 @@
 #include <CL/opencl.hpp>
 #include <chrono>
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "options/stages.hpp"
 
 namespace clpv {
 
-/// Which stage a launch belongs to. `cascade` counts from 0 (finest); `light` indexes Scene::lights.
+/// What a launch belongs to. `cascade` counts from 0 (finest); `light` indexes Scene::lights.
 struct StageMark {
-  std::string stage;
+  Pass pass;
   std::optional<int> cascade = std::nullopt;
   std::optional<int> light = std::nullopt;
 };

@@ -1,21 +1,11 @@
 #include "image/tone_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <utility>
-
-#include "support/error.hpp"
+#include <stdexcept>
 
 namespace clpv {
-namespace {
-
-constexpr std::array<std::pair<std::string_view, ToneMap>, 3> kCurves{
-    {{"none", ToneMap::none}, {"reinhard", ToneMap::reinhard}, {"aces", ToneMap::aces}}};
-
-}  // namespace
-
 float luminance(const glm::vec3& linear) {
   return 0.2126f * linear.r + 0.7152f * linear.g + 0.0722f * linear.b;
 }
@@ -24,8 +14,16 @@ glm::vec3 tone_curve(ToneMap curve, const glm::vec3& linear) {
   // Beyond this every curve shows white; it keeps infinity away from inf/inf.
   const glm::vec3 x = glm::clamp(linear, 0.0f, 1e6f);
   glm::vec3 shown = x;
-  if (curve == ToneMap::reinhard) shown = x / (1.0f + luminance(x));
-  if (curve == ToneMap::aces) shown = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
+  switch (curve) {
+    case ToneMap::none:
+      break;
+    case ToneMap::reinhard:
+      shown = x / (1.0f + luminance(x));
+      break;
+    case ToneMap::aces:
+      shown = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
+      break;
+  }
   return glm::clamp(shown, 0.0f, 1.0f);
 }
 
@@ -35,21 +33,6 @@ float srgb_encode(float linear) {
 
 float srgb_decode(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-ToneMap parse_tone_map(std::string_view name) {
-  std::string known;
-  for (const auto& [text, curve] : kCurves) {
-    if (name == text) return curve;
-    known += fmt::format(" {}", text);
-  }
-  throw Error(ExitCode::usage, "no tone curve '{}'; there are:{}", name, known);
-}
-
-std::string_view name_of(ToneMap curve) {
-  return std::find_if(kCurves.begin(), kCurves.end(),
-                      [=](const auto& entry) { return entry.second == curve; })
-      ->first;
 }
 
 Image display_image(const Image& image, float exposure, ToneMap curve) {

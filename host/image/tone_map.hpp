@@ -10,6 +10,18 @@ namespace clpv {
 
 enum class ToneMap { none, reinhard, aces };
 
+constexpr std::string_view name_of(ToneMap curve) {
+  switch (curve) {
+    case ToneMap::none:
+      return "none";
+    case ToneMap::reinhard:
+      return "reinhard";
+    case ToneMap::aces:
+      return "aces";
+  }
+  return {};
+}
+
 /// The tone curve on linear colour, into [0,1].
 /// none: clamped. reinhard: E. Reinhard et al. 2002, eq. 3, L/(1+L) on the luminance, then clamped.
 /// aces: K. Narkowicz's fit of the ACES RRT+ODT (2015), (x(2.51x+.03)) / (x(2.43x+.59)+.14), a channel at a
@@ -22,10 +34,6 @@ float srgb_decode(float encoded);
 
 /// Rec. 709 luminance.
 float luminance(const glm::vec3& linear);
-
-/// Throws Error(usage) that lists what there is.
-ToneMap parse_tone_map(std::string_view name);
-std::string_view name_of(ToneMap curve);
 
 /// What a display shows of `image` (linear, channels R,G,B and perhaps A): colour x 2^exposure through the
 /// curve and sRGB-encoded; alpha as it is, and colour 0 where alpha is 0.

@@ -9,31 +9,12 @@
 namespace clpv {
 namespace {
 
-InjectOptions inject_options(const RenderOptions& options, const Transport& transport) {
-  return {.grid = options.grid,
-          .trilinear = options.injection == "trilinear",
-          .blocking = options.blocked_by(),
-          .unit_flux_lobes = transport.unit_flux_lobes,
-          .lobes = options.lobes(),
-          .table = options.table_storage(),
-          .format = options.format()};
-}
-
-GatherOptions gather_options(const RenderOptions& options) {
-  return {.grid = options.grid,
-          .gather_offset = options.gather_offset,
-          .floor = options.gather_floor,
-          .lobes = options.lobes(),
-          .table = options.table_storage(),
-          .format = options.format()};
-}
-
 VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
   return {options.grid, basis.size(), 3};
 }
 
 VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis) {
-  return {options.grid + 1, blocking_size(options.blocked_by(), basis), 1};
+  return {options.grid + 1, blocking_size(options.blocking, basis), 1};
 }
 
 /// Bytes of the volumes of a frame at this grid.
@@ -44,7 +25,7 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
     return static_cast<double>(stored_bytes(options.format(), shape));
   };
   const double light = bytes(light_shape(tried, basis));
-  const double carried = bytes({grid, options.travelling() == State::fluxes ? 6 : basis.size(), 3});
+  const double carried = bytes({grid, options.state == State::fluxes ? 6 : basis.size(), 3});
   // Images, which are not updated in place, come with spare ones, and with planes to inject into.
   const double spare = options.format().layout == Layout::image ? 3 * light + carried : 0.0;
   return light * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) + 3 * carried +
@@ -63,11 +44,16 @@ void require_memory(const Session& session, const RenderOptions& options, const 
   int grid = options.grid;
   while (grid > 1 && !fits(grid)) --grid;
   throw Error(ExitCode::run_time,
-              "--grid {}: light volumes of {} need {:.0f} MiB; {} has {} MiB, {} MiB a buffer; the largest "
+              "grid {}: light volumes of {} need {:.0f} MiB; {} has {} MiB, {} MiB a buffer; the largest "
               "grid that fits "
               "is {}",
               options.grid, basis.name(), volume_bytes(options, basis, options.grid) / 1048576, device.name,
               device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
+}
+
+PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
+  options.lanes = tuning.lanes, options.local = tuning.local;
+  return options;
 }
 
 const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis) {
@@ -83,18 +69,11 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       scene_(scene),
       basis_(make_basis(options)),
       options_(checked(session, options, *basis_)),
-      transport_(make_transport(options.transport, *basis_, options.lobes(), options.blocked_by())),
+      transport_(make_transport(options, *basis_)),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
-      injector_(session, *basis_, inject_options(options, transport_)),
-      propagator_(session, *basis_, transport_,
-                  {.grid = options.grid,
-                   .state = options.travelling(),
-                   .lobe_time = options.lobes_made(),
-                   .table = options.table_storage(),
-                   .format = options.format(),
-                   .lanes = tuning.lanes,
-                   .local = tuning.local}),
+      injector_(session, *basis_, inject_options(options, transport_.unit_flux_lobes)),
+      propagator_(session, *basis_, transport_, tuned(propagate_options(options), tuning)),
       gatherer_(session, *basis_, transport_, gather_options(options)),
       shader_(session),
       injected_(session, light_shape(options, *basis_), "injected light", options.format()) {
@@ -137,7 +116,7 @@ void Frame::prepare_lights(const Camera& camera) {
 }
 
 void Frame::rasterize_camera(const Camera& camera) {
-  const StageScope scope(session_, {"rasterize-camera"});
+  const StageScope scope(session_, {Pass::rasterize_camera});
   const ClpvView view = camera_view(camera, options_.width, options_.height);
   if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, true);
   camera_surface_->view = view;
@@ -146,7 +125,7 @@ void Frame::rasterize_camera(const Camera& camera) {
 
 void Frame::rasterize_shadows() {
   for (LitLight& lit : lights_) {
-    const StageScope scope(session_, {"rasterize-shadow", {}, lit.index});
+    const StageScope scope(session_, {Pass::rasterize_shadow, {}, lit.index});
     for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
       rasterizer_.rasterize_shadow(lit.shadow.views[v], lit.shadow.depths[v]);
     }
@@ -157,11 +136,12 @@ void Frame::rasterize_rsms(int cascade) {
   for (LitLight& lit : lights_) {
     // Only a directional light's map follows the cascade; others see all they light from where they stand.
     if (cascade > 0 && lit.light.kind != CLPV_LIGHT_DIRECTIONAL) continue;
-    const StageScope scope(session_, {"rasterize-rsm", cascade, lit.index});
+    const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
     const auto views =
         rsm_views(lit.light, grids_[static_cast<std::size_t>(cascade)], buffers_.bounds, options_.rsm_size);
     for (std::size_t v = 0; v < views.size(); ++v) {
-      if (lit.rsms.size() <= v) lit.rsms.push_back(make_surface(session_, views[v], options_.rsm(), false));
+      if (lit.rsms.size() <= v)
+        lit.rsms.push_back(make_surface(session_, views[v], options_.rsm_format, false));
       lit.rsms[v].view = views[v];
       rasterizer_.rasterize_rsm(scaled(lit.light, light_scale_), lit.rsms[v]);
     }
@@ -171,14 +151,14 @@ void Frame::rasterize_rsms(int cascade) {
 void Frame::inject(int cascade) {
   const ClpvGrid& grid = grids_[static_cast<std::size_t>(cascade)];
   {
-    const StageScope scope(session_, {"inject-light", cascade});
+    const StageScope scope(session_, {Pass::inject_light, cascade});
     injected_.clear(session_);
     for (const LitLight& lit : lights_) {
       for (const Surface& rsm : lit.rsms) injector_.inject_light(rsm, grid, injected_);
     }
   }
   if (!geometry_) return;
-  const StageScope scope(session_, {"inject-geometry", cascade});
+  const StageScope scope(session_, {Pass::inject_geometry, cascade});
   geometry_->clear(session_);
   for (const LitLight& lit : lights_) {
     for (const Surface& rsm : lit.rsms) injector_.inject_geometry(rsm, grid, *geometry_);
@@ -191,7 +171,7 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
   inject(cascade);
   const auto c = static_cast<std::size_t>(cascade);
   {
-    const StageScope scope(session_, {"propagate", cascade});
+    const StageScope scope(session_, {Pass::propagate, cascade});
     propagator_.propagate({injected_, geometry_.get(), *accumulated_[c], late_[c].get()},
                           options_.iterations);
   }
@@ -200,7 +180,7 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
 
 void Frame::carry_late_light() {
   for (std::size_t c = accumulated_.size() - 1; c-- > 0;) {
-    const StageScope scope(session_, {"carry-late", static_cast<int>(c)});
+    const StageScope scope(session_, {Pass::carry_late, static_cast<int>(c)});
     for (Volume* sum : {accumulated_[c].get(), late_[c].get()}) {
       if (sum != nullptr) late_carrier_->carry(*late_[c + 1], grids_[c + 1], *sum, grids_[c]);
     }
@@ -220,12 +200,12 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   std::vector<const Volume*> accumulated;
   for (const auto& volume : accumulated_) accumulated.push_back(volume.get());
   {
-    const StageScope scope(session_, {"gather"});
+    const StageScope scope(session_, {Pass::gather});
     gatherer_.gather(*camera_surface_, grids_, accumulated, irradiance_, light_scale_);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);
-  const StageScope scope(session_, {"shade"});
+  const StageScope scope(session_, {Pass::shade});
   shader_.light(*camera_surface_, shadowed);
   shader_.show(Show::full, *camera_surface_, irradiance_, image_);
   shown_ = Show::full;

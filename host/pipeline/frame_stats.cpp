@@ -68,7 +68,7 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
   };
   nlohmann::json stages = nlohmann::json::array(), energy = nlohmann::json::array();
   for (const StageTime& time : median_times(stages_)) {
-    stages.push_back({{"stage", time.mark.stage},
+    stages.push_back({{"stage", name_of(time.mark.pass)},
                       {"cascade", number_or_null(time.mark.cascade)},
                       {"light", number_or_null(time.mark.light)},
                       {"ms", time.ms},

@@ -10,23 +10,13 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "options/stage_options.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/stencil.hpp"
 #include "pipeline/surface.hpp"
 #include "pipeline/volume.hpp"
 
 namespace clpv {
-
-struct GatherOptions {
-  int grid = 32;               ///< cells along each axis of every cascade
-  double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
-  double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
-  double floor = 0;            ///< E is at least so much of its mean over all normals, in [0, 1]
-  LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
-  TableStorage table = TableStorage::buffer;
-  VolumeFormat format = {};  ///< of the cascades' volumes
-  bool filtered = true;  ///< images: sampled by the device's filter; else from texels, in single precision
-};
 
 /// The gathering of one basis and transport. E(n) = g(n) . M c / s^2 by GatherForm, c the volume
 /// sampled trilinearly `gather_offset` cells off the surface, negative E clamped at 0.

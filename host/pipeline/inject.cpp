@@ -56,7 +56,7 @@ Injector::Injector(Session& session, const Basis& basis, const InjectOptions& op
       strip_(session.device().type == "cpu" ? kCpuStrip : 1) {}
 
 bool Injector::looks_up(Kind kind) const {
-  return kind == Kind::light || options_.blocking != Blocking::areas;
+  return kind == Kind::light || blocks_by_lobes(options_.blocking);
 }
 
 Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format, int stride) {

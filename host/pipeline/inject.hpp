@@ -9,6 +9,7 @@
 #include "basis/blocking.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "options/stage_options.hpp"
 #include "pipeline/convert.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/sort_by_cell.hpp"
@@ -16,16 +17,6 @@
 #include "pipeline/volume.hpp"
 
 namespace clpv {
-
-struct InjectOptions {
-  int grid = 32;           ///< cells along each axis
-  bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
-  Blocking blocking = Blocking::two_sided;
-  bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
-  LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
-  TableStorage table = TableStorage::buffer;
-  VolumeFormat format = {};  ///< of the volumes injected into
-};
 
 /// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own
 /// texels in their order in the surface. Keeps scratch memory for the largest surface injected.

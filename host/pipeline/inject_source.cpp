@@ -122,9 +122,16 @@ std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool tri
 }
 
 std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blocking blocking) {
-  return coefficient_macros(blocking_size(blocking, basis)) +
-         (blocking == Blocking::areas ? area_blockers()
-                                      : lobe_blockers(basis, lobes, blocking == Blocking::two_sided));
+  const std::string macros = coefficient_macros(blocking_size(blocking, basis));
+  switch (blocking) {
+    case Blocking::areas:
+      return macros + area_blockers();
+    case Blocking::two_sided:
+      return macros + lobe_blockers(basis, lobes, true);
+    case Blocking::one_sided:
+      return macros + lobe_blockers(basis, lobes, false);
+  }
+  return macros;
 }
 
 std::size_t inject_keys(int grid, bool trilinear, bool geometry) {

@@ -17,10 +17,10 @@ std::optional<ZonalTable> table_of(const Basis& basis, const LobeOptions& option
 
 void require_image(const Device& device, int entries) {
   if (!device.images)
-    throw Error(ExitCode::device, "--table image: {} has no images; allowed: buffer", device.name);
+    throw Error(ExitCode::device, "table image: {} has no images; allowed: buffer", device.name);
   const std::size_t most = device.handle.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
   if (static_cast<std::size_t>(entries) > most) {
-    throw Error(ExitCode::device, "--table image: {} entries; an image of a buffer on {} holds {}", entries,
+    throw Error(ExitCode::device, "table image: {} entries; an image of a buffer on {} holds {}", entries,
                 device.name, most);
   }
 }

@@ -8,10 +8,9 @@
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "device/session.hpp"
+#include "options/choices.hpp"
 
 namespace clpv {
-
-enum class TableStorage { buffer, image };
 
 /// Which table a kernel looks things up in, if any.
 enum class TableUse { lobes, functions };

@@ -2,7 +2,6 @@
 // & Dachsbacher 2010).
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
+#include "options/stage_options.hpp"
 #include "pipeline/run_time_lobes.hpp"
 #include "pipeline/running_sum.hpp"
 #include "pipeline/stencil.hpp"
@@ -18,19 +18,6 @@
 #include "pipeline/volume.hpp"
 
 namespace clpv {
-
-struct PropagateOptions {
-  int grid = 32;  ///< cells along each axis
-  State state = State::coefficients;
-  LobeTime lobe_time = LobeTime::host;
-  TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
-  VolumeFormat format = {};                   ///< of all volumes
-  int lanes = 0;                              ///< as in StencilOptions, and so is `local`
-  std::array<std::size_t, 2> local = {0, 1};
-
-  /// Lobes made in the kernel are those of one cell.
-  StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes, local}; }
-};
 
 /// What a propagation reads and writes. The caller owns the volumes; all have `grid` cells, geometry one more
 /// a side.

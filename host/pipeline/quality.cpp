@@ -25,7 +25,7 @@ Image shown(Frame& frame, Show show) {
 }
 
 void fill_errors(QualityCell& cell, const Image& image, const reference::Reference& truth, Show show) {
-  const Image layer = extract_layer(truth.image, name_of(show), truth.file.string());
+  const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
   const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
   cell.nrmse = c.nrmse_valid;
   cell.best_gain = c.best_gain;
@@ -40,7 +40,7 @@ void fill_errors(QualityCell& cell, const Image& image, const reference::Referen
 std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bool& from_events) {
   std::map<std::string, double> sums;
   for (const StageTime& time : times) {
-    sums[time.mark.stage] += time.ms;
+    sums[std::string(name_of(time.mark.pass))] += time.ms;
     from_events = from_events && time.from_events;
   }
   return sums;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/options.hpp"
+#include "options/render_options.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -26,13 +26,13 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 VariedOption parse_varied(const std::string& text) {
   const auto equals = text.find('=');
-  if (equals == std::string::npos) throw Error(ExitCode::usage, "--vary {}: allowed: OPTION=a,b,c", text);
+  if (equals == std::string::npos) throw Error(ExitCode::usage, "vary {}: allowed: OPTION=a,b,c", text);
   VariedOption varied{text.substr(0, equals), {}};
   for (const std::string& value : split(text.substr(equals + 1), ',')) {
     RenderOptions probe;
     set_option(probe, varied.name, value);  // throws for an unknown option or a bad value
     if (std::ranges::count(varied.values, value) > 0) {
-      throw Error(ExitCode::usage, "--vary {}: {} comes twice", text, value);
+      throw Error(ExitCode::usage, "vary {}: {} comes twice", text, value);
     }
     varied.values.push_back(value);
   }
@@ -44,7 +44,7 @@ std::vector<Variant> combinations(const std::vector<VariedOption>& varied) {
   for (const VariedOption& option : varied) {
     const auto same = [&](const VariedOption& other) { return other.name == option.name; };
     if (std::ranges::count_if(varied, same) > 1) {
-      throw Error(ExitCode::usage, "--vary {}: the option comes twice", option.name);
+      throw Error(ExitCode::usage, "vary {}: the option comes twice", option.name);
     }
     std::vector<Variant> longer;
     for (const Variant& variant : all) {

@@ -11,8 +11,8 @@ namespace {
 std::vector<cl_float4> normals_of(const Transport& transport) {
   const auto* scheme = std::get_if<FaceTransport>(&transport.scheme);
   if (scheme == nullptr) {
-    throw Error(ExitCode::usage, "--lobe-time kernel: transport '{}' has no lobes; allowed: host",
-                transport.name);
+    throw Error(ExitCode::usage, "lobe-time kernel: transport '{}' has no lobes; allowed: host",
+                name_of(transport.kind));
   }
   std::vector<cl_float4> normals;
   for (const Face& face : scheme->faces) {
@@ -30,9 +30,8 @@ RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport
       text_(lobe_source(basis, transport.lobes, false)),
       unit_flux_(transport.unit_flux_lobes) {
   if (state == State::fluxes) {
-    throw Error(
-        ExitCode::usage,
-        "--lobe-time kernel: with --state fluxes no step makes lobes; allowed: host, or coefficients");
+    throw Error(ExitCode::usage,
+                "lobe-time kernel: with state fluxes no step makes lobes; allowed: host, or coefficients");
   }
   const std::vector<cl_float4> normals = normals_of(transport);
   faces_ = normals.size();

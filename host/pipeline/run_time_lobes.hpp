@@ -1,4 +1,4 @@
-// Lobes that propagation makes in its kernel, thirty a cell and step, as the paper does (`--lobe-time kernel`): slow, and
+// Lobes that propagation makes in its kernel, thirty a cell and step, as the paper does (LobeTime::kernel): slow, and
 // the same light as lobes that are constants.
 #pragma once
 
@@ -12,11 +12,6 @@
 #include "pipeline/transport_source.hpp"
 
 namespace clpv {
-
-enum class LobeTime {
-  host,    ///< constants of the step's code
-  kernel,  ///< made from each face's normal, read from memory, and rotated ones from a table
-};
 
 /// What kernels/run_time_lobes.h needs.
 class RunTimeLobes {

@@ -35,25 +35,6 @@ void require_fit(const ShadowedLight& shadowed) {
 
 }  // namespace
 
-const std::vector<std::string>& show_names() {
-  static const std::vector<std::string> names = {"full",   "direct", "indirect", "irradiance",
-                                                 "albedo", "normal", "depth"};
-  return names;
-}
-
-const std::string& name_of(Show show) {
-  return show_names().at(static_cast<std::size_t>(show));
-}
-
-Show show_named(std::string_view name) {
-  const std::vector<std::string>& names = show_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw Error(ExitCode::usage, "there is no view '{}'; there are {}", name, fmt::join(names, ", "));
-  }
-  return static_cast<Show>(found - names.begin());
-}
-
 Shader::Shader(Session& session)
     : session_(session),
       light_(session.kernel(source(), "light_surfaces")),

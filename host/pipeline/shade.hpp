@@ -3,33 +3,14 @@
 #pragma once
 
 #include <CL/opencl.hpp>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "device/session.hpp"
 #include "kernels/shared/light.h"
-#include "kernels/shared/shade.h"
+#include "options/show.hpp"
 #include "pipeline/surface.hpp"
 
 namespace clpv {
-
-/// What an image shows; units and meaning in kernels/shared/shade.h. full = direct + indirect.
-enum class Show : unsigned {
-  full = CLPV_SHOW_FULL,
-  direct = CLPV_SHOW_DIRECT,
-  indirect = CLPV_SHOW_INDIRECT,
-  irradiance = CLPV_SHOW_IRRADIANCE,
-  albedo = CLPV_SHOW_ALBEDO,
-  normal = CLPV_SHOW_NORMAL,
-  depth = CLPV_SHOW_DEPTH,
-};
-
-/// "full", "direct", ...: in the order of Show.
-const std::vector<std::string>& show_names();
-const std::string& name_of(Show show);
-/// Throws Error(usage) for another name, listing those there are.
-Show show_named(std::string_view name);
 
 /// A light and the maps its shadows come from: a depth buffer a view (float a texel, row 0 first, [m] along
 /// the view's forward axis, 0: nothing there). Several views share their eye and together see all that is

@@ -5,18 +5,10 @@
 #include <cstddef>
 
 #include "device/session.hpp"
+#include "options/stage_options.hpp"
 #include "pipeline/volume_format.hpp"
 
 namespace clpv {
-
-/// What shapes such a launch. Work-items lie along x, y, z; along x each serves `lanes` cells.
-struct StencilOptions {
-  int grid = 32;             ///< cells along each axis
-  VolumeFormat format = {};  ///< of all volumes a kernel reaches
-  int lanes = 0;             ///< 1 or 8; 0: what suits device and format
-  /// Work-group size along x, y; x 0: rows as long as the grid's, at most 64 work-items.
-  std::array<std::size_t, 2> local = {0, 1};
-};
 
 /// StencilOptions with the device's choices made.
 class Stencil {

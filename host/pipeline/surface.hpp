@@ -7,7 +7,7 @@
 
 #include "device/session.hpp"
 #include "kernels/shared/view.h"
-#include "pipeline/options.hpp"
+#include "options/choices.hpp"
 
 namespace clpv {
 

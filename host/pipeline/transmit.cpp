@@ -104,7 +104,7 @@ TransmitSource transmit_source(const Basis& basis, const Transport& transport) {
   TransmitSource result;
   // Of three areas each way looks up one or two: nothing for mirrors to share.
   std::optional<Mirrors> mirrors;
-  if (transport.blocking != Blocking::areas) mirrors = mirrors_of(basis);
+  if (blocks_by_lobes(transport.blocking)) mirrors = mirrors_of(basis);
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
   result.ways = faces != nullptr
                     ? add_faces(out, mirrors, *faces)

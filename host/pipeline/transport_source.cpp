@@ -180,8 +180,8 @@ std::string arrive_macro(const Generated& out) {
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
   if (faces == nullptr && (form.source == State::fluxes || form.target == State::fluxes)) {
-    throw Error(ExitCode::usage, "--state fluxes: transport '{}' has no faces; allowed: coefficients",
-                transport.name);
+    throw Error(ExitCode::usage, "state fluxes: transport '{}' has no faces; allowed: coefficients",
+                name_of(transport.kind));
   }
   Generated out;
   if (faces != nullptr) {

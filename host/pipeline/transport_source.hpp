@@ -5,14 +5,10 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "options/choices.hpp"
 #include "pipeline/linear_code.hpp"
 
 namespace clpv {
-
-/// What travels from cell to cell. `coefficients`: the N of the basis. `fluxes`: what a face transport's cell
-/// received through its six faces, whatever N is; the N coefficients come back at the end
-/// (docs/method.md, 'Propagation').
-enum class State { coefficients, fluxes };
 
 /// One step's form: what the source cells hold and what a cell gains, how many numbers each.
 struct StepForm {

@@ -5,13 +5,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/options.hpp"
-#include "pipeline/volume_format.hpp"
+#include "options/render_options.hpp"
 #include "scene/json_schema.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"
+#include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -22,15 +22,16 @@ constexpr double kWidestGroup = 4096;  // work-items along an axis; devices refu
 /// Everything a tuning depends on, this version of the kernels included.
 std::string key_of(const Device& device, const TuningSubject& s) {
   return fmt::format("{}\n{}\n{}\n{}\n{}\npropagate {} {} {} {} {} {}", device.platform,
-                     device.platform_version, device.name, device.driver, CLPV_VERSION, s.basis, s.transport,
-                     s.state, s.grid, s.storage, s.layout);
+                     device.platform_version, device.name, device.driver, CLPV_VERSION, s.basis,
+                     name_of(s.transport), name_of(s.state), s.grid, name_of(s.storage),
+                     s.layout ? name_of(*s.layout) : std::string_view());
 }
 
 void require_sound(const nlohmann::json& entry, const std::string& file) {
   const std::vector<Rule> rules = {rule::object(""),
                                    rule::integer("/schema", 1, 1).must(),
                                    rule::text("/key").must(),
-                                   rule::text("/layout", layout_names()).must(),
+                                   rule::text("/layout", names_of<Layout>()).must(),
                                    rule::choice("/lanes", {1, 8}).must(),
                                    rule::list("/local", 2, 2).must(),
                                    rule::integer("/local/*", 1, kWidestGroup)};
@@ -38,6 +39,11 @@ void require_sound(const nlohmann::json& entry, const std::string& file) {
 }
 
 }  // namespace
+
+TuningSubject tuning_subject(const RenderOptions& options, bool any_layout) {
+  return {options.basis, options.transport, options.state,
+          options.grid,  options.storage,   any_layout ? std::nullopt : std::optional(options.layout)};
+}
 
 std::optional<TuningCache> TuningCache::of_user() {
   if (const auto folder = user_cache_folder()) return TuningCache(*folder);
@@ -61,7 +67,9 @@ std::optional<Tuning> TuningCache::load(const Device& device, const TuningSubjec
     return std::nullopt;
   }
   if (entry.at("key") != key_of(device, subject)) return std::nullopt;
-  return Tuning{{entry.at("local")[0], entry.at("local")[1]}, entry.at("lanes"), entry.at("layout")};
+  return Tuning{{entry.at("local")[0], entry.at("local")[1]},
+                entry.at("lanes"),
+                named<Layout>("layout", entry.at("layout").get<std::string>())};
 }
 
 void TuningCache::store(const Device& device, const TuningSubject& subject, const Tuning& tuning) const {
@@ -71,7 +79,7 @@ void TuningCache::store(const Device& device, const TuningSubject& subject, cons
   if (failed) throw Error(ExitCode::run_time, "{}: {}", folder_.string(), failed.message());
   const nlohmann::json entry = {{"schema", 1},
                                 {"key", key_of(device, subject)},
-                                {"layout", tuning.layout},
+                                {"layout", name_of(tuning.layout)},
                                 {"lanes", tuning.lanes},
                                 {"local", tuning.local}};
   write_file(file, entry.dump(2) + "\n");
@@ -80,17 +88,15 @@ void TuningCache::store(const Device& device, const TuningSubject& subject, cons
 Tuning tuning_for(const Device& device, RenderOptions& options, bool choose_layout) {
   const auto cache = TuningCache::of_user();
   if (!cache) return {};
-  TuningSubject subject{options.basis, options.transport, options.state, options.grid, options.storage, {}};
   if (choose_layout) {
-    if (const auto best = cache->load(device, subject)) options.layout = best->layout;
+    if (const auto best = cache->load(device, tuning_subject(options, true))) options.layout = best->layout;
   }
-  subject.layout = options.layout;
-  const auto tuning = cache->load(device, subject);
+  const auto tuning = cache->load(device, tuning_subject(options));
   if (!tuning) {
     spdlog::debug("propagation of {} is not tuned for {}", options.basis, device.name);
     return {};
   }
-  spdlog::debug("tuned: layout {}, {} cells a work-item, work-groups of {} x {}", tuning->layout,
+  spdlog::debug("tuned: layout {}, {} cells a work-item, work-groups of {} x {}", name_of(tuning->layout),
                 tuning->lanes, tuning->local[0], tuning->local[1]);
   return *tuning;
 }

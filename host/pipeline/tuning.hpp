@@ -7,7 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "basis/transport.hpp"
 #include "device/device.hpp"
+#include "options/choices.hpp"
 
 namespace clpv {
 
@@ -15,17 +17,22 @@ struct RenderOptions;
 
 /// What a tuning is for: one propagation. Results do not depend on it but for rounding.
 struct TuningSubject {
-  std::string basis, transport, state;
-  int grid = 32;
-  std::string storage = "float";
-  std::string layout;  ///< empty: the best layout is asked for; else the best shape on this one
+  std::string basis;
+  TransportKind transport;
+  State state;
+  int grid;
+  Storage storage;
+  std::optional<Layout> layout;  ///< none: the best layout is asked for; else the best shape on this one
 };
+
+/// The propagation of these options; `any_layout`: without their layout.
+TuningSubject tuning_subject(const RenderOptions& options, bool any_layout = false);
 
 /// Work-group size along x, y and cells a work-item serves (StencilOptions); and the layout they are for.
 struct Tuning {
   std::array<std::size_t, 2> local = {0, 1};
   int lanes = 0;
-  std::string layout = "soa";
+  Layout layout = Layout::soa;
   bool operator==(const Tuning&) const = default;
 };
 

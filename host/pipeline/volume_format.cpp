@@ -2,20 +2,31 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
 
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 namespace {
 
-constexpr std::array<std::string_view, 4> kLayoutNames{"soa", "aos", "tiled", "image"};
-constexpr std::array<std::string_view, 4> kLayoutLiterals{"CLPV_SOA", "CLPV_AOS", "CLPV_TILED", "CLPV_IMAGE"};
 constexpr int kTile = 8;   // samples of a block of layout `tiled`
 constexpr int kTexel = 4;  // coefficients of a texel
 constexpr int kMostLanes = 8;
+
+const char* literal_of(Layout layout) {
+  switch (layout) {
+    case Layout::image:
+      return "CLPV_IMAGE";
+    case Layout::aos:
+      return "CLPV_AOS";
+    case Layout::soa:
+      return "CLPV_SOA";
+    case Layout::tiled:
+      return "CLPV_TILED";
+  }
+  return "";
+}
 
 std::size_t size(int value) {
   return static_cast<std::size_t>(value);
@@ -45,43 +56,14 @@ std::size_t bordered(const VolumeShape& shape) {
 
 }  // namespace
 
-std::vector<std::string> layout_names() {
-  return {"image", "aos", "soa", "tiled"};
-}
-
-std::vector<std::string> storage_names() {
-  return {"float", "half"};
-}
-
-std::string layout_name(Layout layout) {
-  return std::string(kLayoutNames[static_cast<std::size_t>(layout)]);
-}
-
-std::string storage_name(Storage storage) {
-  return storage == Storage::float16 ? "half" : "float";
-}
-
 std::string format_name(const VolumeFormat& format) {
-  return fmt::format("{}/{}", layout_name(format.layout), storage_name(format.storage));
-}
-
-VolumeFormat volume_format(std::string_view layout, std::string_view storage) {
-  const auto found = std::find(kLayoutNames.begin(), kLayoutNames.end(), layout);
-  if (found == kLayoutNames.end()) {
-    throw Error(ExitCode::usage, "--layout: found '{}', allowed: {}", layout, fmt::join(layout_names(), "|"));
-  }
-  if (storage != "float" && storage != "half") {
-    throw Error(ExitCode::usage, "--storage: found '{}', allowed: {}", storage,
-                fmt::join(storage_names(), "|"));
-  }
-  return {static_cast<Layout>(found - kLayoutNames.begin()),
-          storage == "half" ? Storage::float16 : Storage::float32};
+  return fmt::format("{}/{}", name_of(format.layout), name_of(format.storage));
 }
 
 std::vector<VolumeFormat> all_formats() {
   std::vector<VolumeFormat> formats;
-  for (const std::string& layout : layout_names()) {
-    for (const std::string& storage : storage_names()) formats.push_back(volume_format(layout, storage));
+  for (const Layout layout : values_of<Layout>()) {
+    for (const Storage storage : values_of<Storage>()) formats.push_back({layout, storage});
   }
   return formats;
 }
@@ -132,7 +114,7 @@ int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
-  literals["CLPV_LAYOUT"] = kLayoutLiterals[static_cast<std::size_t>(format.layout)];
+  literals["CLPV_LAYOUT"] = literal_of(format.layout);
   literals["CLPV_STORAGE_HALF"] = std::to_string(format.storage == Storage::float16 ? 1 : 0);
   literals["CLPV_LANES"] = std::to_string(lanes);
 }

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "device/device.hpp"
 #include "device/program.hpp"
+#include "options/choices.hpp"
 
 namespace clpv {
 
@@ -20,25 +20,6 @@ struct VolumeShape {
   bool operator==(const VolumeShape&) const = default;
 };
 
-/// As kernels/volume/ has them. `soa`: a plane of samples a channel and coefficient; `aos`: the coefficients of a
-/// sample side by side; `tiled`: blocks of 8 samples along x by all coefficients; `image`: a 3-D image of RGBA texels,
-/// four coefficients each.
-enum class Layout { soa, aos, tiled, image };
-enum class Storage { float32, float16 };
-
-struct VolumeFormat {
-  Layout layout = Layout::soa;
-  Storage storage = Storage::float32;
-  bool operator==(const VolumeFormat&) const = default;
-};
-
-/// "image", "aos", "soa", "tiled"; "float", "half".
-std::vector<std::string> layout_names();
-std::vector<std::string> storage_names();
-/// Throws Error(usage) for other names.
-VolumeFormat volume_format(std::string_view layout, std::string_view storage);
-std::string layout_name(Layout layout);
-std::string storage_name(Storage storage);
 std::string format_name(const VolumeFormat& format);  ///< "soa/float"
 std::vector<VolumeFormat> all_formats();
 

@@ -10,6 +10,7 @@
 #include "reference/traced_view.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv::reference {
@@ -38,8 +39,8 @@ std::string in_file_name(std::string name) {
 
 Image all_views(const TracedImage& traced) {
   Image image;
-  for (const std::string& name : show_names())
-    append_layer(image, traced_view(traced, show_named(name)), name);
+  for (const Show show : values_of<Show>())
+    append_layer(image, traced_view(traced, show), std::string(name_of(show)));
   return image;
 }
 
@@ -60,7 +61,8 @@ Reference read_reference(const std::filesystem::path& file) {
   Reference reference;
   reference.image = read_image(file);
   reference.file = file;
-  for (const std::string& name : show_names()) extract_layer(reference.image, name, file.string());  // throws
+  for (const std::string& name : names_of<Show>())
+    extract_layer(reference.image, name, file.string());  // throws
   reference.samples = static_cast<std::uint32_t>(std::stoul(reference.image.metadata.at("spp_traced")));
   reference.noise = std::stod(reference.image.metadata.at("noise_reached"));
   return reference;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/session.hpp"
+#include "options/stages.hpp"
 #include "pipeline/volume_format.hpp"
 
 namespace clpv::reference {
@@ -28,10 +29,13 @@ std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape&
 /// tolerance(stage), or that of half storage.
 double tolerance_in(std::string_view stage, const VolumeFormat& format);
 
+/// A stage's. `thorough`: every combination of basis and options, where there are more than it compares at once; minutes,
+/// for the kernels there are to build.
+CheckResults check(Stage stage, Session& session, bool thorough = false);
+
 // One a stage, in reference/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device.
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
-// `thorough`: every combination of basis and options; minutes, for the kernels there are to build.
 CheckResults check_inject(Session& session, bool thorough = false);
 CheckResults check_propagate(Session& session, bool thorough = false);
 CheckResults check_carry_late(Session& session);

@@ -75,7 +75,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
   CheckResult result =
       compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
-                     "gather", fmt::format("{}/{}/{}", basis.name(), transport.name, variant.name));
+                     "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport.kind), variant.name));
   const bool by_filter = variant.format.layout == Layout::image && variant.filtered;
   result.allowed = tolerance_in(by_filter ? "gather-filter" : "gather", variant.format);
   return result;
@@ -84,7 +84,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
 /// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
 void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const Transport transport = make_transport("upwind", *basis);
+  const Transport transport = make_transport(TransportKind::upwind, *basis);
   for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
     Variant variant{.name = format_name(format), .format = format};
     if (format.layout == Layout::image) {
@@ -97,7 +97,7 @@ void check_formats(Session& session, CheckResults& results) {
     if (format.layout != Layout::image) continue;
     // More coefficients than irradiance needs are packed, from images too.
     const std::unique_ptr<Basis> large = make_basis("bins24");
-    results.push_back(check_one(session, *large, make_transport("upwind", *large), variant));
+    results.push_back(check_one(session, *large, make_transport(TransportKind::upwind, *large), variant));
   }
 }
 
@@ -108,13 +108,15 @@ CheckResults check_gather(Session& session, bool thorough) {
   for (const std::string& name : basis_names()) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     // One transport that gathers radiant intensity, one that gathers through its own matrix.
-    results.push_back(check_one(session, *basis, make_transport("sampled", *basis), {"plain"}));
-    results.push_back(check_one(session, *basis, make_transport("upwind", *basis), {"floor", 0.15}));
+    results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"plain"}));
+    results.push_back(
+        check_one(session, *basis, make_transport(TransportKind::upwind, *basis), {"floor", 0.15}));
     if (basis->centres().empty()) continue;  // no table
     const LobeOptions functions{.table_functions = true};
-    results.push_back(check_one(session, *basis, make_transport("sampled", *basis), {"table", 0, functions}));
+    results.push_back(
+        check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"table", 0, functions}));
     if (!session.device().images || (!thorough && basis->size() > 4)) continue;
-    results.push_back(check_one(session, *basis, make_transport("sampled", *basis),
+    results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis),
                                 {"table image", 0, functions, TableStorage::image}));
   }
   check_formats(session, results);

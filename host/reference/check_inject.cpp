@@ -99,7 +99,7 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
                      {}};
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
   const auto size = static_cast<std::size_t>(twin.coefficients);
-  const bool areas = twin.channels == 1 && options.blocking == Blocking::areas;
+  const bool areas = twin.channels == 1 && !blocks_by_lobes(options.blocking);
   double largest = 0, worst = 0;
   for (const glm::dvec3& w : directions()) {
     const std::vector<double> b =
@@ -124,9 +124,8 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
   return result;
 }
 
-const char* blocking_label(Blocking blocking) {
-  if (blocking == Blocking::areas) return "/areas";
-  return blocking == Blocking::one_sided ? "/one-sided" : "";
+std::string blocking_label(Blocking blocking) {
+  return blocking == InjectOptions{}.blocking ? "" : fmt::format("/{}", clpv::name_of(blocking));
 }
 
 std::string name_of(const Basis& basis, const char* stage, bool orthographic, RsmFormat format,

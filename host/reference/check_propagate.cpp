@@ -11,6 +11,7 @@
 #include "reference/check.hpp"
 #include "reference/propagate.hpp"
 #include "reference/tolerances.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -51,7 +52,7 @@ Volume random_blockers(const Basis& basis, const Transport& transport, int n, st
         const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
         for (int i = 0; i < numbers; ++i) {
           const auto k = static_cast<std::size_t>(i);
-          const double share = transport.blocking == Blocking::areas ? std::abs(d[i]) : front[k] + back[k];
+          const double share = blocks_by_lobes(transport.blocking) ? front[k] + back[k] : std::abs(d[i]);
           volume.at(0, i, x, y, z) = static_cast<float>(cover * share);
         }
       }
@@ -99,8 +100,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
       accumulated.read(session), twin.accumulated,
       options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
                                             : tolerance_in("propagate", options.format),
-      fmt::format("{}/{}/{}/{}{}{}", basis.name(), transport.name,
-                  options.state == State::fluxes ? "fluxes" : "coefficients",
+      fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(transport.kind), name_of(options.state),
                   !blockers                               ? "free"
                   : transport.blocking == Blocking::areas ? "areas"
                                                           : "blockers",
@@ -114,9 +114,9 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
 /// `full`: every transport in both states, with and without blockers.
 void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
                      CheckResults& results) {
-  for (const std::string& name : transport_names()) {
-    if (!full && name != "sampled" && name != "upwind") continue;
-    const Transport transport = make_transport(name, basis, lobes);
+  for (const TransportKind kind : values_of<TransportKind>()) {
+    if (!full && kind != TransportKind::sampled && kind != TransportKind::upwind) continue;
+    const Transport transport = make_transport(kind, basis, lobes);
     const bool faces = std::holds_alternative<FaceTransport>(transport.scheme);
     if (!faces && lobes.kind == LobeKind::rotate) continue;  // has no lobes
     const auto add = [&](State state, bool blockers) {
@@ -132,16 +132,16 @@ void check_constants(Session& session, const Basis& basis, const LobeOptions& lo
 
 /// Lobes made in the kernel: exact and rotated ones, the table as a buffer and as an image.
 void check_run_time_lobes(Session& session, const Basis& basis, bool full, CheckResults& results) {
-  const auto add = [&](const char* transport, LobeKind kind, TableStorage table) {
+  const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
     if (table == TableStorage::image && !session.device().images) return;
     const LobeOptions lobes{.kind = kind, .table_functions = kind == LobeKind::rotate};
     results.push_back(check_one(session, basis, make_transport(transport, basis, lobes),
                                 {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}, true));
   };
-  add("sampled", LobeKind::rotate, TableStorage::buffer);
+  add(TransportKind::sampled, LobeKind::rotate, TableStorage::buffer);
   if (!full) return;
-  add("exact", LobeKind::exact, TableStorage::buffer);
-  add("exact", LobeKind::rotate, TableStorage::image);
+  add(TransportKind::exact, LobeKind::exact, TableStorage::buffer);
+  add(TransportKind::exact, LobeKind::rotate, TableStorage::image);
 }
 
 /// Blockers as areas: what the basis is hardly matters, which ways there are does.
@@ -149,7 +149,7 @@ void check_areas(Session& session, bool thorough, CheckResults& results) {
   for (const char* name : {"sh2", "bins24"}) {
     if (!thorough && std::string(name) != "sh2") continue;
     const std::unique_ptr<Basis> basis = make_basis(name);
-    for (const std::string& transport : transport_names()) {
+    for (const TransportKind transport : values_of<TransportKind>()) {
       results.push_back(check_one(session, *basis, make_transport(transport, *basis, {}, Blocking::areas),
                                   {.grid = kGrid}, true));
     }
@@ -159,7 +159,7 @@ void check_areas(Session& session, bool thorough, CheckResults& results) {
 /// Every other way for volumes to lie in memory: one basis and transport, since these have no part in it.
 void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const Transport transport = make_transport("upwind", *basis);
+  const Transport transport = make_transport(TransportKind::upwind, *basis);
   const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
   for (const VolumeFormat& format : other_formats(session.device(), corners)) {
     results.push_back(check_one(session, *basis, transport, {.grid = kFormatGrid, .format = format}, true));

@@ -7,6 +7,7 @@
 #include "reference/check.hpp"
 #include "reference/check_surfaces.hpp"
 #include "reference/shade.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -139,8 +140,9 @@ CheckResults check_shade(Session& session) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     results.push_back(check_one(session, shader, setting, Show::direct, {lights[i]}, kinds[i]));
   }
-  for (const std::string& name : show_names()) {
-    results.push_back(check_one(session, shader, setting, show_named(name), lights, "view " + name));
+  for (const Show show : values_of<Show>()) {
+    results.push_back(
+        check_one(session, shader, setting, show, lights, fmt::format("view {}", name_of(show))));
   }
   return results;
 }

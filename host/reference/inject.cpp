@@ -77,7 +77,7 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
     const double share =
         stride * stride * footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
     const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
-    if (options.blocking == Blocking::areas) {
+    if (!blocks_by_lobes(options.blocking)) {
       add(blocking, 0, corner, share, {std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
       continue;
     }
@@ -134,7 +134,7 @@ void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Ba
     for (int y = 0; y < geometry.n; ++y) {
       for (int x = 0; x < geometry.n; ++x) {
         const std::vector<double> found = cell_of(blocking, x, y, z), kept = cell_of(geometry, x, y, z);
-        const bool areas = options.blocking == Blocking::areas;
+        const bool areas = !blocks_by_lobes(options.blocking);
         if (!areas && basis.energy(found) <= basis.energy(kept)) continue;
         for (std::size_t i = 0; i < found.size(); ++i) {
           geometry.at(0, static_cast<int>(i), x, y, z) = areas ? std::max(found[i], kept[i]) : found[i];

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "image/image.hpp"
-#include "pipeline/shade.hpp"
+#include "options/show.hpp"
 #include "reference/path_tracer.hpp"
 
 namespace clpv::reference {

@@ -98,11 +98,11 @@ void check_camera_lights(const Scene& scene) {
 Scene load_described(const std::filesystem::path& path, const LoadOptions& options, Notes& notes) {
   SceneFile file = read_scene_file(path);
   const std::filesystem::path model = options.model.empty() ? file.model : options.model;
-  if (model.empty()) refuse(path.string(), "/model", "nothing", "a path to a .gltf or .glb (or --model)");
+  if (model.empty()) refuse(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
   std::error_code unknown;
   if (options.model.empty() && !std::filesystem::exists(model, unknown)) {
     refuse(path.string(), "/model", "no file '" + model.string() + "'",
-           "an existing file; --model says where it lies");
+           "an existing file; option model says where it lies");
   }
   Scene scene = load_gltf(model, file.metres_per_unit, notes);
   find_bounds(scene);

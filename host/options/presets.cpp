@@ -1,12 +1,10 @@
-#include "pipeline/presets.hpp"
-
-#include <fmt/format.h>
+#include "options/presets.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "pipeline/options.hpp"
-#include "support/error.hpp"
+#include "options/render_options.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 namespace {
@@ -24,29 +22,32 @@ const std::vector<std::pair<std::string, std::string>>& paper_options() {
   return options;
 }
 
-const Preset& preset_named(std::string_view name) {
-  const auto found = std::ranges::find(presets(), name, &Preset::name);
-  if (found != presets().end()) return *found;
-  throw Error(ExitCode::usage, "--preset: found '{}', allowed: {}", name, fmt::join(preset_names(), "|"));
+Preset make_preset(PresetName name) {
+  switch (name) {
+    case PresetName::best:
+      return {name, "the defaults: closest to path tracing at about the published scheme's cost", {}};
+    case PresetName::paper:
+      return {name, "the published scheme", paper_options()};
+  }
+  return {};
+}
+
+const Preset& preset_named(PresetName name) {
+  return *std::ranges::find(presets(), name, &Preset::name);
 }
 
 }  // namespace
 
 const std::vector<Preset>& presets() {
-  static const std::vector<Preset> all{
-      {"best", "the defaults: closest to path tracing at about the published scheme's cost", {}},
-      {"paper", "the published scheme", paper_options()},
-  };
+  static const std::vector<Preset> all = [] {
+    std::vector<Preset> made;
+    for (const PresetName name : values_of<PresetName>()) made.push_back(make_preset(name));
+    return made;
+  }();
   return all;
 }
 
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const Preset& preset : presets()) names.push_back(preset.name);
-  return names;
-}
-
-void apply_preset(RenderOptions& options, std::string_view name) {
+void apply_preset(RenderOptions& options, PresetName name) {
   const Preset& chosen = preset_named(name);
   std::set<std::string> set_by_some;
   for (const Preset& preset : presets()) {

@@ -2,26 +2,26 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "options/choices.hpp"
 
 namespace clpv {
 
 struct RenderOptions;
 
 struct Preset {
-  std::string name;
+  PresetName name;
   std::string help;
   std::vector<std::pair<std::string, std::string>> options;  ///< long name and value; all others: the default
 };
 
 /// `best`, which is the defaults, and `paper`, the published scheme.
 const std::vector<Preset>& presets();
-std::vector<std::string> preset_names();
 
 /// Gives every option that some preset sets its value in this one (else its default); the others, such as
-/// the image's size, stay as they are. Throws Error(usage) that lists the presets there are.
-void apply_preset(RenderOptions& options, std::string_view name);
+/// the image's size, stay as they are.
+void apply_preset(RenderOptions& options, PresetName name);
 
 }  // namespace clpv

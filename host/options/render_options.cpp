@@ -1,4 +1,4 @@
-#include "pipeline/options.hpp"
+#include "options/render_options.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
-#include "basis/transport.hpp"
-#include "pipeline/presets.hpp"
+#include "options/presets.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 namespace {
@@ -26,68 +26,67 @@ struct Range {
   bool open = false;  ///< the ends themselves are not allowed
 };
 
+struct Path {
+  const char* of;  ///< what the file holds
+};
+
+struct OneOf {
+  std::vector<std::string> names;
+};
+
+struct Named {};  ///< the names of the member's enumeration
+struct OnOff {};
+
 /// A line a preset.
 std::string preset_help() {
   std::string text = "a set of options, overridden by any of them that is given";
   for (const Preset& preset : presets()) {
-    text += fmt::format("\n{}: {}", preset.name, preset.help);
+    text += fmt::format("\n{}: {}", name_of(preset.name), preset.help);
     for (const auto& [name, value] : preset.options) text += fmt::format(" --{} {}", name, value);
   }
   return text;
 }
 
-struct Path {
-  const char* of;  ///< what the file holds
-};
-
 /// Calls visit(name, member, help, allowed) for every option; the one list of them.
 template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
-  visit("preset", o.preset, preset_help(), preset_names());
-  visit("basis", o.basis, "basis of the sphere (clpv basis tells of each)", basis_names());
+  visit("preset", o.preset, preset_help(), Named{});
+  visit("basis", o.basis, "basis of the sphere (clpv basis tells of each)", OneOf{basis_names()});
   visit("centres", o.centres, "an SRBF set of your own, in place of a basis", Path{"directions as JSON"});
   visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
-  visit("lobe", o.lobe, "cosine lobes: projected each, or that along +z turned through a table",
-        std::vector<std::string>{"exact", "rotate"});
+  visit("lobe", o.lobe, "cosine lobes: projected each, or that along +z turned through a table", Named{});
   visit("lobe-time", o.lobe_time, "propagation's lobes: constants, or made in the kernel as the paper does",
-        std::vector<std::string>{"host", "kernel"});
-  visit("evaluate", o.evaluate, "SRBF functions: computed, or read from a table",
-        std::vector<std::string>{"exact", "table"});
+        Named{});
+  visit("evaluate", o.evaluate, "SRBF functions: computed, or read from a table", Named{});
   visit("table-size", o.table_size, "entries of those tables", Range{2, kMostEntries});
-  visit("table", o.table, "what kernels read those tables as: a buffer, or a 1-D image of it",
-        std::vector<std::string>{"buffer", "image"});
-  visit("transport", o.transport, "how light moves from cell to cell", transport_names());
-  visit("state", o.state, "what travels: the basis's coefficients, or six fluxes a cell",
-        std::vector<std::string>{"coefficients", "fluxes"});
+  visit("table", o.table, "what kernels read those tables as: a buffer, or a 1-D image of it", Named{});
+  visit("transport", o.transport, "how light moves from cell to cell", Named{});
+  visit("state", o.state, "what travels: the basis's coefficients, or six fluxes a cell", Named{});
   visit("layout", o.layout,
-        "how volumes lie in memory: 3-D images, or buffers by cell, by coefficient, by blocks",
-        layout_names());
-  visit("storage", o.storage, "numbers of the volumes; all arithmetic is float", storage_names());
+        "how volumes lie in memory: 3-D images, or buffers by cell, by coefficient, by blocks", Named{});
+  visit("storage", o.storage, "numbers of the volumes; all arithmetic is float", Named{});
   visit("iterations", o.iterations, "propagation steps a cascade", Range{0, kMostSteps});
   visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMostCells});
   visit("cascades", o.cascades, "cascades, each twice the size of the one before", Range{1, kMostCascades});
   visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: the scene's, else 12.5",
         Range{0, kMostMetres, true});
   visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map", Range{1, kMostTexels});
-  visit("rsm-format", o.rsm_format, "RSM storage; paper: 32-bit depth, 8-bit normal and flux",
-        std::vector<std::string>{"float", "paper"});
+  visit("rsm-format", o.rsm_format, "RSM storage; paper: 32-bit depth, 8-bit normal and flux", Named{});
   visit("shadow-size", o.shadow_size, "texels along each side of a direct light's shadow map",
         Range{1, kMostTexels});
-  visit("occlusion", o.occlusion, "indirect shadows: the geometry volume blocks light",
-        std::vector<std::string>{"on", "off"});
+  visit("occlusion", o.occlusion, "indirect shadows: the geometry volume blocks light", OnOff{});
   visit("blocking", o.blocking,
         "how surfaces block light: by their area across each axis, or by lobes, from both sides or what "
         "meets their lit one",
-        blocking_names());
+        Named{});
   visit("blocker-stride", o.blocker_stride, "of the camera's pixels every so many each way become blockers",
         Range{1, kMostStride});
-  visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight",
-        std::vector<std::string>{"nearest", "trilinear"});
+  visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight", Named{});
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
   visit("gather-floor", o.gather_floor, "least irradiance, as a share of its mean over all normals",
         Range{0, 1});
   visit("late-light", o.late_light, "carry what later steps brought in coarser cascades down to finer ones",
-        std::vector<std::string>{"on", "off"});
+        OnOff{});
   visit("width", o.width, "image width [pixels]", Range{1, kMostPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMostPixels});
 }
@@ -104,17 +103,48 @@ std::string text_of(double value) {
 std::string text_of(bool value) {
   return value ? "on" : "off";
 }
-
-std::string text_of(const std::vector<std::string>& choices) {
-  return fmt::format("{}", fmt::join(choices, "|"));
+std::string text_of(NamedEnum auto value) {
+  return std::string(name_of(value));
 }
-std::string text_of(const Range& range) {
+
+template <NamedEnum E>
+std::string allowed_text(const E&, Named) {
+  return fmt::format("{}", fmt::join(names_of<E>(), "|"));
+}
+std::string allowed_text(const std::string&, const OneOf& choices) {
+  return fmt::format("{}", fmt::join(choices.names, "|"));
+}
+std::string allowed_text(bool, OnOff) {
+  return "on|off";
+}
+std::string allowed_text(const std::string&, const Path& path) {
+  return fmt::format("a file of {}", path.of);
+}
+std::string allowed_text(double, const Range& range) {
   return range.open ? fmt::format("between {} and {}, neither included", range.least, range.most)
                     : fmt::format("{}..{}", range.least, range.most);
 }
 
-std::string text_of(const Path& path) {
-  return fmt::format("a file of {}", path.of);
+template <NamedEnum E>
+bool parse(std::string_view text, Named, E& out) {
+  for (const E value : values_of<E>()) {
+    if (name_of(value) != text) continue;
+    out = value;
+    return true;
+  }
+  return false;
+}
+
+bool parse(std::string_view text, const OneOf& choices, std::string& out) {
+  if (std::ranges::find(choices.names, text) == choices.names.end()) return false;
+  out = text;
+  return true;
+}
+
+bool parse(std::string_view text, OnOff, bool& out) {
+  if (text != "on" && text != "off") return false;
+  out = text == "on";
+  return true;
 }
 
 bool parse(std::string_view text, const Path&, std::string& out) {
@@ -133,18 +163,6 @@ bool parse(std::string_view text, const Range& range, Number& out) {
   return inside;
 }
 
-bool parse(std::string_view text, const std::vector<std::string>& choices, std::string& out) {
-  if (std::find(choices.begin(), choices.end(), text) == choices.end()) return false;
-  out = text;
-  return true;
-}
-
-bool parse(std::string_view text, const std::vector<std::string>& choices, bool& out) {
-  if (std::find(choices.begin(), choices.end(), text) == choices.end()) return false;
-  out = text == "on";
-  return true;
-}
-
 }  // namespace
 
 std::unique_ptr<Basis> make_basis(const RenderOptions& options) {
@@ -152,11 +170,15 @@ std::unique_ptr<Basis> make_basis(const RenderOptions& options) {
                                  : load_basis(options.centres, options.lambda);
 }
 
+Transport make_transport(const RenderOptions& options, const Basis& basis) {
+  return make_transport(options.transport, basis, options.lobes(), options.blocking);
+}
+
 std::vector<OptionInfo> list_options(const RenderOptions& options) {
   std::vector<OptionInfo> list;
   for_each_option(options,
                   [&](const char* name, const auto& member, const std::string& help, const auto& allowed) {
-                    list.push_back({name, help, text_of(allowed), text_of(member)});
+                    list.push_back({name, help, allowed_text(member, allowed), text_of(member)});
                   });
   return list;
 }
@@ -167,18 +189,22 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
     if (name != candidate) return;
     known = true;
     if (!parse(value, allowed, member)) {
-      throw Error(ExitCode::usage, "--{}: found '{}', allowed: {}", name, value, text_of(allowed));
+      throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, value, allowed_text(member, allowed));
     }
   });
   if (name == "basis") options.centres.clear();
-  if (!known) throw Error(ExitCode::usage, "no option named --{}", name);
-  if (name == "preset") apply_preset(options, value);
+  if (!known) throw Error(ExitCode::usage, "there is no option '{}'", name);
+  if (name == "preset") apply_preset(options, options.preset);
 }
 
 nlohmann::json to_json(const RenderOptions& options) {
   nlohmann::json json;
   for_each_option(options, [&](const char* name, const auto& member, const std::string&, const auto&) {
-    json[name] = member;
+    if constexpr (NamedEnum<std::remove_cvref_t<decltype(member)>>) {
+      json[name] = text_of(member);
+    } else {
+      json[name] = member;
+    }
   });
   return json;
 }

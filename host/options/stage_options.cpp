@@ -1,0 +1,34 @@
+#include "options/stage_options.hpp"
+
+#include "options/render_options.hpp"
+
+namespace clpv {
+
+InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes) {
+  return {.grid = options.grid,
+          .trilinear = options.injection == Injection::trilinear,
+          .blocking = options.blocking,
+          .unit_flux_lobes = unit_flux_lobes,
+          .lobes = options.lobes(),
+          .table = options.table,
+          .format = options.format()};
+}
+
+PropagateOptions propagate_options(const RenderOptions& options) {
+  return {.grid = options.grid,
+          .state = options.state,
+          .lobe_time = options.lobe_time,
+          .table = options.table,
+          .format = options.format()};
+}
+
+GatherOptions gather_options(const RenderOptions& options) {
+  return {.grid = options.grid,
+          .gather_offset = options.gather_offset,
+          .floor = options.gather_floor,
+          .lobes = options.lobes(),
+          .table = options.table,
+          .format = options.format()};
+}
+
+}  // namespace clpv

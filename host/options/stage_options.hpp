@@ -1,0 +1,64 @@
+// What each stage is told of a frame's choices, and the one place where that comes from them. Knows no OpenCL, so that
+// stages and their twins share it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "basis/blocking.hpp"
+#include "basis/rotated_lobe.hpp"
+#include "options/choices.hpp"
+
+namespace clpv {
+
+struct RenderOptions;
+
+struct InjectOptions {
+  int grid = 32;           ///< cells along each axis
+  bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
+  Blocking blocking = Blocking::two_sided;
+  bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
+  LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
+  TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};  ///< of the volumes injected into
+};
+
+/// What shapes a launch that serves every cell of a grid. Work-items lie along x, y, z; along x each serves `lanes` cells.
+struct StencilOptions {
+  int grid = 32;             ///< cells along each axis
+  VolumeFormat format = {};  ///< of all volumes a kernel reaches
+  int lanes = 0;             ///< 1 or 8; 0: what suits device and format
+  /// Work-group size along x, y; x 0: rows as long as the grid's, at most 64 work-items.
+  std::array<std::size_t, 2> local = {0, 1};
+};
+
+struct PropagateOptions {
+  int grid = 32;  ///< cells along each axis
+  State state = State::coefficients;
+  LobeTime lobe_time = LobeTime::host;
+  TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
+  VolumeFormat format = {};                   ///< of all volumes
+  int lanes = 0;                              ///< as in StencilOptions, and so is `local`
+  std::array<std::size_t, 2> local = {0, 1};
+
+  /// Lobes made in the kernel are those of one cell.
+  StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes, local}; }
+};
+
+struct GatherOptions {
+  int grid = 32;               ///< cells along each axis of every cascade
+  double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
+  double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
+  double floor = 0;            ///< E is at least so much of its mean over all normals, in [0, 1]
+  LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
+  TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};  ///< of the cascades' volumes
+  bool filtered = true;  ///< images: sampled by the device's filter; else from texels, in single precision
+};
+
+/// `unit_flux_lobes`: Transport's.
+InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes);
+PropagateOptions propagate_options(const RenderOptions& options);
+GatherOptions gather_options(const RenderOptions& options);
+
+}  // namespace clpv

@@ -1,0 +1,74 @@
+// The stages there are, and what the timeline tells apart of them: the one list for `clpv check`, the times of a frame and
+// the benchmarks. A new one that is not everywhere it must be does not compile.
+#pragma once
+
+#include <string_view>
+
+namespace clpv {
+
+/// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
+/// that both sides share, is none of a frame's: it is checked before all others.
+enum class Stage { sizes, rasterize, inject, propagate, carry_late, gather, shade };
+
+constexpr std::string_view name_of(Stage stage) {
+  switch (stage) {
+    case Stage::sizes:
+      return "sizes";
+    case Stage::rasterize:
+      return "rasterize";
+    case Stage::inject:
+      return "inject";
+    case Stage::propagate:
+      return "propagate";
+    case Stage::carry_late:
+      return "carry-late";
+    case Stage::gather:
+      return "gather";
+    case Stage::shade:
+      return "shade";
+  }
+  return {};
+}
+
+/// A part of a frame with a time of its own: a stage, or what it does for one purpose. `whole`: what a benchmark times as
+/// one, whatever it launches.
+enum class Pass {
+  rasterize_camera,
+  rasterize_shadow,  ///< a light
+  rasterize_rsm,     ///< a cascade and light
+  inject_light,      ///< a cascade, as are the next three
+  inject_geometry,
+  propagate,
+  carry_late,
+  gather,
+  shade,
+  whole,
+};
+
+constexpr std::string_view name_of(Pass pass) {
+  switch (pass) {
+    case Pass::rasterize_camera:
+      return "rasterize-camera";
+    case Pass::rasterize_shadow:
+      return "rasterize-shadow";
+    case Pass::rasterize_rsm:
+      return "rasterize-rsm";
+    case Pass::inject_light:
+      return "inject-light";
+    case Pass::inject_geometry:
+      return "inject-geometry";
+    case Pass::propagate:
+      return "propagate";
+    case Pass::carry_late:
+      return "carry-late";
+    case Pass::gather:
+      return "gather";
+    case Pass::shade:
+      return "shade";
+    case Pass::whole:
+      return "whole";
+  }
+  return {};
+}
+
+}  // namespace clpv
