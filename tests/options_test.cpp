@@ -14,6 +14,7 @@
 #include "options/show.hpp"
 #include "options/stage_options.hpp"
 #include "options/stages.hpp"
+#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 
@@ -154,7 +155,7 @@ template <typename E>
 class EachNamedEnum : public ::testing::Test {};
 using NamedEnums =
     ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage, Injection,
-                     RsmFormat, Show, ToneMap, TransportKind, Blocking, LobeKind, Stage, Pass>;
+                     RsmFormat, Show, ToneMap, TransportKind, Blocking, LobeKind, LightKind, Stage, Pass>;
 TYPED_TEST_SUITE(EachNamedEnum, NamedEnums);
 
 TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {

@@ -57,6 +57,12 @@ TEST(Shade, SpotLightFadesAcrossItsCone) {
   expect_lit(floor_image(), light, expected, 4);
 }
 
+TEST(Shade, AnUnknownKindOfLightIsDark) {
+  MappedLight light = bulb({0, 2, 0}, 40);
+  light.light.kind = 3;
+  for (const double e : lit(floor_image(), {light})) ASSERT_EQ(e, 0.0);
+}
+
 TEST(Shade, LightsAddUp) {
   const SurfaceImage image = floor_image();
   const std::vector<MappedLight> lights = {sun({0.3, -1, 0}, 7), bulb({1, 2, 0}, 40)};

@@ -134,8 +134,7 @@ void Frame::rasterize_shadows() {
 
 void Frame::rasterize_rsms(int cascade) {
   for (LitLight& lit : lights_) {
-    // Only a directional light's map follows the cascade; others see all they light from where they stand.
-    if (cascade > 0 && lit.light.kind != CLPV_LIGHT_DIRECTIONAL) continue;
+    if (cascade > 0 && !rsm_follows_cascade(lit.light)) continue;
     const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
     const auto views =
         rsm_views(lit.light, grids_[static_cast<std::size_t>(cascade)], buffers_.bounds, options_.rsm_size);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/light_kind.hpp"
+
 namespace clpv {
 namespace {
 
@@ -13,7 +15,14 @@ constexpr double kMostDoubling = 60;  // of a light so weak that floats end firs
 /// The most that a light sends through a cell [W].
 double most_flux(const ClpvLight& light, double cell) {
   const double brightest = *std::max_element(light.intensity, light.intensity + 3);
-  return brightest * (light.kind == CLPV_LIGHT_DIRECTIONAL ? cell * cell : 4 * std::numbers::pi);
+  switch (kind_of(light)) {
+    case LightKind::directional:
+      return brightest * (cell * cell);
+    case LightKind::spot:
+    case LightKind::point:
+      break;
+  }
+  return brightest * (4 * std::numbers::pi);
 }
 
 }  // namespace

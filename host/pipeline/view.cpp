@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -94,14 +95,27 @@ double outer_angle(const ClpvLight& light) {
   return std::acos(std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
 }
 
-bool needs_six_views(const ClpvLight& light) {
-  return light.kind == CLPV_LIGHT_POINT ||
-         (light.kind == CLPV_LIGHT_SPOT && outer_angle(light) > kWidestSpotView * (1 + 1e-4));
+bool too_wide_for_one_view(const ClpvLight& spot) {
+  return outer_angle(spot) > kWidestSpotView * (1 + 1e-4);
 }
 
 std::vector<ClpvView> six_views(const ClpvLight& light, const Bounds& bounds, int size) {
   const std::array<ClpvView, 6> views = point_views(light, size, bounds);
   return {views.begin(), views.end()};
+}
+
+std::vector<ClpvView> spot_views(const ClpvLight& light, const Bounds& bounds, int size) {
+  if (too_wide_for_one_view(light)) return six_views(light, bounds, size);
+  return {spot_view(light, size, bounds)};
+}
+
+ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, int size) {
+  const Axes frame = light_axes(glm::normalize(vector(light.direction)));
+  const glm::dvec2 across = span_along(bounds, frame.right), along = span_along(bounds, frame.up);
+  const double spare = 1 + 2.0 / size;  // a texel round the scene, for filters that look at neighbours
+  return orthographic_view(frame, 0.5 * (across.x + across.y), 0.5 * (along.x + along.y),
+                           std::max(0.5 * spare * (across.y - across.x), kSmallestMargin),
+                           std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size);
 }
 
 }  // namespace
@@ -138,7 +152,7 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
 }
 
 ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
-  if (needs_six_views(light)) {
+  if (too_wide_for_one_view(light)) {
     throw Error(ExitCode::run_time,
                 "a spot light with an outer half-angle of {:.4f} rad in one view; allowed: {:.4f}",
                 outer_angle(light), kWidestSpotView);
@@ -159,22 +173,40 @@ std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Boun
   return views;
 }
 
+bool rsm_follows_cascade(const ClpvLight& light) {
+  switch (kind_of(light)) {
+    case LightKind::directional:
+      return true;
+    case LightKind::spot:
+    case LightKind::point:
+      return false;
+  }
+  return true;
+}
+
 std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
                                 int size) {
-  if (needs_six_views(light)) return six_views(light, bounds, size);
-  if (light.kind == CLPV_LIGHT_SPOT) return {spot_view(light, size, bounds)};
-  return {directional_rsm_view(light, cascade, bounds, size)};
+  switch (kind_of(light)) {
+    case LightKind::directional:
+      return {directional_rsm_view(light, cascade, bounds, size)};
+    case LightKind::spot:
+      return spot_views(light, bounds, size);
+    case LightKind::point:
+      return six_views(light, bounds, size);
+  }
+  return {};
 }
 
 std::vector<ClpvView> shadow_views(const ClpvLight& light, const Bounds& bounds, int size) {
-  if (needs_six_views(light)) return six_views(light, bounds, size);
-  if (light.kind == CLPV_LIGHT_SPOT) return {spot_view(light, size, bounds)};
-  const Axes frame = light_axes(glm::normalize(vector(light.direction)));
-  const glm::dvec2 across = span_along(bounds, frame.right), along = span_along(bounds, frame.up);
-  const double spare = 1 + 2.0 / size;  // a texel round the scene, for filters that look at neighbours
-  return {orthographic_view(frame, 0.5 * (across.x + across.y), 0.5 * (along.x + along.y),
-                            std::max(0.5 * spare * (across.y - across.x), kSmallestMargin),
-                            std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size)};
+  switch (kind_of(light)) {
+    case LightKind::directional:
+      return {directional_shadow_view(light, bounds, size)};
+    case LightKind::spot:
+      return spot_views(light, bounds, size);
+    case LightKind::point:
+      return six_views(light, bounds, size);
+  }
+  return {};
 }
 
 }  // namespace clpv

@@ -43,6 +43,10 @@ ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds);
 /// Six square views from the light along +x, -x, +y, -y, +z, -z that together see every direction once.
 std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Bounds& bounds);
 
+/// Whether a light's reflective shadow maps differ from cascade to cascade: a directional light's do; others see all they
+/// light from where they stand.
+bool rsm_follows_cascade(const ClpvLight& light);
+
 /// The views to make a light's reflective shadow maps of one cascade from: one for a directional light and
 /// for a spot light, six for a point light and for a spot light wider than kWidestSpotView.
 std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,

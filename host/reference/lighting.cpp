@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/light_kind.hpp"
+
 namespace clpv::reference {
 namespace {
 
@@ -13,16 +15,23 @@ glm::dvec3 vector(const float v[3]) {
 
 Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
   const glm::dvec3 direction = vector(light.direction), intensity = vector(light.intensity);
-  if (light.kind == CLPV_LIGHT_DIRECTIONAL) return {intensity, -direction};
+  const LightKind kind = kind_of(light);
+  if (kind == LightKind::directional) return {intensity, -direction};
   const glm::dvec3 offset = vector(light.position) - position;
   const double distance = std::max(glm::length(offset), double{CLPV_LIGHT_LEAST_DISTANCE});
   const glm::dvec3 towards = offset / distance;
   if (light.range > 0 && distance > light.range) return {glm::dvec3(0), towards};
   double attenuation = 1 / (distance * distance);
-  if (light.kind == CLPV_LIGHT_SPOT) {
-    const double cone =
-        std::clamp(light.cone_offset - light.cone_scale * glm::dot(towards, direction), 0.0, 1.0);
-    attenuation *= cone * cone;
+  switch (kind) {
+    case LightKind::directional:
+    case LightKind::point:
+      break;
+    case LightKind::spot: {
+      const double cone =
+          std::clamp(light.cone_offset - light.cone_scale * glm::dot(towards, direction), 0.0, 1.0);
+      attenuation *= cone * cone;
+      break;
+    }
   }
   return {intensity * attenuation, towards};
 }

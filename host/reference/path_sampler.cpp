@@ -7,6 +7,7 @@
 #include "reference/lighting.hpp"
 #include "reference/sampling.hpp"
 #include "reference/view.hpp"
+#include "scene/light_kind.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -35,7 +36,7 @@ std::optional<Hit> PathSampler::see(const ClpvView& view, std::uint32_t px, std:
 }
 
 bool PathSampler::shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const {
-  if (light.kind == CLPV_LIGHT_DIRECTIONAL) return rays_.occluded(origin, glm::vec3(towards), kInfinity);
+  if (kind_of(light) == LightKind::directional) return rays_.occluded(origin, glm::vec3(towards), kInfinity);
   const glm::vec3 path = glm::vec3(light.position[0], light.position[1], light.position[2]) - origin;
   return rays_.occluded(origin, path, 1);
 }

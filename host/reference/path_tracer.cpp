@@ -9,6 +9,7 @@
 #include "reference/path_sampler.hpp"
 #include "reference/ray_scene.hpp"
 #include "reference/sampling.hpp"
+#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 
 namespace clpv::reference {
@@ -156,10 +157,10 @@ void check(const Scene& scene, const std::vector<Light>& lights, const PathTrace
   for (const Light& light : lights) {
     const ClpvLight& d = light.data;
     const auto finite = [](const float(&v)[3]) { return std::isfinite(v[0] + v[1] + v[2]); };
-    if (d.kind > CLPV_LIGHT_POINT || !finite(d.position) || !finite(d.direction) || !finite(d.intensity) ||
+    kind_of(d);  // throws for what is none
+    if (!finite(d.position) || !finite(d.direction) || !finite(d.intensity) ||
         !std::isfinite(d.range + d.cone_scale + d.cone_offset)) {
-      throw Error(ExitCode::bad_input, "{}: light {}: an unknown kind, or a value that is not finite",
-                  scene.path, light.name);
+      throw Error(ExitCode::bad_input, "{}: light {}: a value that is not finite", scene.path, light.name);
     }
   }
 }

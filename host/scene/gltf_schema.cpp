@@ -11,6 +11,7 @@
 #include "scene/gltf_extents.hpp"
 #include "scene/input.hpp"
 #include "scene/json_schema.hpp"
+#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -166,7 +167,7 @@ Rules view_rules() {
           number("/cameras/*/orthographic/zfar", kTiny, kAny).must(),
           number("/cameras/*/orthographic/znear", 0, kAny).must(),
           text(light + "/name"),
-          text(light + "/type", {"directional", "point", "spot"}).must(),
+          text(light + "/type", names_of<LightKind>()).must(),
           vector(light + "/color", 3, 0, kAny),
           number(light + "/intensity", 0, kAny),
           number(light + "/range", kTiny, kAny),

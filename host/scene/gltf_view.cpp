@@ -6,6 +6,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/light_cone.hpp"
+#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -48,17 +49,16 @@ class ViewReader {
     Light made;
     made.name = unique(given.name.empty() ? source.name : given.name, "light", light_names_);
     ClpvLight& data = made.data;
-    data.kind = given.type == "directional" ? CLPV_LIGHT_DIRECTIONAL
-                : given.type == "spot"      ? CLPV_LIGHT_SPOT
-                                            : CLPV_LIGHT_POINT;
+    const LightKind kind = named<LightKind>("type", given.type);
+    data.kind = static_cast<unsigned>(kind);
     store(data.position, position(node));
-    if (data.kind != CLPV_LIGHT_POINT)
+    if (kind != LightKind::point)
       store(data.direction, axis(node, {0, 0, -1}, "/extensions/KHR_lights_punctual"));
     for (std::size_t i = 0; i < 3; ++i) {
       data.intensity[i] = static_cast<float>(given.intensity * (given.color.empty() ? 1.0 : given.color[i]));
     }
-    if (data.kind != CLPV_LIGHT_DIRECTIONAL) data.range = static_cast<float>(given.range * metres_per_unit_);
-    if (data.kind == CLPV_LIGHT_SPOT) {
+    if (kind != LightKind::directional) data.range = static_cast<float>(given.range * metres_per_unit_);
+    if (kind == LightKind::spot) {
       const double inner = given.spot.innerConeAngle, outer = given.spot.outerConeAngle;
       if (inner >= outer) {
         refuse(document_.file, fmt::format("/extensions/KHR_lights_punctual/lights/{}/spot", index),

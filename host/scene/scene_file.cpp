@@ -12,6 +12,7 @@
 #include "scene/input.hpp"
 #include "scene/json_schema.hpp"
 #include "scene/light_cone.hpp"
+#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -44,7 +45,7 @@ const std::vector<Rule>& rules() {
       list("/lights", 0, bounds::kLights),
       object("/lights/*"),
       text("/lights/*/name"),
-      text("/lights/*/kind", {"directional", "spot", "point"}).must(),
+      text("/lights/*/kind", names_of<LightKind>()).must(),
       vector("/lights/*/direction", 3, -kFar, kFar),
       vector("/lights/*/position", 3, -kFar, kFar),
       number("/lights/*/illuminance_lux", 0, kBright),
@@ -101,16 +102,23 @@ struct LightKeys {
   std::vector<std::string> required, optional;
 };
 
-LightKeys keys_of(const std::string& kind) {
-  if (kind == "directional") return {{"direction", "illuminance_lux"}, {}};
-  if (kind == "point") return {{"position", "intensity_candela"}, {"range"}};
-  return {{"position", "direction", "intensity_candela"},
-          {"range", "inner_cone_degrees", "outer_cone_degrees"}};
+LightKeys keys_of(LightKind kind) {
+  switch (kind) {
+    case LightKind::directional:
+      return {{"direction", "illuminance_lux"}, {}};
+    case LightKind::spot:
+      return {{"position", "direction", "intensity_candela"},
+              {"range", "inner_cone_degrees", "outer_cone_degrees"}};
+    case LightKind::point:
+      return {{"position", "intensity_candela"}, {"range"}};
+  }
+  return {};
 }
 
-void check_light_keys(const json& given, const std::string& kind, const std::string& file,
+void check_light_keys(const json& given, LightKind light_kind, const std::string& file,
                       const std::string& place) {
-  const LightKeys keys = keys_of(kind);
+  const LightKeys keys = keys_of(light_kind);
+  const std::string kind(name_of(light_kind));
   for (const std::string& key : keys.required) {
     if (!given.contains(key))
       refuse(file, pointer_to(place, key), "nothing", "a value: a " + kind + " light needs it");
@@ -127,15 +135,14 @@ void check_light_keys(const json& given, const std::string& kind, const std::str
 }
 
 Light read_light(const json& given, double scale, const std::string& file, const std::string& place) {
-  const std::string kind = given["kind"];
+  const LightKind kind = named<LightKind>("kind", given["kind"].get_ref<const std::string&>());
   check_light_keys(given, kind, file, place);
   Light made;
   made.name = given.value("name", std::string());
   ClpvLight& data = made.data;
-  data.kind = kind == "directional" ? CLPV_LIGHT_DIRECTIONAL
-              : kind == "spot"      ? CLPV_LIGHT_SPOT
-                                    : CLPV_LIGHT_POINT;
-  const double strength = given.value(kind == "directional" ? "illuminance_lux" : "intensity_candela", 0.0);
+  data.kind = static_cast<unsigned>(kind);
+  const double strength =
+      given.value(given.contains("illuminance_lux") ? "illuminance_lux" : "intensity_candela", 0.0);
   const glm::dvec3 colour = given.contains("colour") ? vector_in(given, "colour") : glm::dvec3(1);
   const glm::dvec3 position =
       given.contains("position") ? vector_in(given, "position") * scale : glm::dvec3(0);
@@ -147,7 +154,7 @@ Light read_light(const json& given, double scale, const std::string& file, const
     data.direction[i] = static_cast<float>(direction[i]);
   }
   data.range = static_cast<float>(given.value("range", 0.0) * scale);
-  if (kind == "spot") {
+  if (kind == LightKind::spot) {
     const double inner = given.value("inner_cone_degrees", kInnerCone);
     const double outer = given.value("outer_cone_degrees", kOuterCone);
     if (inner >= outer) {

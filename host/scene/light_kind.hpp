@@ -1,0 +1,39 @@
+// The kinds of light there are, by their names in scene files and in glTF: the one list of them on the host. What a kind
+// means is switched over without a default, so that a new one does not compile until it means something everywhere.
+#pragma once
+
+#include <string_view>
+
+#include "kernels/shared/light.h"
+#include "support/error.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv {
+
+enum class LightKind : unsigned {
+  directional = CLPV_LIGHT_DIRECTIONAL,
+  spot = CLPV_LIGHT_SPOT,
+  point = CLPV_LIGHT_POINT,
+};
+
+constexpr std::string_view name_of(LightKind kind) {
+  switch (kind) {
+    case LightKind::directional:
+      return "directional";
+    case LightKind::spot:
+      return "spot";
+    case LightKind::point:
+      return "point";
+  }
+  return {};
+}
+
+/// Throws Error(bad_input) for a number that is no kind.
+inline LightKind kind_of(const ClpvLight& light) {
+  const auto kinds = values_of<LightKind>();
+  if (light.kind < kinds.size()) return kinds[light.kind];
+  throw Error(ExitCode::bad_input, "light of kind {}: allowed: 0..{} ({})", light.kind, kinds.size() - 1,
+              fmt::join(names_of<LightKind>(), ", "));
+}
+
+}  // namespace clpv
