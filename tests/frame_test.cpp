@@ -70,6 +70,10 @@ void expect_golden(const Image& image, const std::string& name) {
   EXPECT_LT(result.nrmse, kGoldenTolerance) << path;
 }
 
+// A frame's stages refer to its other parts.
+static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructible_v<Frame> &&
+              !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
+
 TEST(Frame, AtriumLooksAsItDid) {
   const Scene scene = load_scene(scene_path("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");

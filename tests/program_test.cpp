@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 
+#include "device/kernel.hpp"
 #include "device/kernel_files.hpp"
 #include "device/session.hpp"
 #include "run_program.hpp"
@@ -69,10 +70,11 @@ TEST(KernelFiles, UnknownAndEndlessOnesAreRefused) {
 TEST(ProgramText, LiteralsThenGeneratedThenFile) {
   KernelFolder folder;
   folder.write("a.cl", "int a;\n");
-  const std::string text =
-      program_text({.file = "a.cl", .literals = {{"CLPV_B", "2"}, {"CLPV_A", "1"}}, .generated = "int g;"});
+  const std::string text = program_text({.file = "a.cl",
+                                         .literals = Literals().flag("CLPV_B", true).number("CLPV_A", 3),
+                                         .generated = "int g;"});
   EXPECT_EQ(text,
-            "#line 1 \"literals\"\n#define CLPV_A 1\n#define CLPV_B 2\n"
+            "#line 1 \"literals\"\n#define CLPV_A 3u\n#define CLPV_B 1\n"
             "#line 1 \"generated\"\nint g;\n#line 1 \"a.cl\"\nint a;\n");
 }
 
@@ -95,7 +97,8 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
                "#include \"broken.h\"\n__kernel void k(__global int* a) { a[0] = half_done(CLPV_X); }\n");
   Session session(choose_device());
   try {
-    session.kernel({.file = "broken.cl", .literals = {{"CLPV_X", "1"}}, .generated = {}}, "k");
+    const Kernel kernel(session, {"broken.cl", Literals().integer("CLPV_X", 1), {}}, "k");
+    session.build_described();
     FAIL() << "a broken kernel was built";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::run_time);

@@ -39,11 +39,11 @@ TEST(Session, EmptyUploadsAndReadsAreFine) {
 
 TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   Session session(choose_device());
-  cl::Kernel kernel = session.kernel({.file = "sizes.cl", .literals = {}, .generated = {}}, "sizes");
-  kernel.setArg(0, session.buffer(1024, "sizes"));
+  const cl::Buffer bytes = session.buffer(1024, "sizes");
+  Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
   const std::size_t too_large = 1u << 20;
   try {
-    session.launch(kernel, cl::NDRange(too_large), cl::NDRange(too_large));
+    kernel.set(bytes).launch(too_large, too_large);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::run_time);

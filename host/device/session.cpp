@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "device/cl_error.hpp"
+#include "device/kernel.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
@@ -54,50 +55,63 @@ Session::Session(Device device, std::optional<ProgramCache> cache)
       timeline_(device_.profiling_valid),
       cache_(std::move(cache)) {}
 
-cl::Program Session::build(const ProgramSource& source, const std::string& text, const std::string& key,
-                           bool& stored) {
-  stored = false;
-  if (cache_) {
-    if (const auto binary = cache_->load(key)) {
-      if (const auto program = load_program(context_, device_, source.options, *binary)) {
-        stored = true;
-        return *program;
-      }
-      cache_->remove(key);
-    }
-  }
-  return build_program(context_, device_, source, text);
+std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
+  std::string text = program_text(source);
+  std::string key = ProgramCache::key(device_, source.options, text);
+  std::shared_ptr<Program>& program = programs_[key];
+  if (!program) program = std::make_shared<Program>(Program{source, std::move(text), std::move(key), {}});
+  return program;
 }
 
-cl::Kernel Session::kernel(const ProgramSource& source, const std::string& name) {
-  const std::string text = program_text(source);
-  const std::string key = ProgramCache::key(device_, source.options, text);
-  auto found = programs_.find(key);
-  if (found == programs_.end()) {
-    dump(source, text);
-    const auto start = std::chrono::steady_clock::now();
-    Built built;
-    built.program = build(source, text, key, built.stored);
-    found = programs_.emplace(key, std::move(built)).first;
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    build_ms_ += elapsed.count();
-    spdlog::debug("kernels/{}: {} in {:.1f} ms", source.file,
-                  found->second.stored ? "from the cache" : "compiled", elapsed.count());
+void Session::build_described() {
+  // What nobody holds any more was described by a stage that is gone, or was never finished.
+  std::erase_if(programs_, [](const auto& entry) {
+    return entry.second->built() == nullptr && entry.second.use_count() == 1;
+  });
+  for (auto& [key, program] : programs_) build(*program);
+}
+
+cl::Kernel Session::kernel(Program& program, const std::string& name) {
+  build(program);
+  return cl::Kernel(program.built, name.c_str());
+}
+
+void Session::build(Program& program) {
+  if (program.built() != nullptr) return;
+  dump(program.source, program.text);
+  const auto start = std::chrono::steady_clock::now();
+  program.stored = load(program);
+  if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  build_ms_ += elapsed.count();
+  spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
+                program.stored ? "from the cache" : "compiled", elapsed.count());
+}
+
+/// Takes a program from the cache; false where it is not there, or the driver will not have it.
+bool Session::load(Program& program) {
+  if (!cache_) return false;
+  const auto binary = cache_->load(program.key);
+  if (!binary) return false;
+  if (const auto loaded = load_program(context_, device_, program.source.options, *binary)) {
+    program.built = *loaded;
+    return true;
   }
-  return cl::Kernel(found->second.program, name.c_str());
+  cache_->remove(program.key);
+  return false;
 }
 
 void Session::store_programs() {
   if (!cache_) return;
-  for (auto& [key, built] : programs_) {
-    if (built.stored) continue;
-    const auto binaries = built.program.getInfo<CL_PROGRAM_BINARIES>();
+  for (auto& [key, program] : programs_) {
+    if (program->stored || program->built() == nullptr) continue;
+    const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries[0].empty()) {
       spdlog::debug("{} gives no compiled programs to keep", device_.name);
       return;
     }
     if (!cache_->store(key, binaries[0])) return;  // said why; the next would fail alike
-    built.stored = true;
+    program->stored = true;
   }
 }
 
@@ -169,11 +183,10 @@ void Session::fill_zero(const cl::Buffer& buffer, std::size_t bytes) {
 // the rest: its memory checker would report what is sound.
 void Session::fill_by_kernel(const cl::Buffer& buffer, std::size_t bytes) {
   const auto words = static_cast<cl_uint>(bytes / sizeof(cl_uint));
-  cl::Kernel zero = kernel({.file = "zero.cl", .literals = {}, .generated = {}}, "zero");
-  zero.setArg(0, buffer);
-  zero.setArg(1, words);
   constexpr std::size_t kGroup = 64;
-  launch(zero, cl::NDRange(words), cl::NDRange(kGroup));
+  Kernel(*this, {.file = "zero.cl", .literals = {}, .generated = {}}, "zero")
+      .set(buffer, words)
+      .launch(cl::NDRange(words), cl::NDRange(kGroup));
 }
 
 void Session::copy(const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes) {

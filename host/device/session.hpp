@@ -3,6 +3,7 @@
 
 #include <CL/opencl.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,14 @@
 #include "device/timeline.hpp"
 
 namespace clpv {
+
+/// A program as a session knows it: described first, built when it is needed.
+struct Program {
+  ProgramSource source;
+  std::string text, key;  ///< program_text(source), ProgramCache::key
+  cl::Program built;      ///< none yet, until it is
+  bool stored = false;    ///< in the cache: came from there, or was put there
+};
 
 /// One device opened for work. Everything is enqueued on one in-order queue. Not thread safe; one a thread.
 class Session {
@@ -26,9 +35,16 @@ class Session {
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }
 
-  /// The kernel `name` of a program, built at the first use of this very source.
-  /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault.
-  cl::Kernel kernel(const ProgramSource& source, const std::string& name);
+  /// The program of this very source, which is built once in a session: by build_described(), or when a kernel of it is
+  /// first asked for.
+  std::shared_ptr<Program> describe(const ProgramSource& source);
+
+  /// Builds the programs described so far that are not built yet and still wanted by someone.
+  /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault; so does kernel().
+  void build_described();
+
+  /// The kernel `name` of a program of describe().
+  cl::Kernel kernel(Program& program, const std::string& name);
 
   /// Keeps the programs compiled so far in the cache. To be called last, when results are out: PoCL's
   /// binaries hold the code for the work-group sizes launched until then, and making one costs about as long
@@ -80,20 +96,16 @@ class Session {
   cl::Context context_;
   cl::CommandQueue queue_;
   Timeline timeline_;
-  struct Built {
-    cl::Program program;
-    bool stored = false;  ///< in the cache: came from there, or was put there
-  };
-  cl::Program build(const ProgramSource& source, const std::string& text, const std::string& key,
-                    bool& stored);
+  void build(Program& program);
+  bool load(Program& program);
 
   void fill_by_kernel(const cl::Buffer& buffer, std::size_t bytes);
 
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
 
   std::optional<ProgramCache> cache_;
-  std::map<std::string, Built> programs_;  ///< by ProgramCache::key
-  std::vector<cl::Buffer> kept_;           ///< see buffer()
+  std::map<std::string, std::shared_ptr<Program>> programs_;      ///< by ProgramCache::key
+  std::vector<cl::Buffer> kept_;                                  ///< see buffer()
   std::map<std::vector<float>, cl::Image1DBuffer> table_images_;  ///< see table_image()
   std::size_t bytes_ = 0;
   double build_ms_ = 0;

@@ -26,10 +26,9 @@ class LateCarrier {
   void carry(const Volume& light, const ClpvGrid& coarser, Volume& sum, const ClpvGrid& finer);
 
  private:
-  Session& session_;
   VolumeShape shape_;
   Stencil stencil_;
-  cl::Kernel kernel_;
+  Kernel kernel_;
   std::unique_ptr<Volume>
       spare_;  ///< of images alone, which are not updated in place: changes places with the sum
 };

@@ -115,6 +115,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
+  session.build_described();
 }
 
 void Frame::prepare_lights(const Camera& camera) {

@@ -3,11 +3,13 @@
 
 #include <CL/opencl.hpp>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/lookup_table.hpp"
@@ -49,7 +51,7 @@ class Gatherer {
  private:
   /// Images are sampled as they are, unless they hold more than irradiance needs.
   bool packs() const { return options_.format.layout != Layout::image || form_.projects(); }
-  cl::Kernel& gather_kernel(std::size_t cascades);
+  Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;
   void reserve(std::size_t cascades);
@@ -62,8 +64,8 @@ class Gatherer {
   LookupTable table_;
   ProgramSource source_;
   Stencil stencil_;  ///< of packing
-  cl::Kernel pack_;
-  std::map<std::size_t, cl::Kernel>
+  std::optional<Kernel> pack_;
+  std::map<std::size_t, Kernel>
       gather_;  ///< by number of cascades, of which only volumes not packed take note
   cl::Buffer packed_, grids_;
   std::size_t reserved_ = 0;  ///< cascades

@@ -7,6 +7,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/convert.hpp"
@@ -46,8 +47,9 @@ class Injector {
  private:
   enum class Kind { light, geometry };
   struct Kernels {
-    cl::Kernel find_cells, sum_segments, join_segments;
+    Kernel find_cells, sum_segments, join_segments;
   };
+  Kernels make_kernels(Kind kind, RsmFormat format, int stride) const;
   Kernels& kernels(Kind kind, RsmFormat format, int stride);
   bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);

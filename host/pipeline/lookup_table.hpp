@@ -7,6 +7,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 
 namespace clpv {
@@ -30,8 +31,8 @@ class LookupTable {
   bool exists() const { return values_.has_value(); }
   std::string macros() const;
   static std::string no_macros();  ///< those of none
-  /// Sets the last argument of a kernel that was compiled with macros(), where there is a table.
-  void set(cl::Kernel& kernel) const;
+  /// The last argument of a kernel that was compiled with macros(), after the others; nothing where there is no table.
+  void add_to(Kernel& kernel) const;
 
  private:
   std::optional<ZonalTable> values_;

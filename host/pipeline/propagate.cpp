@@ -35,25 +35,24 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
   if (fluxes) travelling_spare_ = make(shape, "spare sum of fluxes");
 }
 
+Propagator::Form Propagator::make_form(bool first, bool blocking) {
+  const State from = first ? State::coefficients : options_.state;
+  const TransportSource source =
+      transport_source(basis_, transport_, {from, options_.state, blocking, lobes_.has_value()});
+  const int channels = lobes_ || (blocking && source.arrive.flops() <= kLargestShared) ? 3 : 1;
+  ProgramSource program{"propagate.cl", stencil_.literals(), source.text};
+  if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
+  if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
+  program.literals.flag("CLPV_BLOCKING", blocking).integer("CLPV_CHANNELS", channels);
+  if (lobes_) lobes_->add_literals(program.literals);
+  return {source, channels, Kernel(session_, program, "propagate_step"),
+          Kernel(session_, program, "propagate_expand")};
+}
+
 Propagator::Form& Propagator::form(bool first, bool blocking) {
   // With coefficients travelling, the first step is like any other.
   std::optional<Form>& slot = forms_[first && options_.state == State::fluxes ? 1 : 0][blocking ? 1 : 0];
-  if (!slot) {
-    slot.emplace();
-    const State source = first ? State::coefficients : options_.state;
-    slot->source =
-        transport_source(basis_, transport_, {source, options_.state, blocking, lobes_.has_value()});
-    slot->channels = lobes_ || (blocking && slot->source.arrive.flops() <= kLargestShared) ? 3 : 1;
-    ProgramSource program{"propagate.cl", {}, slot->source.text};
-    if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
-    if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
-    program.literals = {{"CLPV_BLOCKING", blocking ? "1" : "0"},
-                        {"CLPV_CHANNELS", std::to_string(slot->channels)}};
-    stencil_.add_literals(program.literals);
-    if (lobes_) lobes_->add_literals(program.literals);
-    slot->step = session_.kernel(program, "propagate_step");
-    slot->expand = session_.kernel(program, "propagate_expand");
-  }
+  if (!slot) slot.emplace(make_form(first, blocking));
   return *slot;
 }
 
@@ -65,20 +64,15 @@ void Propagator::transmit(const Volume& geometry) {
 
 void Propagator::run_step(Form& form, bool blocking, const Volume& source, const Volume& target,
                           const Volume& sum_so_far, const Volume& sum) {
-  form.step.setArg(0, source.memory());
-  form.step.setArg(1, target.memory());
-  form.step.setArg(2, sum_so_far.memory());
-  form.step.setArg(3, sum.memory());
-  if (blocking) form.step.setArg(4, transmitter_->transmittance().memory());
-  if (lobes_) lobes_->set(form.step);
-  stencil_.launch(session_, form.step, form.channels == 3 ? 1 : 3);
+  form.step.set(source.memory(), target.memory(), sum_so_far.memory(), sum.memory());
+  if (blocking) form.step.add(transmitter_->transmittance().memory());
+  if (lobes_) lobes_->add_to(form.step);
+  stencil_.launch(form.step, form.channels == 3 ? 1 : 3);
 }
 
 void Propagator::run_expand(Form& form, const Volume& base, const Volume& sum, const Volume& accumulated) {
-  form.expand.setArg(0, base.memory());
-  form.expand.setArg(1, sum.memory());
-  form.expand.setArg(2, accumulated.memory());
-  stencil_.launch(session_, form.expand, 3);
+  form.expand.set(base.memory(), sum.memory(), accumulated.memory());
+  stencil_.launch(form.expand, 3);
 }
 
 Volume& Propagator::before_late(const PropagateVolumes& volumes) {

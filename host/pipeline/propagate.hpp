@@ -62,9 +62,10 @@ class Propagator {
  private:
   struct Form {
     TransportSource source;
-    cl::Kernel step, expand;
-    int channels = 1;  ///< a work-item of `step` serves
+    int channels;  ///< a work-item of `step` serves
+    Kernel step, expand;
   };
+  Form make_form(bool first, bool blocking);
   Form& form(bool first, bool blocking);
   void transmit(const Volume& geometry);
   void run_step(Form& form, bool blocking, const Volume& source, const Volume& target,

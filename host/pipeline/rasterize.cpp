@@ -12,7 +12,7 @@ static_assert(sizeof(ClpvProjected) == CLPV_SIZEOF_PROJECTED &&
               sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kTileGroup = 8;  // tiles differ in work: small groups even it out between cores
+const cl::NDRange kTileRow(8, 1);  // tiles differ in work: small groups even it out between cores
 
 unsigned tiles_along(unsigned pixels) {
   return (pixels + CLPV_TILE - 1) / CLPV_TILE;
@@ -20,36 +20,12 @@ unsigned tiles_along(unsigned pixels) {
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
 }
+/// A work-item a row of pixels of a tile.
+cl::NDRange rows_of_tiles(const ClpvView& view) {
+  return {tiles_along(view.width), view.height};
+}
 unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
-}
-
-std::string literal(bool value) {
-  return value ? "1" : "0";
-}
-
-ProgramSource rasterize_program(const ClpvView& view, const char* file = "rasterize.cl") {
-  ProgramSource source;
-  source.file = file;
-  source.literals = {{"CLPV_ORTHOGRAPHIC", literal(view.orthographic != 0)}};
-  return source;
-}
-
-ProgramSource resolve_program(const Surface& surface, const SceneBuffers& scene, bool from_light,
-                              bool emissive) {
-  ProgramSource source = rasterize_program(surface.view, "resolve.cl");
-  source.literals["CLPV_SURFACE_PAPER"] = literal(surface.format == RsmFormat::paper);
-  source.literals["CLPV_FROM_LIGHT"] = literal(from_light);
-  source.literals["CLPV_TEXTURED"] = literal(scene.textured);
-  source.literals["CLPV_COLOURED"] = literal(scene.coloured);
-  source.literals["CLPV_EMISSIVE"] = literal(emissive);
-  return source;
-}
-
-template <typename... Args>
-void set_args(cl::Kernel& kernel, const Args&... args) {
-  cl_uint index = 0;
-  (kernel.setArg(index++, args), ...);
 }
 
 /// The largest flux a texel of `view` can have [W]: albedo 1, at the middle of the view, where texels see
@@ -71,6 +47,36 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
   grown(listed_, (scene.triangle_count / 2 + kGroup) * sizeof(ClpvRasterTriangle), "triangles to draw");
 }
 
+Rasterizer::Drawing Rasterizer::make_drawing(bool orthographic) const {
+  const Literals literals = Literals().flag("CLPV_ORTHOGRAPHIC", orthographic);
+  const ProgramSource list{"rasterize.cl", literals, {}}, draw{"draw_tiles.cl", literals, {}};
+  return {Kernel(session_, list, "project_vertices"), Kernel(session_, list, "set_up"),
+          Kernel(session_, list, "set_up_clipped"),   Kernel(session_, list, "bin_triangles"),
+          Kernel(session_, draw, "draw_tiles"),       Kernel(session_, draw, "resolve_depth")};
+}
+
+Rasterizer::Drawing& Rasterizer::drawing(const ClpvView& view) {
+  const bool orthographic = view.orthographic != 0;
+  auto found = drawing_.find(orthographic);
+  if (found == drawing_.end()) found = drawing_.emplace(orthographic, make_drawing(orthographic)).first;
+  return found->second;
+}
+
+Kernel& Rasterizer::resolve(const Resolving& wanted) {
+  if (const auto found = resolve_.find(wanted); found != resolve_.end()) return found->second;
+  const ProgramSource source{"resolve.cl",
+                             Literals()
+                                 .flag("CLPV_ORTHOGRAPHIC", wanted.orthographic)
+                                 .flag("CLPV_SURFACE_PAPER", wanted.paper)
+                                 .flag("CLPV_FROM_LIGHT", wanted.from_light)
+                                 .flag("CLPV_TEXTURED", scene_.textured)
+                                 .flag("CLPV_COLOURED", scene_.coloured)
+                                 .flag("CLPV_EMISSIVE", wanted.emissive),
+                             {}};
+  const char* name = wanted.from_light ? "resolve_rsm" : "resolve_camera";
+  return resolve_.try_emplace(wanted, session_, source, name).first->second;
+}
+
 cl::Buffer& Rasterizer::grown(Scratch& scratch, std::size_t bytes, const char* what) {
   if (bytes > scratch.bytes || scratch.buffer() == nullptr) {
     scratch.buffer = session_.buffer(bytes, what);
@@ -80,14 +86,13 @@ cl::Buffer& Rasterizer::grown(Scratch& scratch, std::size_t bytes, const char* w
 }
 
 void Rasterizer::find_visible(const Pass& pass) {
-  const ProgramSource source = rasterize_program(pass.view);
   const std::size_t pixels = padded_pixels(pass.view);
   grown(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   grown(seen_, pixels * sizeof(cl_uint), "triangles seen");
   if (scene_.vertex_count > 0) {
-    cl::Kernel project = session_.kernel(source, "project_vertices");
-    set_args(project, pass.view, scene_.vertex_count, scene_.vertices, projected_.buffer);
-    session_.launch(project, scene_.vertex_count, kGroup);
+    drawing(pass.view)
+        .project.set(pass.view, scene_.vertex_count, scene_.vertices, projected_.buffer)
+        .launch(scene_.vertex_count, kGroup);
   }
   draw(pass, 0, scene_.triangle_count, true);
 }
@@ -96,21 +101,21 @@ void Rasterizer::find_visible(const Pass& pass) {
 /// many.
 unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   if (count == 0) return 0;
-  const ProgramSource source = rasterize_program(pass.view);
+  Drawing& kernels = drawing(pass.view);
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   for (;;) {
     const auto capacity = static_cast<cl_uint>(listed_.bytes / sizeof(ClpvRasterTriangle));
     session_.write(counts_.buffer, std::vector<cl_uint>(2, 0));
-    cl::Kernel all = session_.kernel(source, "set_up");
-    set_args(all, pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials,
-             projected_.buffer, counts_.buffer, capacity, listed_.buffer, to_clip_.buffer);
-    session_.launch(all, count, kGroup);
+    kernels.set_up
+        .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials,
+             projected_.buffer, counts_.buffer, capacity, listed_.buffer, to_clip_.buffer)
+        .launch(count, kGroup);
     std::vector<cl_uint> counts = session_.read<cl_uint>(counts_.buffer, 2);
     if (counts[1] > 0) {
-      cl::Kernel clipped = session_.kernel(source, "set_up_clipped");
-      set_args(clipped, pass.view, counts[1], cull, scene_.vertices, scene_.triangles, scene_.materials,
-               counts_.buffer, capacity, listed_.buffer, to_clip_.buffer);
-      session_.launch(clipped, counts[1], kGroup);
+      kernels.set_up_clipped
+          .set(pass.view, counts[1], cull, scene_.vertices, scene_.triangles, scene_.materials,
+               counts_.buffer, capacity, listed_.buffer, to_clip_.buffer)
+          .launch(counts[1], kGroup);
       counts = session_.read<cl_uint>(counts_.buffer, 2);
     }
     if (counts[0] <= capacity) return counts[0];
@@ -120,10 +125,9 @@ unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
 
 void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
   if (listed == 0) return;
-  cl::Kernel kernel = session_.kernel(rasterize_program(view), "bin_triangles");
-  set_args(kernel, listed, tiles_along(view.width), cl_uint{fill}, listed_.buffer, places_.buffer,
-           binned_.buffer);
-  session_.launch(kernel, listed, kGroup);
+  drawing(view)
+      .bin.set(listed, tiles_along(view.width), cl_uint{fill}, listed_.buffer, places_.buffer, binned_.buffer)
+      .launch(listed, kGroup);
 }
 
 /// Draws a range of triangles; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
@@ -151,11 +155,11 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
 }
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
-  cl::Kernel kernel = session_.kernel(rasterize_program(view, "draw_tiles.cl"), "draw_tiles");
-  set_args(kernel, view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
-           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_.buffer, seen_.buffer);
-  session_.launch(kernel, cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
-                  cl::NDRange(kTileGroup, 1));
+  drawing(view)
+      .draw_tiles
+      .set(view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
+           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_.buffer, seen_.buffer)
+      .launch(cl::NDRange(tiles_along(view.width), tiles_along(view.height)), kTileRow);
 }
 
 void Rasterizer::clear(Surface& surface) {
@@ -175,11 +179,14 @@ void Rasterizer::rasterize_camera(Surface& surface) {
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, true});
   const bool emissive = has_emissive && scene_.emissive;
-  cl::Kernel resolve = session_.kernel(resolve_program(surface, scene_, false, emissive), "resolve_camera");
-  set_args(resolve, view, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
-           scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
-  if (emissive) resolve.setArg(11, surface.emissive);
-  session_.launch(resolve, cl::NDRange(tiles_along(view.width), view.height), cl::NDRange(kTileGroup, 1));
+  Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
+                            .from_light = false,
+                            .paper = surface.format == RsmFormat::paper,
+                            .emissive = emissive});
+  kernel.set(view, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
+             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
+  if (emissive) kernel.add(surface.emissive);
+  kernel.launch(rows_of_tiles(view), kTileRow);
 }
 
 void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
@@ -187,18 +194,19 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
   if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, false});
-  cl::Kernel resolve = session_.kernel(resolve_program(surface, scene_, true, false), "resolve_rsm");
-  set_args(resolve, view, light, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles,
-           scene_.materials, scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
-           surface.colour_scale);
-  session_.launch(resolve, cl::NDRange(tiles_along(view.width), view.height), cl::NDRange(kTileGroup, 1));
+  resolve({.orthographic = view.orthographic != 0,
+           .from_light = true,
+           .paper = surface.format == RsmFormat::paper,
+           .emissive = false})
+      .set(view, light, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
+           scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
+           surface.colour_scale)
+      .launch(rows_of_tiles(view), kTileRow);
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, cl::Buffer& depth) {
   find_visible({view, false});
-  cl::Kernel resolve = session_.kernel(rasterize_program(view, "draw_tiles.cl"), "resolve_depth");
-  set_args(resolve, view, keys_.buffer, depth);
-  session_.launch(resolve, cl::NDRange(tiles_along(view.width), view.height), cl::NDRange(kTileGroup, 1));
+  drawing(view).resolve_depth.set(view, keys_.buffer, depth).launch(rows_of_tiles(view), kTileRow);
 }
 
 }  // namespace clpv

@@ -5,6 +5,10 @@
 // triangle that comes first in the scene is seen: two runs give the same bytes.
 #pragma once
 
+#include <compare>
+#include <map>
+
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/surface.hpp"
@@ -46,6 +50,19 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
+  /// Kernels of one projection, which is in their code.
+  struct Drawing {
+    Kernel project, set_up, set_up_clipped, bin, draw_tiles, resolve_depth;
+  };
+  Drawing make_drawing(bool orthographic) const;
+  Drawing& drawing(const ClpvView& view);
+  /// What the code that resolves a surface is made for.
+  struct Resolving {
+    bool orthographic, from_light, paper, emissive;
+    auto operator<=>(const Resolving&) const = default;
+  };
+  Kernel& resolve(const Resolving& wanted);
+
   void clear(Surface& surface);
   void find_visible(const Pass& pass);
   void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
@@ -57,6 +74,8 @@ class Rasterizer {
   Session& session_;
   SceneBuffers scene_;
   std::size_t most_listed_;
+  std::map<bool, Drawing> drawing_;  ///< by whether the projection is orthographic
+  std::map<Resolving, Kernel> resolve_;
   Scratch projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
 };
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/light.h"
 #include "kernels/shared/shade.h"
@@ -58,7 +59,7 @@ class Shader {
   void add(const Surface& camera, const ShadowedLight& shadowed);
 
   Session& session_;
-  cl::Kernel light_, shade_;
+  Kernel light_, shade_;
   cl::Buffer direct_;  // float4 a pixel, E of all lights
   cl::Buffer views_;   // of the light at hand
   std::size_t pixels_ = 0, reserved_views_ = 0;

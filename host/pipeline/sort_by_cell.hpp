@@ -4,6 +4,7 @@
 #include <CL/opencl.hpp>
 #include <cstddef>
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 
 namespace clpv {
@@ -31,7 +32,7 @@ class CellSorter {
   void reserve_counts(std::size_t digits, std::size_t chunks);
 
   Session& session_;
-  cl::Kernel count_runs_, scatter_runs_, count_texels_, scatter_texels_, sum_digits_, place_digits_;
+  Kernel count_runs_, scatter_runs_, count_texels_, scatter_texels_, sum_digits_, place_digits_;
   std::size_t capacity_ = 0, counts_capacity_ = 0, digits_capacity_ = 0;
   cl::Buffer keys_, runs_, sorted_, counts_, totals_, run_count_, count_;
 };

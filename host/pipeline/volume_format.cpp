@@ -132,9 +132,9 @@ int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
-  literals["CLPV_LAYOUT"] = kLayoutLiterals[static_cast<std::size_t>(format.layout)];
-  literals["CLPV_STORAGE_HALF"] = std::to_string(format.storage == Storage::float16 ? 1 : 0);
-  literals["CLPV_LANES"] = std::to_string(lanes);
+  literals.word("CLPV_LAYOUT", std::string(kLayoutLiterals[static_cast<std::size_t>(format.layout)]))
+      .flag("CLPV_STORAGE_HALF", format.storage == Storage::float16)
+      .integer("CLPV_LANES", lanes);
 }
 
 int accesses_per_cell(const VolumeFormat& format, int coefficients) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/program.hpp"
+#include "device/literals.hpp"
 
 namespace clpv {
 
