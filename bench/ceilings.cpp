@@ -86,7 +86,7 @@ Job fma_job(Session& session, int width) {
   const Shares shares = fma_shares(session.device());
   const ProgramSource source{"ceilings.cl", Literals().integer("CLPV_WIDTH", width), {}};
   auto kernel = std::make_shared<Kernel>(session, source, "fma_peak");
-  const cl::Buffer out = session.buffer(shares.items * sizeof(float), "ceilings, results");
+  const Buffer out = session.buffer(shares.items * sizeof(float), "ceilings, results");
   const auto launch = [kernel, out, shares](cl_uint passes) {
     kernel->set(passes, static_cast<cl_float>(kStart), out).launch(shares.items, shares.local);
   };
@@ -109,9 +109,9 @@ Job stream_job(Session& session, std::size_t bytes) {
   const ProgramSource source{
       "ceilings.cl", Literals().integer("CLPV_WIDTH", kWidth).number("CLPV_BLOCK", block), {}};
   auto kernel = std::make_shared<Kernel>(session, source, "stream");
-  const cl::Buffer a = session.upload(std::vector<float>(values, 1.0f), "ceilings, stream"),
-                   b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),
-                   c = session.buffer(values * sizeof(float), "ceilings, stream");
+  const Buffer a = session.upload(std::vector<float>(values, 1.0f), "ceilings, stream"),
+               b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),
+               c = session.buffer(values * sizeof(float), "ceilings, stream");
   const auto launch = [=](cl_uint passes) {
     kernel->set(passes, static_cast<cl_uint>(per_item / block), a, b, c).launch(shares.items, shares.local);
   };
@@ -129,7 +129,7 @@ Job stream_job(Session& session, std::size_t bytes) {
 
 Job launch_job(Session& session) {
   auto kernel = std::make_shared<Kernel>(session, ProgramSource{"ceilings.cl", {}, {}}, "nothing");
-  const cl::Buffer out = session.buffer(sizeof(float), "ceilings, launch");
+  const Buffer out = session.buffer(sizeof(float), "ceilings, launch");
   Job job;
   job.reset = [&session, out] { session.fill_zero(out, sizeof(float)); };
   job.run = [kernel, out] { kernel->set(out).launch(1, 1); };

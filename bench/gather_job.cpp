@@ -21,7 +21,7 @@ struct Gathering {
   std::vector<std::unique_ptr<Volume>> volumes;
   std::vector<const Volume*> accumulated;
   Gatherer gatherer;
-  cl::Buffer irradiance;
+  Buffer irradiance;
 
   Gathering(Session& session, const Variant& v)
       : basis(make_basis(v.basis, v.lambda)),

@@ -21,7 +21,7 @@ std::vector<float> entries(const LookupTable& table, int size) {
                      "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
                      "  const int i = (int)get_global_id(0);\n  out[i] = CLPV_TABLE_READ(table, i);\n}\n";
   Kernel kernel(session, source, "entries");
-  const cl::Buffer out = session.buffer(static_cast<std::size_t>(size) * sizeof(float), "entries");
+  const Buffer out = session.buffer(static_cast<std::size_t>(size) * sizeof(float), "entries");
   table.add_to(kernel.set(out));
   kernel.launch(static_cast<std::size_t>(size), 1);
   return session.read<float>(out, static_cast<std::size_t>(size));

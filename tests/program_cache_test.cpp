@@ -163,7 +163,7 @@ class CachedSession : public ProgramCacheTest {
   /// What the kernel of source(value) writes, its program kept afterwards.
   int answer(int value) const {
     Session session(choose_device(), cache_);
-    const cl::Buffer out = session.buffer(sizeof(int), "answer");
+    const Buffer out = session.buffer(sizeof(int), "answer");
     Kernel(session, source(value), "answer").set(out).launch(1, 1);
     const int read = session.read<int>(out, 1)[0];
     session.store_programs();

@@ -18,7 +18,7 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   device.max_alloc_bytes = 4u << 20;
   device.memory_bytes = 6u << 20;
   Session session(device);
-  const cl::Buffer held = session.buffer(4u << 20, "first");
+  const Buffer held = session.buffer(4u << 20, "first");
   EXPECT_EQ(session.largest_buffer(), 2u << 20);
   try {
     session.buffer(3u << 20, "light volume");
@@ -33,13 +33,13 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
 
 TEST(Session, EmptyUploadsAndReadsAreFine) {
   Session session(choose_device());
-  const cl::Buffer buffer = session.upload(std::vector<float>{}, "nothing");
+  const Buffer buffer = session.upload(std::vector<float>{}, "nothing");
   EXPECT_TRUE(session.read<float>(buffer, 0).empty());
 }
 
 TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   Session session(choose_device());
-  const cl::Buffer bytes = session.buffer(1024, "sizes");
+  const Buffer bytes = session.buffer(1024, "sizes");
   Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
   const std::size_t too_large = 1u << 20;
   try {
@@ -59,7 +59,7 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
     device.profiling_valid = events;
     Session session(device);
     const std::size_t bytes = 8u << 20;
-    const cl::Buffer buffer = session.buffer(bytes, "filled");
+    const Buffer buffer = session.buffer(bytes, "filled");
     for (int i = 0; i < 2; ++i) {
       const StageScope inject(session, {"inject", 0});
       session.fill_zero(buffer, bytes);

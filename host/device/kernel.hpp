@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "device/memory.hpp"
 #include "device/program.hpp"
 
 namespace clpv {
@@ -22,7 +23,11 @@ concept KernelValue = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &
 
 /// And memory, where a parameter is a pointer or an image.
 template <typename T>
-concept KernelArgument = KernelValue<T> || std::derived_from<T, cl::Memory>;
+concept KernelMemory =
+    std::derived_from<T, cl::Memory> || std::same_as<T, Buffer> || std::same_as<T, Image3D>;
+
+template <typename T>
+concept KernelArgument = KernelValue<T> || KernelMemory<T>;
 
 class Kernel {
  public:
@@ -38,7 +43,7 @@ class Kernel {
   /// The arguments that follow: those that only some forms of a kernel have come last.
   template <KernelArgument... Arguments>
   Kernel& add(const Arguments&... arguments) {
-    (built().setArg(given_++, arguments), ...);
+    (built().setArg(given_++, as_cl(arguments)), ...);
     return *this;
   }
 
@@ -46,6 +51,14 @@ class Kernel {
   void launch(const cl::NDRange& global, const cl::NDRange& local);
 
  private:
+  template <typename T>
+  static const T& as_cl(const T& argument) {
+    return argument;
+  }
+  template <typename Handle>
+  static const Handle& as_cl(const DeviceMemory<Handle>& memory) {
+    return memory.handle();
+  }
   cl::Kernel& built();
 
   Session* session_;

@@ -90,8 +90,8 @@ class Frame {
   std::unique_ptr<Volume> geometry_;
   std::vector<std::unique_ptr<Volume>> accumulated_;
   std::vector<std::unique_ptr<Volume>> late_;  ///< a cascade; null for the finest, and without late light
-  cl::Buffer irradiance_;                      ///< float4 a pixel, as is image_
-  cl::Buffer image_;
+  Buffer irradiance_;                          ///< float4 a pixel, as is image_
+  Buffer image_;
   Show shown_ = Show::full;
 };
 

@@ -107,15 +107,11 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
 }
 
 void Gatherer::reserve(std::size_t cascades) {
-  if (cascades <= reserved_) return;
-  const auto n = static_cast<std::size_t>(options_.grid);
-  grids_ = session_.buffer(cascades * sizeof(ClpvGrid), "gather's grids");
-  if (packs()) {
-    packed_ = session_.buffer(
-        cascades * n * n * n * static_cast<std::size_t>(packed_pairs(form_)) * sizeof(cl_float8),
-        "gather's packed volumes");
-  }
-  reserved_ = cascades;
+  session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
+  if (!packs()) return;
+  const auto n = static_cast<std::size_t>(options_.grid),
+             pairs = static_cast<std::size_t>(packed_pairs(form_));
+  session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
 }
 
 void Gatherer::pack(const Volume& volume, std::size_t slot) {
@@ -125,7 +121,7 @@ void Gatherer::pack(const Volume& volume, std::size_t slot) {
 }
 
 void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                      const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance, float scale) {
+                      const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale) {
   require_fit(camera, grids, accumulated);
   reserve(grids.size());
   session_.write(grids_, grids);

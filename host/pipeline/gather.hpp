@@ -46,7 +46,7 @@ class Gatherer {
   /// there is no surface. `scale`: the volumes hold so many times the light (light_scale.hpp). Throws Error(run_time) where counts or shapes do not fit, or the device's memory
   /// does not suffice.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-              const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance, float scale = 1);
+              const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1);
 
  private:
   /// Images are sampled as they are, unless they hold more than irradiance needs.
@@ -67,8 +67,7 @@ class Gatherer {
   std::optional<Kernel> pack_;
   std::map<std::size_t, Kernel>
       gather_;  ///< by number of cascades, of which only volumes not packed take note
-  cl::Buffer packed_, grids_;
-  std::size_t reserved_ = 0;  ///< cascades
+  Buffer packed_, grids_;
 };
 
 }  // namespace clpv

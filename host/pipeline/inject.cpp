@@ -82,15 +82,13 @@ Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format, int stride) {
 
 void Injector::reserve(std::size_t texels) {
   sorter_.reserve(texels);
-  if (texels <= capacity_) return;
   const std::size_t lanes = options_.trilinear ? 8 : 1,
                     coefficients = static_cast<std::size_t>(basis_.size());
   const std::size_t blocks = block_count(texels);
-  details_ = session_.buffer(texels * (options_.trilinear ? 3 : 1) * sizeof(cl_float), "injection, texels");
-  partials_ =
-      session_.buffer(2 * blocks * 3 * coefficients * lanes * sizeof(cl_float), "injection, partial sums");
-  firsts_ = session_.buffer(blocks * sizeof(cl_uint), "injection, segments");
-  capacity_ = texels;
+  session_.reserve(details_, texels * (options_.trilinear ? 3 : 1) * sizeof(cl_float), "injection, texels");
+  session_.reserve(partials_, 2 * blocks * 3 * coefficients * lanes * sizeof(cl_float),
+                   "injection, partial sums");
+  session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
 }
 
 void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume) {

@@ -64,8 +64,7 @@ class Injector {
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<std::tuple<Kind, RsmFormat, int>, Kernels> kernels_;  ///< int: the stride
   std::map<Kind, PlaneStage> stages_;  ///< of images: a launch cannot both read and write one
-  std::size_t capacity_ = 0;
-  cl::Buffer details_, partials_, firsts_;
+  Buffer details_, partials_, firsts_;
 };
 
 }  // namespace clpv

@@ -37,7 +37,7 @@ class LookupTable {
  private:
   std::optional<ZonalTable> values_;
   TableStorage storage_;
-  cl::Buffer buffer_;
+  Buffer buffer_;
   cl::Image1DBuffer image_;
 };
 

@@ -41,10 +41,11 @@ float largest_flux(const ClpvLight& light, const ClpvView& view) {
 
 Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed)
     : session_(session), scene_(scene), most_listed_(most_listed) {
-  grown(counts_, 2 * sizeof(cl_uint), "counters of the rasteriser");
-  grown(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
-  grown(projected_, scene.vertex_count * sizeof(ClpvProjected), "projected vertices");
-  grown(listed_, (scene.triangle_count / 2 + kGroup) * sizeof(ClpvRasterTriangle), "triangles to draw");
+  session_.reserve(counts_, 2 * sizeof(cl_uint), "counters of the rasteriser");
+  session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
+  session_.reserve(projected_, scene.vertex_count * sizeof(ClpvProjected), "projected vertices");
+  session_.reserve(listed_, (scene.triangle_count / 2 + kGroup) * sizeof(ClpvRasterTriangle),
+                   "triangles to draw");
 }
 
 Rasterizer::Drawing Rasterizer::make_drawing(bool orthographic) const {
@@ -77,21 +78,13 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
   return resolve_.try_emplace(wanted, session_, source, name).first->second;
 }
 
-cl::Buffer& Rasterizer::grown(Scratch& scratch, std::size_t bytes, const char* what) {
-  if (bytes > scratch.bytes || scratch.buffer() == nullptr) {
-    scratch.buffer = session_.buffer(bytes, what);
-    scratch.bytes = bytes;
-  }
-  return scratch.buffer;
-}
-
 void Rasterizer::find_visible(const Pass& pass) {
   const std::size_t pixels = padded_pixels(pass.view);
-  grown(keys_, pixels * sizeof(cl_float), "keys of the depth test");
-  grown(seen_, pixels * sizeof(cl_uint), "triangles seen");
+  session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
+  session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   if (scene_.vertex_count > 0) {
     drawing(pass.view)
-        .project.set(pass.view, scene_.vertex_count, scene_.vertices, projected_.buffer)
+        .project.set(pass.view, scene_.vertex_count, scene_.vertices, projected_)
         .launch(scene_.vertex_count, kGroup);
   }
   draw(pass, 0, scene_.triangle_count, true);
@@ -104,29 +97,29 @@ unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   Drawing& kernels = drawing(pass.view);
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   for (;;) {
-    const auto capacity = static_cast<cl_uint>(listed_.bytes / sizeof(ClpvRasterTriangle));
-    session_.write(counts_.buffer, std::vector<cl_uint>(2, 0));
+    const auto capacity = static_cast<cl_uint>(listed_.bytes() / sizeof(ClpvRasterTriangle));
+    session_.write(counts_, std::vector<cl_uint>(2, 0));
     kernels.set_up
-        .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials,
-             projected_.buffer, counts_.buffer, capacity, listed_.buffer, to_clip_.buffer)
+        .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials, projected_,
+             counts_, capacity, listed_, to_clip_)
         .launch(count, kGroup);
-    std::vector<cl_uint> counts = session_.read<cl_uint>(counts_.buffer, 2);
+    std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, 2);
     if (counts[1] > 0) {
       kernels.set_up_clipped
-          .set(pass.view, counts[1], cull, scene_.vertices, scene_.triangles, scene_.materials,
-               counts_.buffer, capacity, listed_.buffer, to_clip_.buffer)
+          .set(pass.view, counts[1], cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
+               capacity, listed_, to_clip_)
           .launch(counts[1], kGroup);
-      counts = session_.read<cl_uint>(counts_.buffer, 2);
+      counts = session_.read<cl_uint>(counts_, 2);
     }
     if (counts[0] <= capacity) return counts[0];
-    grown(listed_, counts[0] * sizeof(ClpvRasterTriangle), "triangles to draw");
+    session_.reserve(listed_, counts[0] * sizeof(ClpvRasterTriangle), "triangles to draw");
   }
 }
 
 void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
   if (listed == 0) return;
   drawing(view)
-      .bin.set(listed, tiles_along(view.width), cl_uint{fill}, listed_.buffer, places_.buffer, binned_.buffer)
+      .bin.set(listed, tiles_along(view.width), cl_uint{fill}, listed_, places_, binned_)
       .launch(listed, kGroup);
 }
 
@@ -135,11 +128,11 @@ void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
 void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
   const ClpvView& view = pass.view;
   const unsigned listed = set_up(pass, first, count);
-  grown(places_, tile_count(view) * sizeof(cl_uint), "tiles");
-  grown(binned_, sizeof(cl_uint), "triangles by tile");
-  session_.write(places_.buffer, std::vector<cl_uint>(tile_count(view), 0));
+  session_.reserve(places_, tile_count(view) * sizeof(cl_uint), "tiles");
+  session_.reserve(binned_, sizeof(cl_uint), "triangles by tile");
+  session_.write(places_, std::vector<cl_uint>(tile_count(view), 0));
   bin(view, listed, false);
-  std::vector<cl_uint> places = session_.read<cl_uint>(places_.buffer, tile_count(view));
+  std::vector<cl_uint> places = session_.read<cl_uint>(places_, tile_count(view));
   const std::size_t total = std::accumulate(places.begin(), places.end(), std::size_t{0});
   if (total > most_listed_ && count > 1) {
     draw(pass, first, count / 2, fresh);
@@ -148,8 +141,8 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
   }
   // Where each tile's list starts, one after another.
   std::exclusive_scan(places.begin(), places.end(), places.begin(), cl_uint{0});
-  session_.write(places_.buffer, places);
-  grown(binned_, total * sizeof(cl_uint), "triangles by tile");
+  session_.write(places_, places);
+  session_.reserve(binned_, total * sizeof(cl_uint), "triangles by tile");
   bin(view, listed, true);
   draw_tiles(view, fresh);
 }
@@ -157,8 +150,8 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   drawing(view)
       .draw_tiles
-      .set(view, cl_uint{fresh}, listed_.buffer, places_.buffer, binned_.buffer, scene_.vertices,
-           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_.buffer, seen_.buffer)
+      .set(view, cl_uint{fresh}, listed_, places_, binned_, scene_.vertices, scene_.triangles,
+           scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
       .launch(cl::NDRange(tiles_along(view.width), tiles_along(view.height)), kTileRow);
 }
 
@@ -172,7 +165,7 @@ void Rasterizer::clear(Surface& surface) {
 
 void Rasterizer::rasterize_camera(Surface& surface) {
   const ClpvView& view = surface.view;
-  const bool has_emissive = surface.emissive() != nullptr;
+  const bool has_emissive = surface.emissive.exists();
   if (has_emissive && !scene_.emissive) {
     session_.fill_zero(surface.emissive, std::size_t{view.width} * view.height * sizeof(cl_float4));
   }
@@ -183,8 +176,8 @@ void Rasterizer::rasterize_camera(Surface& surface) {
                             .from_light = false,
                             .paper = surface.format == RsmFormat::paper,
                             .emissive = emissive});
-  kernel.set(view, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
-             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
+  kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
+             scene_.texels, surface.depth, surface.normal, surface.colour);
   if (emissive) kernel.add(surface.emissive);
   kernel.launch(rows_of_tiles(view), kTileRow);
 }
@@ -198,15 +191,14 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
            .from_light = true,
            .paper = surface.format == RsmFormat::paper,
            .emissive = false})
-      .set(view, light, keys_.buffer, seen_.buffer, scene_.vertices, scene_.triangles, scene_.materials,
-           scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
-           surface.colour_scale)
+      .set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
+           scene_.texels, surface.depth, surface.normal, surface.colour, surface.colour_scale)
       .launch(rows_of_tiles(view), kTileRow);
 }
 
-void Rasterizer::rasterize_shadow(const ClpvView& view, cl::Buffer& depth) {
+void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
   find_visible({view, false});
-  drawing(view).resolve_depth.set(view, keys_.buffer, depth).launch(rows_of_tiles(view), kTileRow);
+  drawing(view).resolve_depth.set(view, keys_, depth).launch(rows_of_tiles(view), kTileRow);
 }
 
 }  // namespace clpv

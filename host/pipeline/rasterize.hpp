@@ -37,14 +37,9 @@ class Rasterizer {
 
   /// Depth alone [m], 0 where there is no surface, into view.width x view.height floats. Both sides cast
   /// shadows.
-  void rasterize_shadow(const ClpvView& view, cl::Buffer& depth);
+  void rasterize_shadow(const ClpvView& view, Buffer& depth);
 
  private:
-  /// A buffer that grows when more is asked of it.
-  struct Scratch {
-    cl::Buffer buffer;
-    std::size_t bytes = 0;
-  };
   struct Pass {
     ClpvView view;
     bool cull_back_faces;
@@ -69,14 +64,13 @@ class Rasterizer {
   unsigned set_up(const Pass& pass, unsigned first, unsigned count);
   void draw_tiles(const ClpvView& view, bool fresh);
   void bin(const ClpvView& view, unsigned listed, bool fill);
-  cl::Buffer& grown(Scratch& scratch, std::size_t bytes, const char* what);
 
   Session& session_;
   SceneBuffers scene_;
   std::size_t most_listed_;
   std::map<bool, Drawing> drawing_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
-  Scratch projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
+  Buffer projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
 };
 
 }  // namespace clpv

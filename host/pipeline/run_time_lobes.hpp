@@ -38,7 +38,7 @@ class RunTimeLobes {
   std::string text_;
   std::size_t faces_ = 0;
   bool unit_flux_;
-  cl::Buffer normals_;
+  Buffer normals_;
 };
 
 }  // namespace clpv

@@ -58,7 +58,7 @@ void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& ligh
     throw Error(ExitCode::run_time, "shade: the camera's view is not float32");
   if (pixels_of(camera) != pixels_) {
     pixels_ = pixels_of(camera);
-    direct_ = session_.buffer(pixels_ * sizeof(cl_float4), "direct light");
+    session_.reserve(direct_, pixels_ * sizeof(cl_float4), "direct light");
   }
   session_.fill_zero(direct_, pixels_ * sizeof(cl_float4));
   for (const ShadowedLight& shadowed : lights) {
@@ -69,20 +69,17 @@ void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& ligh
 
 void Shader::add(const Surface& camera, const ShadowedLight& shadowed) {
   const std::size_t count = shadowed.views.size();
-  if (count > reserved_views_) {
-    views_ = session_.buffer(count * sizeof(ClpvView), "a light's views");
-    reserved_views_ = count;
-  }
+  session_.reserve(views_, count * sizeof(ClpvView), "a light's views");
   session_.write(views_, shadowed.views);
   for (std::size_t which = 0; which < std::max<std::size_t>(count, 1); ++which) {
     light_
         .set(camera.view, camera.depth, camera.normal, shadowed.light, views_, static_cast<cl_uint>(count),
-             static_cast<cl_uint>(which), count > 0 ? shadowed.depths[which] : cl::Buffer(), direct_)
+             static_cast<cl_uint>(which), count > 0 ? shadowed.depths[which] : Buffer(), direct_)
         .launch(cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocal, 1));
   }
 }
 
-void Shader::show(Show what, const Surface& camera, const cl::Buffer& irradiance, cl::Buffer& image) {
+void Shader::show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image) {
   if (pixels_of(camera) != pixels_) throw Error(ExitCode::run_time, "shade: shown before it was lit");
   shade_
       .set(static_cast<cl_uint>(what), static_cast<cl_uint>(pixels_), camera.depth, camera.normal,

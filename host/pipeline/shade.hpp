@@ -39,7 +39,7 @@ Show show_named(std::string_view name);
 struct ShadowedLight {
   ClpvLight light{};
   std::vector<ClpvView> views;
-  std::vector<cl::Buffer> depths;
+  std::vector<Buffer> depths;
 };
 
 class Shader {
@@ -53,16 +53,16 @@ class Shader {
 
   /// `camera` as given to light() last. `irradiance`: of the volumes (Gatherer). `image`: float4 a pixel,
   /// RGBA, linear, finite; alpha 1 where there is a surface, else all 0.
-  void show(Show what, const Surface& camera, const cl::Buffer& irradiance, cl::Buffer& image);
+  void show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image);
 
  private:
   void add(const Surface& camera, const ShadowedLight& shadowed);
 
   Session& session_;
   Kernel light_, shade_;
-  cl::Buffer direct_;  // float4 a pixel, E of all lights
-  cl::Buffer views_;   // of the light at hand
-  std::size_t pixels_ = 0, reserved_views_ = 0;
+  Buffer direct_;  // float4 a pixel, E of all lights
+  Buffer views_;   // of the light at hand
+  std::size_t pixels_ = 0;
 };
 
 }  // namespace clpv

@@ -37,29 +37,21 @@ CellSorter::CellSorter(Session& session)
       count_(session.buffer(sizeof(cl_uint), "sort by cell, count")) {}
 
 void CellSorter::reserve(std::size_t texels) {
-  if (texels <= capacity_) return;
   if (texels > kMostTexels) {
     throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels,
                 kMostTexels);
   }
-  keys_ = session_.buffer(texels * sizeof(cl_uint), "sort by cell, keys");
-  runs_ = session_.buffer(texels * sizeof(cl_uint2), "sort by cell, runs");
-  sorted_ = session_.buffer(texels * sizeof(cl_uint2), "sort by cell, result");
-  capacity_ = texels;
+  session_.reserve(keys_, texels * sizeof(cl_uint), "sort by cell, keys");
+  session_.reserve(runs_, texels * sizeof(cl_uint2), "sort by cell, runs");
+  session_.reserve(sorted_, texels * sizeof(cl_uint2), "sort by cell, result");
 }
 
 void CellSorter::reserve_counts(std::size_t digits, std::size_t chunks) {
-  if (digits > digits_capacity_) {
-    totals_ = session_.buffer(digits * sizeof(cl_uint), "sort by cell, totals");
-    digits_capacity_ = digits;
-  }
-  if (digits * chunks > counts_capacity_) {
-    counts_ = session_.buffer(digits * chunks * sizeof(cl_uint), "sort by cell, counts");
-    counts_capacity_ = digits * chunks;
-  }
+  session_.reserve(totals_, digits * sizeof(cl_uint), "sort by cell, totals");
+  session_.reserve(counts_, digits * chunks * sizeof(cl_uint), "sort by cell, counts");
 }
 
-void CellSorter::add_up(const cl::Buffer& count, cl_uint digits, cl_uint chunks) {
+void CellSorter::add_up(const Buffer& count, cl_uint digits, cl_uint chunks) {
   sum_digits_.set(counts_, chunks, digits, totals_).launch(cl::NDRange(digits), kLocal);
   place_digits_.set(counts_, chunks, digits, totals_, count).launch(cl::NDRange(digits), kLocal);
 }

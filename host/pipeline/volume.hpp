@@ -40,8 +40,8 @@ class Volume {
   VolumeShape shape_;
   VolumeFormat format_;
   std::size_t bytes_ = 0;
-  cl::Buffer buffer_;  ///< one of the two is empty
-  cl::Image3D image_;
+  Buffer buffer_;  ///< one of the two is none
+  Image3D image_;
 };
 
 /// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and

@@ -69,7 +69,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
     cascades.push_back({grids[c], &lit[c].twin});
   }
   const Surface camera = upload_surface(session, image);
-  cl::Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
+  Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer(session, basis, transport, options).gather(camera, grids, volumes, irradiance);
   std::vector<glm::dvec4> twin;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);

@@ -43,7 +43,7 @@ constexpr Place kHost[] = {
 
 CheckResults check_sizes(Session& session) {
   const std::size_t count = std::size(kHost);
-  cl::Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
+  Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
   Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
   const auto device = session.read<std::uint32_t>(bytes, count);
 
