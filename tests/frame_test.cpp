@@ -126,6 +126,21 @@ TEST(Frame, TwoRunsAreTheSameToTheBit) {
   EXPECT_EQ(render(scene, options, Show::full).pixels, render(scene, options, Show::full).pixels);
 }
 
+TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  RenderOptions options = small_options(scene);
+  Device device = choose_device();
+  {
+    Session session(device);
+    Frame(session, scene, options).render(scene.cameras.front());
+    device.memory_bytes = session.most_device_bytes() * 3 / 2;
+  }
+  Session session(device);
+  for (options.iterations = 2; options.iterations < 6; ++options.iterations)
+    Frame(session, scene, options).render(scene.cameras.front());
+  EXPECT_EQ(session.device_bytes(), 0u);
+}
+
 TEST(Frame, SceneWithoutLightIsBlack) {
   Scene scene = load_scene(scene_path("cornell.json"));
   scene.lights.clear();

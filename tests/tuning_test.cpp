@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "device/device.hpp"
-#include "pipeline/volume_format.hpp"
 #include "support/error.hpp"
 #include "tests/run_program.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/suites.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -28,7 +28,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::st
     variant.layout = layout_name(format.layout), variant.storage = storage_name(format.storage);
     variant.occlusion = timed.occlusion;
     cases.push_back(stage_case(bench, "layouts", timed.stage, variant));
-    if (timed.stage != "gather" || format.layout != Layout::image) continue;
+    if (timed.stage != "gather" || !sampled_by_device(format)) continue;
     variant.filtered = false;
     cases.push_back(stage_case(bench, "layouts", timed.stage, variant));
   }

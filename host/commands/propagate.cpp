@@ -11,10 +11,10 @@
 #include "commands/parse.hpp"
 #include "pipeline/options.hpp"
 #include "pipeline/presets.hpp"
-#include "pipeline/volume_files.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
+#include "volume/volume_files.hpp"
 
 namespace clpv {
 namespace {

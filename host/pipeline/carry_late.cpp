@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "support/error.hpp"
 
@@ -42,17 +41,15 @@ LateCarrier::LateCarrier(Session& session, const VolumeShape& shape, const Volum
                 .format = format,
                 .lanes = lanes > 0 ? lanes : preferred_row_lanes(session.device(), format)}),
       kernel_(session, {"carry_late.cl", stencil_.literals(), coefficient_macros(shape.coefficients)},
-              "carry_late") {
-  if (format.layout == Layout::image)
-    spare_ = std::make_unique<Volume>(session, shape, "spare sum with late light", format);
-}
+              "carry_late"),
+      accumulator_(session) {}
 
 void LateCarrier::carry(const Volume& light, const ClpvGrid& coarser, Volume& sum, const ClpvGrid& finer) {
   const std::array<cl_int, 3> offset = offset_between(coarser, finer, shape_.n);
-  Volume& result = spare_ ? *spare_ : sum;
-  kernel_.set(light.memory(), sum.memory(), result.memory(), offset[0], offset[1], offset[2]);
-  stencil_.launch(kernel_, shape_.channels);
-  if (spare_) std::swap(*spare_, sum);
+  accumulator_.add(sum, [&](const Volume& so_far, const Volume& next) {
+    kernel_.set(light.memory(), so_far.memory(), next.memory(), offset[0], offset[1], offset[2]);
+    stencil_.launch(kernel_, shape_.channels);
+  });
 }
 
 }  // namespace clpv

@@ -15,7 +15,7 @@
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/stencil.hpp"
 #include "pipeline/surface.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -50,7 +50,7 @@ class Gatherer {
 
  private:
   /// Images are sampled as they are, unless they hold more than irradiance needs.
-  bool packs() const { return options_.format.layout != Layout::image || form_.projects(); }
+  bool packs() const { return !sampled_by_device(options_.format) || form_.projects(); }
   Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;

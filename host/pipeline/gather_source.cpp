@@ -8,8 +8,8 @@
 #include "basis/table_kernel.hpp"
 #include "pipeline/linear_code.hpp"
 #include "pipeline/mirrors.hpp"
-#include "pipeline/volume.hpp"
 #include "support/literal.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 namespace {

@@ -48,7 +48,8 @@ Injector::Injector(Session& session, const Basis& basis, const InjectOptions& op
       options_(options),
       table_(session, basis, options.lobes, options.table, TableUse::lobes),
       sorter_(session),
-      strip_(session.device().type == "cpu" ? kCpuStrip : 1) {}
+      strip_(session.device().type == "cpu" ? kCpuStrip : 1),
+      accumulator_(session) {}
 
 bool Injector::looks_up(Kind kind) const {
   return kind == Kind::light || options_.blocking != Blocking::areas;
@@ -64,8 +65,7 @@ Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format, int stride
   ProgramSource find{"find_cells.cl", both, {}}, sum{"inject.cl", both, {}};
   find.literals.number("CLPV_STRIP", strip_);
   sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
-  const bool planes = options_.format.layout == Layout::image;
-  add_format_literals(sum.literals, {planes ? Layout::soa : options_.format.layout, options_.format.storage});
+  add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
   sum.generated = (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
                   (light ? inject_source(basis_, options_.lobes, options_.trilinear)
                          : blocker_source(basis_, options_.lobes, options_.blocking));
@@ -92,19 +92,12 @@ void Injector::reserve(std::size_t texels) {
 }
 
 void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume) {
-  if (volume.updates_in_place()) {
-    inject_in_place(kind, surface, grid, stride, volume);
-    return;
-  }
-  PlaneStage& stage =
-      stages_.try_emplace(kind, session_, volume.shape(), volume.format().storage).first->second;
-  stage.take(volume);
-  inject_in_place(kind, surface, grid, stride, stage.planes());
-  stage.give(volume);
+  accumulator_.add_to_cells(volume,
+                            [&](const Volume& cells) { inject_cells(kind, surface, grid, stride, cells); });
 }
 
-void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
-                               Volume& volume) {
+void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                            const Volume& volume) {
   const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
   const auto step = static_cast<unsigned>(stride);
   const std::size_t width = CLPV_TAKEN(surface.view.width, step),

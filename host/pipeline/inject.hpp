@@ -10,11 +10,11 @@
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
-#include "pipeline/convert.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/sort_by_cell.hpp"
 #include "pipeline/surface.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/accumulator.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -54,7 +54,8 @@ class Injector {
   bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
-  void inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
+  void inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                    const Volume& volume);
 
   Session& session_;
   const Basis& basis_;
@@ -63,7 +64,7 @@ class Injector {
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<std::tuple<Kind, RsmFormat, int>, Kernels> kernels_;  ///< int: the stride
-  std::map<Kind, PlaneStage> stages_;  ///< of images: a launch cannot both read and write one
+  Accumulator accumulator_;
   Buffer details_, partials_, firsts_;
 };
 

@@ -13,7 +13,7 @@
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/run_time_lobes.hpp"
 #include "pipeline/transport_source.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 

@@ -19,20 +19,17 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
       basis_(basis),
       transport_(transport),
       options_(options),
-      stencil_(session.device(), options.stencil()) {
+      stencil_(session.device(), options.stencil()),
+      accumulator_(session) {
   if (options.lobe_time == LobeTime::kernel)
     lobes_.emplace(session, basis, transport, options.state, options.table);
   const bool fluxes = options.state == State::fluxes;
-  const VolumeShape light{options.grid, basis.size(), 3};
   const VolumeShape shape{options.grid, fluxes ? 6 : basis.size(), 3};
-  const auto make = [&](const VolumeShape& of, const char* what) {
-    return std::make_unique<Volume>(session, of, what, options.format);
+  const auto make = [&](const char* what) {
+    return std::make_unique<Volume>(session, shape, what, options.format);
   };
-  for (auto& volume : travelling_) volume = make(shape, "travelling light");
-  if (fluxes) sum_ = make(shape, "sum of fluxes");
-  if (travelling_[0]->updates_in_place()) return;
-  spare_ = make(light, "spare sum of light");
-  if (fluxes) travelling_spare_ = make(shape, "spare sum of fluxes");
+  for (auto& volume : travelling_) volume = make("travelling light");
+  if (fluxes) sum_ = make("sum of fluxes");
 }
 
 Propagator::Form Propagator::make_form(bool first, bool blocking) {
@@ -75,41 +72,25 @@ void Propagator::run_expand(Form& form, const Volume& base, const Volume& sum, c
   stencil_.launch(form.expand, 3);
 }
 
-Volume& Propagator::before_late(const PropagateVolumes& volumes) {
-  return spare_ ? *spare_ : volumes.accumulated;
-}
-
-Propagator::Sums Propagator::prepare_sums(const PropagateVolumes& volumes, int early_steps, int late_steps) {
-  const bool fluxes = options_.state == State::fluxes;
-  if (late_steps == 0 && volumes.late != nullptr) volumes.late->clear(session_);
-  if (fluxes && late_steps > 0 && !late_sum_)
+Volume& Propagator::sum_of(const PropagateVolumes& volumes, bool late) {
+  if (options_.state == State::coefficients) return late ? *volumes.late : volumes.accumulated;
+  if (late && !late_sum_)
     late_sum_ = std::make_unique<Volume>(session_, sum_->shape(), "late sum of fluxes", options_.format);
-  const auto late_sum = [&](Volume* result, Volume* spare) {
-    return late_steps > 0 ? std::optional(RunningSum(*result, spare, late_steps)) : std::nullopt;
-  };
-  if (fluxes) {
-    RunningSum early(*sum_, travelling_spare_.get(), early_steps);
-    early.so_far().clear(session_);
-    return {early, late_sum(late_sum_.get(), travelling_spare_.get())};
-  }
-  if (late_steps == 0) return {RunningSum(volumes.accumulated, spare_.get(), early_steps), std::nullopt};
-  return {RunningSum(before_late(volumes), &volumes.accumulated, early_steps),
-          late_sum(volumes.late, &volumes.accumulated)};
+  return late ? *late_sum_ : *sum_;
 }
 
 void Propagator::expand(Form& form, const PropagateVolumes& volumes, bool late) {
-  if (options_.state == State::coefficients) {
-    if (late) run_expand(form, before_late(volumes), *volumes.late, volumes.accumulated);
-    return;
-  }
-  if (!late) {
+  if (options_.state == State::fluxes) {
+    if (late) {
+      volumes.accumulated.clear(session_);
+      run_expand(form, volumes.accumulated, *late_sum_, *volumes.late);
+    }
     run_expand(form, volumes.injected, *sum_, volumes.accumulated);
-    return;
   }
-  volumes.accumulated.clear(session_);
-  run_expand(form, volumes.accumulated, *late_sum_, *volumes.late);
-  run_expand(form, volumes.injected, *sum_, before_late(volumes));
-  run_expand(form, before_late(volumes), *late_sum_, volumes.accumulated);
+  if (!late) return;
+  accumulator_.add(volumes.accumulated, [&](const Volume& early, const Volume& all) {
+    run_expand(form, early, sum_of(volumes, true), all);
+  });
 }
 
 void Propagator::propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step) {
@@ -117,7 +98,8 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   const int late_steps =
       volumes.late == nullptr ? 0 : std::min((iterations + 1) / 2, std::max(iterations - 1, 0));
   if (volumes.geometry != nullptr && iterations > 1) transmit(*volumes.geometry);
-  Sums sums = prepare_sums(volumes, iterations - late_steps, late_steps);
+  if (options_.state == State::fluxes) sum_->clear(session_);
+  if (volumes.late != nullptr) (late_steps > 0 ? sum_of(volumes, true) : *volumes.late).clear(session_);
   if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);
 
   const Volume* source = &volumes.injected;
@@ -125,13 +107,17 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   for (int step = 1; step <= iterations; ++step) {
     const bool blocking = volumes.geometry != nullptr && step > 1;
     const Volume& target = *travelling_[static_cast<std::size_t>(step % 2)];
-    RunningSum& sum = step > iterations - late_steps ? *sums.late : sums.early;
-    // Coefficients add up from the injected field on; fluxes, which it has none of, from zero.
-    const bool from_injected = step == 1 && options_.state == State::coefficients;
-    if (step == iterations - late_steps + 1) sum.so_far().clear(session_);  // the first late one
+    Volume& sum = sum_of(volumes, step > iterations - late_steps);
     last = &form(step == 1, blocking);
-    run_step(*last, blocking, *source, target, from_injected ? volumes.injected : sum.so_far(), sum.next());
-    sum.added();
+    const auto run = [&](const Volume& so_far, const Volume& next) {
+      run_step(*last, blocking, *source, target, so_far, next);
+    };
+    // Coefficients add up from the injected field on; fluxes, which it has none of, from zero.
+    if (step == 1 && options_.state == State::coefficients) {
+      run(volumes.injected, sum);
+    } else {
+      accumulator_.add(sum, run);
+    }
     source = &target;
     if (after_step) after_step(step, target);
   }

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "device/kernel.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 

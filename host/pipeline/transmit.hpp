@@ -8,7 +8,7 @@
 #include "device/session.hpp"
 #include "pipeline/linear_code.hpp"
 #include "pipeline/stencil.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 

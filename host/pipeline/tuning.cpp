@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/options.hpp"
-#include "pipeline/volume_format.hpp"
 #include "scene/json_schema.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 namespace {

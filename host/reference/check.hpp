@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/session.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv::reference {
 

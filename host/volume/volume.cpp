@@ -1,4 +1,4 @@
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 #include <glm/gtc/packing.hpp>
 

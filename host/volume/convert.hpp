@@ -3,7 +3,7 @@
 
 #include "device/kernel.hpp"
 #include "device/session.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 

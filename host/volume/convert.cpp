@@ -1,4 +1,4 @@
-#include "pipeline/convert.hpp"
+#include "volume/convert.hpp"
 
 namespace clpv {
 namespace {
@@ -15,7 +15,7 @@ ProgramSource source_of(const VolumeShape& shape, Storage storage) {
 }  // namespace
 
 PlaneStage::PlaneStage(Session& session, const VolumeShape& shape, Storage storage)
-    : planes_(session, shape, "volume as planes", {Layout::soa, storage}),
+    : planes_(session, shape, "volume as planes", planes_format(storage)),
       from_image_(session, source_of(shape, storage), "image_to_planes"),
       to_image_(session, source_of(shape, storage), "planes_to_image") {}
 

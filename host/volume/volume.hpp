@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "device/session.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 
@@ -23,8 +23,6 @@ class Volume {
   std::size_t bytes() const { return bytes_; }
   /// For a kernel's argument of type CLPV_VOLUME_IN or CLPV_VOLUME_OUT.
   const cl::Memory& memory() const;
-  /// May one launch both read and write this volume? Not an image, in OpenCL 1.2.
-  bool updates_in_place() const { return format_.layout != Layout::image; }
 
   void clear(Session& session);
   /// `from`: the same shape and format.

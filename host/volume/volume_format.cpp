@@ -1,4 +1,4 @@
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 #include <fmt/format.h>
 
@@ -116,6 +116,18 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
   if (const auto reason = unsupported(device, format, shape)) {
     throw Error(ExitCode::device, "{} on {} is unsupported: {}", format_name(format), device.name, *reason);
   }
+}
+
+bool updates_in_place(const VolumeFormat& format) {
+  return format.layout != Layout::image;
+}
+
+VolumeFormat planes_format(Storage storage) {
+  return {Layout::soa, storage};
+}
+
+bool sampled_by_device(const VolumeFormat& format) {
+  return format.layout == Layout::image;
 }
 
 int most_lanes(const VolumeFormat& format) {
