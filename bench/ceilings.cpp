@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "device/arguments.hpp"
+#include "device/kernel.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -80,12 +80,11 @@ Job fma_job(Session& session, int width) {
   constexpr double kStart = 3;
   constexpr int kLeastPasses = 32;  // 128 halvings: a float has come to 2 from any start
   const Shares shares = fma_shares(session.device());
-  const ProgramSource source{"ceilings.cl", {{"CLPV_WIDTH", std::to_string(width)}}, {}};
-  auto kernel = std::make_shared<cl::Kernel>(session.kernel(source, "fma_peak"));
-  const cl::Buffer out = session.buffer(shares.items * sizeof(float), "ceilings, results");
-  const auto launch = [&session, kernel, out, shares](cl_uint passes) {
-    set_arguments(*kernel, passes, static_cast<cl_float>(kStart), out);
-    session.launch(*kernel, cl::NDRange(shares.items), cl::NDRange(shares.local));
+  const ProgramSource source{"ceilings.cl", Literals().integer("CLPV_WIDTH", width), {}};
+  auto kernel = std::make_shared<Kernel>(session, source, "fma_peak");
+  const Buffer out = session.buffer(shares.items * sizeof(float), "ceilings, results");
+  const auto launch = [kernel, out, shares](cl_uint passes) {
+    kernel->set(passes, static_cast<cl_float>(kStart), out).launch(shares.items, shares.local);
   };
   const cl_uint passes = std::max<cl_uint>(kLeastPasses, calibrated_passes(session, launch));
   Job job;
@@ -104,14 +103,13 @@ Job stream_job(Session& session, std::size_t bytes) {
                     vectors = per_item * shares.items, values = vectors * kWidth;
   const std::size_t block = session.device().type == "cpu" ? per_item : 1;
   const ProgramSource source{
-      "ceilings.cl", {{"CLPV_WIDTH", std::to_string(kWidth)}, {"CLPV_BLOCK", fmt::format("{}u", block)}}, {}};
-  auto kernel = std::make_shared<cl::Kernel>(session.kernel(source, "stream"));
-  const cl::Buffer a = session.upload(std::vector<float>(values, 1.0f), "ceilings, stream"),
-                   b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),
-                   c = session.buffer(values * sizeof(float), "ceilings, stream");
-  const auto launch = [=, &session](cl_uint passes) {
-    set_arguments(*kernel, passes, static_cast<cl_uint>(per_item / block), a, b, c);
-    session.launch(*kernel, cl::NDRange(shares.items), cl::NDRange(shares.local));
+      "ceilings.cl", Literals().integer("CLPV_WIDTH", kWidth).number("CLPV_BLOCK", block), {}};
+  auto kernel = std::make_shared<Kernel>(session, source, "stream");
+  const Buffer a = session.upload(std::vector<float>(values, 1.0f), "ceilings, stream"),
+               b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),
+               c = session.buffer(values * sizeof(float), "ceilings, stream");
+  const auto launch = [=](cl_uint passes) {
+    kernel->set(passes, static_cast<cl_uint>(per_item / block), a, b, c).launch(shares.items, shares.local);
   };
   const cl_uint passes = calibrated_passes(session, launch);
   Job job;
@@ -126,14 +124,11 @@ Job stream_job(Session& session, std::size_t bytes) {
 }
 
 Job launch_job(Session& session) {
-  auto kernel = std::make_shared<cl::Kernel>(session.kernel({"ceilings.cl", {}, {}}, "nothing"));
-  const cl::Buffer out = session.buffer(sizeof(float), "ceilings, launch");
+  auto kernel = std::make_shared<Kernel>(session, ProgramSource{"ceilings.cl", {}, {}}, "nothing");
+  const Buffer out = session.buffer(sizeof(float), "ceilings, launch");
   Job job;
   job.reset = [&session, out] { session.fill_zero(out, sizeof(float)); };
-  job.run = [&session, kernel, out] {
-    set_arguments(*kernel, out);
-    session.launch(*kernel, cl::NDRange(1), cl::NDRange(1));
-  };
+  job.run = [kernel, out] { kernel->set(out).launch(1, 1); };
   job.verify = [&session, out] { return exactly(session.read<float>(out, 1), 1.0); };
   return job;
 }

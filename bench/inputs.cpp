@@ -5,9 +5,9 @@
 #include "pipeline/cascade.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/view.hpp"
-#include "pipeline/volume.hpp"
 #include "reference/inject.hpp"
 #include "support/error.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv::bench {
 namespace {

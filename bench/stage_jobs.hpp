@@ -12,7 +12,7 @@
 #include "bench/job.hpp"
 #include "options/render_options.hpp"
 #include "options/stages.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::bench {

@@ -70,6 +70,10 @@ void expect_golden(const Image& image, const std::string& name) {
   EXPECT_LT(result.nrmse, kGoldenTolerance) << path;
 }
 
+// A frame's stages refer to its other parts.
+static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructible_v<Frame> &&
+              !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
+
 TEST(Frame, AtriumLooksAsItDid) {
   const Scene scene = load_scene(scene_path("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");
@@ -120,6 +124,21 @@ TEST(Frame, TwoRunsAreTheSameToTheBit) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   const RenderOptions options = small_options(scene);
   EXPECT_EQ(render(scene, options, Show::full).pixels, render(scene, options, Show::full).pixels);
+}
+
+TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  RenderOptions options = small_options(scene);
+  Device device = choose_device();
+  {
+    Session session(device);
+    Frame(session, scene, options).render(scene.cameras.front());
+    device.memory_bytes = session.most_device_bytes() * 3 / 2;
+  }
+  Session session(device);
+  for (options.iterations = 2; options.iterations < 6; ++options.iterations)
+    Frame(session, scene, options).render(scene.cameras.front());
+  EXPECT_EQ(session.device_bytes(), 0u);
 }
 
 TEST(Frame, SceneWithoutLightIsBlack) {

@@ -126,7 +126,7 @@ inline Both gather(const Basis& basis, const Transport& transport, GatherOptions
   camera.depth = test_session().upload(image.depth, "test: depth");
   camera.normal = test_session().upload(image.normal, "test: normal");
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  cl::Buffer e =
+  Buffer e =
       test_session().upload(std::vector<cl_float4>(image.depth.size(), {{nan, nan, nan, nan}}), "test: E");
   Gatherer(test_session(), basis, transport, options).gather(camera, grids, upload(full), e);
   Both both{{},

@@ -202,7 +202,7 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   EXPECT_THROW(make({.gather_offset = std::numeric_limits<double>::infinity()}), Error);
   Gatherer gatherer(test_session(), *basis, intensity_transport(), {.grid = kGrid});
   const Volume small(test_session(), {kGrid - 1, 4, 3}, "test: light");
-  cl::Buffer e = test_session().buffer(kPixels * sizeof(cl_float4), "test: E");
+  Buffer e = test_session().buffer(kPixels * sizeof(cl_float4), "test: E");
   Surface camera;
   EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {&small}, e), Error);
   EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {}, e), Error);

@@ -346,6 +346,26 @@ TEST(Inject, OneInjectorTakesSurfacesOfAllSizesAndFormats) {
   EXPECT_NEAR(energy(40, 7, RsmFormat::paper), 280, 280 * kRounding);
 }
 
+// Segments are longer in larger surfaces: a smaller one may have more of them, and their sums once overran memory.
+TEST(Inject, ASmallerSurfaceOfMoreSegmentsFollowsALargerOne) {
+  const auto basis = make_basis("sh2");
+  Session& session = test_session();
+  const Surface larger = upload_surface(session, plane(from_above(725, 725, 0.02f), 0.3f)),
+                smaller = upload_surface(session, plane(from_above(724, 724, 0.02f), 0.3f));
+  Injector fresh(session, *basis, {.grid = kGrid}), used(session, *basis, {.grid = kGrid});
+  const auto light = [&](Injector& injector, const Surface& surface) {
+    Volume volume(session, {kGrid, basis->size(), 3}, "light");
+    injector.inject_light(surface, kCells, volume);
+    return volume.read(session);
+  };
+  const std::size_t before = session.device_bytes();
+  light(used, larger);
+  const std::size_t held = session.device_bytes() - before;
+  const std::vector<float> found = light(used, smaller);
+  EXPECT_GT(session.device_bytes() - before, held) << "the sums of more segments take more memory";
+  EXPECT_EQ(found, light(fresh, smaller));
+}
+
 TEST(Inject, VolumesOfAnotherShapeAreRefused) {
   const auto basis = make_basis("sh2");
   Session& session = test_session();

@@ -15,17 +15,15 @@ using test::test_session;
 /// Entries 0 .. size - 1 as a kernel reads them.
 std::vector<float> entries(const LookupTable& table, int size) {
   Session& session = test_session();
-  const std::string text =
-      table.macros() +
-      "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
-      "  const int i = (int)get_global_id(0);\n  out[i] = CLPV_TABLE_READ(table, i);\n}\n";
-  cl::Program program(session.context(), text);
-  program.build("-cl-std=CL1.2");
-  cl::Kernel kernel(program, "entries");
-  const cl::Buffer out = session.buffer(static_cast<std::size_t>(size) * sizeof(float), "entries");
-  kernel.setArg(0, out);
-  table.set(kernel);
-  session.launch(kernel, cl::NDRange(static_cast<std::size_t>(size)), cl::NDRange(1));
+  // Of a file that is definitions alone, as a program is of some file.
+  ProgramSource source{"shared/sort.h", {}, {}};
+  source.generated = table.macros() +
+                     "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
+                     "  const int i = (int)get_global_id(0);\n  out[i] = CLPV_TABLE_READ(table, i);\n}\n";
+  Kernel kernel(session, source, "entries");
+  const Buffer out = session.buffer(static_cast<std::size_t>(size) * sizeof(float), "entries");
+  table.add_to(kernel.set(out));
+  kernel.launch(static_cast<std::size_t>(size), 1);
   return session.read<float>(out, static_cast<std::size_t>(size));
 }
 

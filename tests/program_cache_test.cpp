@@ -155,7 +155,7 @@ class CachedSession : public ProgramCacheTest {
   ~CachedSession() override { unsetenv("CLPV_KERNEL_DIR"); }
 
   static ProgramSource source(int value) {
-    return {.file = "answer.cl", .literals = {{"CLPV_ANSWER", std::to_string(value)}}, .generated = {}};
+    return {.file = "answer.cl", .literals = Literals().integer("CLPV_ANSWER", value), .generated = {}};
   }
   std::string key(int value) const {
     return ProgramCache::key(choose_device(), source(value).options, program_text(source(value)));
@@ -163,10 +163,8 @@ class CachedSession : public ProgramCacheTest {
   /// What the kernel of source(value) writes, its program kept afterwards.
   int answer(int value) const {
     Session session(choose_device(), cache_);
-    cl::Kernel kernel = session.kernel(source(value), "answer");
-    const cl::Buffer out = session.buffer(sizeof(int), "answer");
-    kernel.setArg(0, out);
-    session.launch(kernel, cl::NDRange(1), cl::NDRange(1));
+    const Buffer out = session.buffer(sizeof(int), "answer");
+    Kernel(session, source(value), "answer").set(out).launch(1, 1);
     const int read = session.read<int>(out, 1)[0];
     session.store_programs();
     return read;

@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 
+#include "device/kernel.hpp"
 #include "device/kernel_files.hpp"
 #include "device/session.hpp"
 #include "run_program.hpp"
@@ -69,11 +70,34 @@ TEST(KernelFiles, UnknownAndEndlessOnesAreRefused) {
 TEST(ProgramText, LiteralsThenGeneratedThenFile) {
   KernelFolder folder;
   folder.write("a.cl", "int a;\n");
-  const std::string text =
-      program_text({.file = "a.cl", .literals = {{"CLPV_B", "2"}, {"CLPV_A", "1"}}, .generated = "int g;"});
+  const std::string text = program_text({.file = "a.cl",
+                                         .literals = Literals().flag("CLPV_B", true).number("CLPV_A", 3),
+                                         .generated = "int g;"});
   EXPECT_EQ(text,
-            "#line 1 \"literals\"\n#define CLPV_A 1\n#define CLPV_B 2\n"
+            "#line 1 \"literals\"\n#define CLPV_A 3u\n#define CLPV_B 1\n"
             "#line 1 \"generated\"\nint g;\n#line 1 \"a.cl\"\nint a;\n");
+}
+
+TEST(Literals, AreWrittenByTheirType) {
+  const Literals literals = Literals()
+                                .flag("CLPV_ON", true)
+                                .integer("CLPV_INT", -3)
+                                .number("CLPV_UINT", std::size_t{3})
+                                .real("CLPV_FLOAT", 0.25)
+                                .word("CLPV_WORD", "CLPV_SOA");
+  const std::map<std::string, std::string> wanted{{"CLPV_ON", "1"},
+                                                  {"CLPV_INT", "-3"},
+                                                  {"CLPV_UINT", "3u"},
+                                                  {"CLPV_FLOAT", "0.25f"},
+                                                  {"CLPV_WORD", "CLPV_SOA"}};
+  EXPECT_EQ(literals.defined(), wanted);
+}
+
+TEST(Literals, OneNameHasOneValue) {
+  Literals literals;
+  literals.flag("CLPV_ON", true);
+  EXPECT_THROW(literals.integer("CLPV_ON", 1), Error);
+  EXPECT_THROW(literals.flag("ON", true), Error);
 }
 
 TEST(ProgramErrors, LinesRoundAnErrorAreNumberedAsTheFileIs) {
@@ -95,7 +119,8 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
                "#include \"broken.h\"\n__kernel void k(__global int* a) { a[0] = half_done(CLPV_X); }\n");
   Session session(choose_device());
   try {
-    session.kernel({.file = "broken.cl", .literals = {{"CLPV_X", "1"}}, .generated = {}}, "k");
+    const Kernel kernel(session, {"broken.cl", Literals().integer("CLPV_X", 1), {}}, "k");
+    session.build_described();
     FAIL() << "a broken kernel was built";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::run_time);

@@ -93,7 +93,7 @@ TEST_F(SponzaRasterizeTest, SunSeesTheRoofAndTheFloor) {
   Surface surface = make_surface(session, directional_rsm_view(sun, cascade, sponza.buffers.bounds, 256),
                                  RsmFormat::float32, false);
   const ClpvView shadow = shadow_views(sun, sponza.buffers.bounds, 1024)[0];
-  cl::Buffer depth = session.buffer(1024 * 1024 * sizeof(float), "shadow map");
+  Buffer depth = session.buffer(1024 * 1024 * sizeof(float), "shadow map");
   for (int run = 0; run < 2; ++run) {  // the first one compiles
     session.timeline().clear();
     {

@@ -57,7 +57,7 @@ std::vector<float> shadow_depth(const Scene& scene, const ClpvView& view) {
   Session& session = test_session();
   Rasterizer rasterizer(session, upload_scene(session, scene));
   const std::size_t count = static_cast<std::size_t>(view.width) * view.height;
-  cl::Buffer depth = session.buffer(count * sizeof(float), "depth");
+  Buffer depth = session.buffer(count * sizeof(float), "depth");
   rasterizer.rasterize_shadow(view, depth);
   return session.read<float>(depth, count);
 }

@@ -31,13 +31,11 @@ std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, Table
                      " CLPV_AND_TABLE) {\n"
                      "  const float4 d = directions[get_global_id(0)];\n"
                      "  found[get_global_id(0)] = clpv_table_basis(d.x, d.y, d.z CLPV_PASS_TABLE).c0;\n}\n";
-  cl::Kernel kernel = test_session().kernel(source, "look_up");
-  const cl::Buffer given = test_session().upload(directions, "directions");
-  const cl::Buffer found = test_session().buffer(directions.size() * sizeof(float), "found");
-  kernel.setArg(0, given);
-  kernel.setArg(1, found);
-  table.set(kernel);
-  test_session().launch(kernel, cl::NDRange(directions.size()), cl::NDRange(1));
+  Kernel kernel(test_session(), source, "look_up");
+  const Buffer given = test_session().upload(directions, "directions");
+  const Buffer found = test_session().buffer(directions.size() * sizeof(float), "found");
+  table.add_to(kernel.set(given, found));
+  kernel.launch(directions.size(), 1);
   return test_session().read<float>(found, directions.size());
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "device/kernel.hpp"
 #include "reference/check.hpp"
 #include "support/error.hpp"
 
@@ -18,7 +19,7 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   device.max_alloc_bytes = 4u << 20;
   device.memory_bytes = 6u << 20;
   Session session(device);
-  const cl::Buffer held = session.buffer(4u << 20, "first");
+  const Buffer held = session.buffer(4u << 20, "first");
   EXPECT_EQ(session.largest_buffer(), 2u << 20);
   try {
     session.buffer(3u << 20, "light volume");
@@ -31,19 +32,83 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was refused does not count";
 }
 
+TEST(Session, MemoryIsGivenBackWhenABufferGoes) {
+  Device device = choose_device();
+  device.memory_bytes = 6u << 20;
+  Session session(device);
+  for (int i = 0; i < 8; ++i) {
+    const Buffer made = session.buffer(4u << 20, "one of many");
+    const Buffer same = made;
+    session.fill_zero(same, same.bytes());
+    EXPECT_EQ(session.device_bytes(), 4u << 20) << "a copy is the same memory";
+    EXPECT_THROW(session.buffer(4u << 20, "beside it"), Error);
+  }
+  EXPECT_EQ(session.device_bytes(), 0u);
+  EXPECT_EQ(session.most_device_bytes(), 4u << 20);
+}
+
+TEST(Session, ABufferGrowsWhereThereIsNoRoomForTwo) {
+  Device device = choose_device();
+  device.memory_bytes = 6u << 20;
+  Session session(device);
+  Buffer buffer;
+  session.reserve(buffer, 3u << 20, "grows");
+  session.reserve(buffer, 5u << 20, "grows");
+  EXPECT_EQ(session.device_bytes(), 5u << 20);
+  session.reserve(buffer, 1u << 20, "stays");
+  EXPECT_EQ(buffer.bytes(), 5u << 20);
+}
+
+TEST(Session, MemoryMayOutliveItsSession) {
+  Buffer buffer;
+  {
+    Session session(choose_device());
+    buffer = session.buffer(4, "kept");
+  }
+  EXPECT_EQ(buffer.bytes(), 4u);
+}
+
+TEST(Kernel, MissingArgumentsAreToldByName) {
+  Session session(choose_device());
+  const Buffer bytes = session.buffer(1024, "sizes");
+  Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
+  EXPECT_EQ(session.build_ms(), 0) << "described, not built";
+  kernel.set(bytes).launch(1, 1);
+  try {
+    kernel.set().launch(1, 1);
+    FAIL() << "a launch without arguments";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("kernel 'sizes' was given 0 of its 1 arguments"));
+  }
+}
+
+TEST(Kernel, WhatIsDescribedAndStillWantedIsBuiltOnce) {
+  Session session(choose_device());
+  { const Kernel gone(session, {"sizes.cl", Literals().flag("CLPV_GONE", true), {}}, "sizes"); }
+  session.build_described();
+  EXPECT_EQ(session.build_ms(), 0) << "nobody holds it";
+  const Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
+  session.build_described();
+  const double built = session.build_ms();
+  EXPECT_GT(built, 0);
+  const Kernel again(session, {"sizes.cl", {}, {}}, "sizes");
+  session.build_described();
+  EXPECT_EQ(session.build_ms(), built);
+}
+
 TEST(Session, EmptyUploadsAndReadsAreFine) {
   Session session(choose_device());
-  const cl::Buffer buffer = session.upload(std::vector<float>{}, "nothing");
+  const Buffer buffer = session.upload(std::vector<float>{}, "nothing");
   EXPECT_TRUE(session.read<float>(buffer, 0).empty());
 }
 
 TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   Session session(choose_device());
-  cl::Kernel kernel = session.kernel({.file = "sizes.cl", .literals = {}, .generated = {}}, "sizes");
-  kernel.setArg(0, session.buffer(1024, "sizes"));
+  const Buffer bytes = session.buffer(1024, "sizes");
+  Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
   const std::size_t too_large = 1u << 20;
   try {
-    session.launch(kernel, cl::NDRange(too_large), cl::NDRange(too_large));
+    kernel.set(bytes).launch(too_large, too_large);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::run_time);
@@ -59,7 +124,7 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
     device.profiling_valid = events;
     Session session(device);
     const std::size_t bytes = 8u << 20;
-    const cl::Buffer buffer = session.buffer(bytes, "filled");
+    const Buffer buffer = session.buffer(bytes, "filled");
     for (int i = 0; i < 2; ++i) {
       const StageScope inject(session, {Pass::inject_light, 0});
       session.fill_zero(buffer, bytes);

@@ -151,9 +151,9 @@ inline std::vector<glm::vec4> show(Show what, const SurfaceImage& image,
   for (const MappedLight& light : lights) shadowed.push_back(upload(light));
   const std::size_t pixels = image.depth.size();
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const cl::Buffer irradiance =
+  const Buffer irradiance =
       test_session().upload(indirect.empty() ? std::vector<cl_float4>(pixels) : indirect, "test: irradiance");
-  cl::Buffer shown = test_session().upload(std::vector<glm::vec4>(pixels, glm::vec4(nan)), "test: image");
+  Buffer shown = test_session().upload(std::vector<glm::vec4>(pixels, glm::vec4(nan)), "test: image");
   const Surface camera = upload_surface(test_session(), image);
   Shader shader(test_session());
   shader.light(camera, shadowed);

@@ -10,6 +10,7 @@
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "tests/run_program.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 namespace {

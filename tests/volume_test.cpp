@@ -1,6 +1,6 @@
 // Volumes in every layout and storage: what is written is read back, what a device lacks is said, and every stage
 // gives the same numbers whatever way its volumes lie in memory.
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <random>
 
 #include "on_device.hpp"
-#include "pipeline/convert.hpp"
 #include "pipeline/propagate.hpp"
 #include "support/error.hpp"
+#include "volume/accumulator.hpp"
 
 namespace clpv {
 namespace {

@@ -1,4 +1,4 @@
-// The options of a frame on the command line, from the one table in pipeline/options.hpp.
+// The options of a frame on the command line, from the one table in options/render_options.hpp.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -11,11 +11,11 @@
 #include "commands/frame_options.hpp"
 #include "commands/parse.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/volume_files.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
+#include "volume/volume_files.hpp"
 
 namespace clpv {
 namespace {

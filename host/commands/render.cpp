@@ -10,13 +10,13 @@
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
-#include "pipeline/volume_files.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
+#include "volume/volume_files.hpp"
 
 namespace clpv {
 namespace {

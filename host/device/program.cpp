@@ -53,8 +53,9 @@ std::string excerpt_round(const std::vector<Line>& lines, const Line& fault) {
 
 std::string program_text(const ProgramSource& source) {
   std::string text;
-  if (!source.literals.empty()) text += "#line 1 \"literals\"\n";
-  for (const auto& [name, value] : source.literals) text += fmt::format("#define {} {}\n", name, value);
+  if (!source.literals.defined().empty()) text += "#line 1 \"literals\"\n";
+  for (const auto& [name, value] : source.literals.defined())
+    text += fmt::format("#define {} {}\n", name, value);
   if (!source.generated.empty()) text += "#line 1 \"generated\"\n" + source.generated + "\n";
   return text + assemble_kernel_source(source.file);
 }

@@ -2,17 +2,12 @@
 #pragma once
 
 #include <CL/opencl.hpp>
-#include <map>
 #include <string>
 
 #include "device/device.hpp"
-#include "support/literal.hpp"  // float_literal, for Literals
+#include "device/literals.hpp"
 
 namespace clpv {
-
-/// Literals a kernel source is specialised with, each written as `#define NAME VALUE`; NAME starts with
-/// CLPV_.
-using Literals = std::map<std::string, std::string>;
 
 /// Names what a kernel is built from: a file of kernels/, literals, and text made by the host (basis
 /// functions, transport) that `#include "generated.h"`-style files refer to.

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "device/cl_error.hpp"
+#include "device/kernel.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
@@ -54,70 +55,86 @@ Session::Session(Device device, std::optional<ProgramCache> cache)
       timeline_(device_.profiling_valid),
       cache_(std::move(cache)) {}
 
-cl::Program Session::build(const ProgramSource& source, const std::string& text, const std::string& key,
-                           bool& stored) {
-  stored = false;
-  if (cache_) {
-    if (const auto binary = cache_->load(key)) {
-      if (const auto program = load_program(context_, device_, source.options, *binary)) {
-        stored = true;
-        return *program;
-      }
-      cache_->remove(key);
-    }
-  }
-  return build_program(context_, device_, source, text);
+std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
+  std::string text = program_text(source);
+  std::string key = ProgramCache::key(device_, source.options, text);
+  std::shared_ptr<Program>& program = programs_[key];
+  if (!program) program = std::make_shared<Program>(Program{source, std::move(text), std::move(key), {}});
+  return program;
 }
 
-cl::Kernel Session::kernel(const ProgramSource& source, const std::string& name) {
-  const std::string text = program_text(source);
-  const std::string key = ProgramCache::key(device_, source.options, text);
-  auto found = programs_.find(key);
-  if (found == programs_.end()) {
-    dump(source, text);
-    const auto start = std::chrono::steady_clock::now();
-    Built built;
-    built.program = build(source, text, key, built.stored);
-    found = programs_.emplace(key, std::move(built)).first;
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    build_ms_ += elapsed.count();
-    spdlog::debug("kernels/{}: {} in {:.1f} ms", source.file,
-                  found->second.stored ? "from the cache" : "compiled", elapsed.count());
+void Session::build_described() {
+  // What nobody holds any more was described by a stage that is gone, or was never finished.
+  std::erase_if(programs_, [](const auto& entry) {
+    return entry.second->built() == nullptr && entry.second.use_count() == 1;
+  });
+  for (auto& [key, program] : programs_) build(*program);
+}
+
+cl::Kernel Session::kernel(Program& program, const std::string& name) {
+  build(program);
+  return cl::Kernel(program.built, name.c_str());
+}
+
+void Session::build(Program& program) {
+  if (program.built() != nullptr) return;
+  dump(program.source, program.text);
+  const auto start = std::chrono::steady_clock::now();
+  program.stored = load(program);
+  if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  build_ms_ += elapsed.count();
+  spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
+                program.stored ? "from the cache" : "compiled", elapsed.count());
+}
+
+/// Takes a program from the cache; false where it is not there, or the driver will not have it.
+bool Session::load(Program& program) {
+  if (!cache_) return false;
+  const auto binary = cache_->load(program.key);
+  if (!binary) return false;
+  if (const auto loaded = load_program(context_, device_, program.source.options, *binary)) {
+    program.built = *loaded;
+    return true;
   }
-  return cl::Kernel(found->second.program, name.c_str());
+  cache_->remove(program.key);
+  return false;
 }
 
 void Session::store_programs() {
   if (!cache_) return;
-  for (auto& [key, built] : programs_) {
-    if (built.stored) continue;
-    const auto binaries = built.program.getInfo<CL_PROGRAM_BINARIES>();
+  for (auto& [key, program] : programs_) {
+    if (program->stored || program->built() == nullptr) continue;
+    const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries[0].empty()) {
       spdlog::debug("{} gives no compiled programs to keep", device_.name);
       return;
     }
     if (!cache_->store(key, binaries[0])) return;  // said why; the next would fail alike
-    built.stored = true;
+    program->stored = true;
   }
 }
 
 std::size_t Session::largest_buffer() const {
-  const std::uint64_t left = device_.memory_bytes > bytes_ ? device_.memory_bytes - bytes_ : 0;
+  const std::uint64_t left = device_.memory_bytes > use_->now ? device_.memory_bytes - use_->now : 0;
   return static_cast<std::size_t>(std::min<std::uint64_t>(device_.max_alloc_bytes, left));
 }
 
-cl::Buffer Session::buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags) {
+void Session::require_room(std::size_t bytes, const std::string& what) const {
+  if (bytes <= largest_buffer()) return;
+  throw Error(ExitCode::run_time,
+              "{} needs {:.1f} MiB, but {} has room for a buffer of at most {:.1f} MiB "
+              "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use)",
+              what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
+              mib(device_.memory_bytes), mib(use_->now));
+}
+
+Buffer Session::buffer(std::size_t bytes, const std::string& what) {
   bytes = std::max<std::size_t>(bytes, 4);
-  if (bytes > largest_buffer()) {
-    throw Error(ExitCode::run_time,
-                "{} needs {:.1f} MiB, but {} has room for a buffer of at most {:.1f} MiB "
-                "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use)",
-                what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
-                mib(device_.memory_bytes), mib(bytes_));
-  }
+  require_room(bytes, what);
   try {
-    cl::Buffer made(context_, flags, bytes);
-    bytes_ += bytes;
+    const Buffer made(cl::Buffer(context_, CL_MEM_READ_WRITE, bytes),
+                      std::make_shared<MemoryShare>(use_, bytes));
     // Oclgrind 21.10's memory checker takes a new buffer in a freed one's place for the old one, of its size.
     if (oclgrind()) kept_.push_back(made);
     return made;
@@ -126,16 +143,35 @@ cl::Buffer Session::buffer(std::size_t bytes, const std::string& what, cl_mem_fl
   }
 }
 
+void Session::reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
+  if (buffer.exists() && buffer.bytes() >= bytes) return;
+  buffer = {};  // first of all: there may not be room for both
+  buffer = this->buffer(bytes, what);
+}
+
+Image3D Session::image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
+                       std::size_t bytes, const std::string& what) {
+  require_room(bytes, what);
+  try {
+    return {cl::Image3D(context_, CL_MEM_READ_WRITE, texel, extent[0], extent[1], extent[2]),
+            std::make_shared<MemoryShare>(use_, bytes)};
+  } catch (const cl::Error& error) {
+    throw cl_error(
+        error, fmt::format("{} (an image of {} texels) on {}", what, fmt::join(extent, " x "), device_.name));
+  }
+}
+
 const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, const std::string& what) {
   // PoCL 3.1 gives the buffer's memory back when the image is released, whoever still holds the buffer: no image of a
   // buffer is released before the session is.
-  cl::Image1DBuffer& image = table_images_[values];
-  if (image() == nullptr) {
+  TableImage& table = table_images_[values];
+  if (table.image() == nullptr) {
+    table.values = upload(values, what);
     // One channel of 32-bit floats is among the formats that every device with images reads (OpenCL 1.2, 5.3.2.1).
-    image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT), values.size(),
-                              upload(values, what));
+    table.image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
+                                    values.size(), table.values.handle());
   }
-  return image;
+  return table.image;
 }
 
 void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) {
@@ -157,28 +193,27 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
   timeline_.add(event);
 }
 
-void Session::fill_zero(const cl::Buffer& buffer, std::size_t bytes) {
+void Session::fill_zero(const Buffer& buffer, std::size_t bytes) {
   if (oclgrind()) return fill_by_kernel(buffer, bytes);
   cl::Event event;
   // By bytes: PoCL then calls memset, and is five times as fast as with words or with a kernel.
-  queue_.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes, nullptr, &event);
+  queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, 0, bytes, nullptr, &event);
   timeline_.add(event);
 }
 
 // Oclgrind 21.10 does not take a fill for an initialisation, and a write to a part of a buffer makes it lose track of
 // the rest: its memory checker would report what is sound.
-void Session::fill_by_kernel(const cl::Buffer& buffer, std::size_t bytes) {
+void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes) {
   const auto words = static_cast<cl_uint>(bytes / sizeof(cl_uint));
-  cl::Kernel zero = kernel({.file = "zero.cl", .literals = {}, .generated = {}}, "zero");
-  zero.setArg(0, buffer);
-  zero.setArg(1, words);
   constexpr std::size_t kGroup = 64;
-  launch(zero, cl::NDRange(words), cl::NDRange(kGroup));
+  Kernel(*this, {.file = "zero.cl", .literals = {}, .generated = {}}, "zero")
+      .set(buffer, words)
+      .launch(cl::NDRange(words), cl::NDRange(kGroup));
 }
 
-void Session::copy(const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes) {
+void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes) {
   cl::Event event;
-  queue_.enqueueCopyBuffer(from, to, 0, 0, bytes, nullptr, &event);
+  queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, 0, bytes, nullptr, &event);
   timeline_.add(event);
 }
 

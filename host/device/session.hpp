@@ -2,17 +2,28 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/memory.hpp"
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
 #include "device/timeline.hpp"
 
 namespace clpv {
+
+/// A program as a session knows it: described first, built when it is needed.
+struct Program {
+  ProgramSource source;
+  std::string text, key;  ///< program_text(source), ProgramCache::key
+  cl::Program built;      ///< none yet, until it is
+  bool stored = false;    ///< in the cache: came from there, or was put there
+};
 
 /// One device opened for work. Everything is enqueued on one in-order queue. Not thread safe; one a thread.
 class Session {
@@ -26,9 +37,16 @@ class Session {
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }
 
-  /// The kernel `name` of a program, built at the first use of this very source.
-  /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault.
-  cl::Kernel kernel(const ProgramSource& source, const std::string& name);
+  /// The program of this very source, which is built once in a session: by build_described(), or when a kernel of it is
+  /// first asked for.
+  std::shared_ptr<Program> describe(const ProgramSource& source);
+
+  /// Builds the programs described so far that are not built yet and still wanted by someone.
+  /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault; so does kernel().
+  void build_described();
+
+  /// The kernel `name` of a program of describe().
+  cl::Kernel kernel(Program& program, const std::string& name);
 
   /// Keeps the programs compiled so far in the cache. To be called last, when results are out: PoCL's
   /// binaries hold the code for the work-group sizes launched until then, and making one costs about as long
@@ -37,31 +55,35 @@ class Session {
 
   /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill_zero(). `what` names it in errors.
   /// Throws Error(run_time) before allocating where the device cannot hold it, and says what it could.
-  cl::Buffer buffer(std::size_t bytes, const std::string& what, cl_mem_flags flags = CL_MEM_READ_WRITE);
-  void account(std::size_t bytes) { bytes_ += bytes; }  ///< for memory taken outside buffer()
+  Buffer buffer(std::size_t bytes, const std::string& what);
+  /// Makes `buffer` one of at least `bytes`: as it is, where it is so large, else a new one, its contents undefined.
+  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
+  /// An image of `bytes` in all, its contents undefined; errors as of buffer().
+  Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent, std::size_t bytes,
+                const std::string& what);
 
   /// Runs `kernel` over at least `global` work-items, rounded up to whole groups of `local` in each dimension
   /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current
   /// mark.
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
-  void fill_zero(const cl::Buffer& buffer, std::size_t bytes);  ///< the first `bytes`, a multiple of 4
-  void copy(const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes);
+  void fill_zero(const Buffer& buffer, std::size_t bytes);  ///< the first `bytes`, a multiple of 4
+  void copy(const Buffer& from, const Buffer& to, std::size_t bytes);
 
   template <typename T>
-  void write(const cl::Buffer& buffer, const std::vector<T>& values) {
+  void write(const Buffer& buffer, const std::vector<T>& values) {
     if (!values.empty())
-      queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
+      queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, 0, values.size() * sizeof(T), values.data());
   }
   template <typename T>
-  cl::Buffer upload(const std::vector<T>& values, const std::string& what) {
-    cl::Buffer made = buffer(values.size() * sizeof(T), what);
+  Buffer upload(const std::vector<T>& values, const std::string& what) {
+    Buffer made = buffer(values.size() * sizeof(T), what);
     write(made, values);
     return made;
   }
   template <typename T>
-  std::vector<T> read(const cl::Buffer& buffer, std::size_t count) {
+  std::vector<T> read(const Buffer& buffer, std::size_t count) {
     std::vector<T> values(count);
-    if (count > 0) queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(T), values.data());
+    if (count > 0) queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, 0, count * sizeof(T), values.data());
     return values;
   }
 
@@ -72,30 +94,32 @@ class Session {
   /// Largest buffer that still fits [bytes]: the device's limit for one, and what is left of its memory.
   std::size_t largest_buffer() const;
 
-  std::size_t device_bytes() const { return bytes_; }  ///< allocated so far
-  double build_ms() const { return build_ms_; }        ///< spent compiling, or loading from the cache, so far
+  std::size_t device_bytes() const { return use_->now; }        ///< in use
+  std::size_t most_device_bytes() const { return use_->most; }  ///< at once, so far
+  double build_ms() const { return build_ms_; }  ///< spent compiling, or loading from the cache, so far
 
  private:
   Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
   Timeline timeline_;
-  struct Built {
-    cl::Program program;
-    bool stored = false;  ///< in the cache: came from there, or was put there
-  };
-  cl::Program build(const ProgramSource& source, const std::string& text, const std::string& key,
-                    bool& stored);
+  void build(Program& program);
+  bool load(Program& program);
 
-  void fill_by_kernel(const cl::Buffer& buffer, std::size_t bytes);
+  void require_room(std::size_t bytes, const std::string& what) const;
+  void fill_by_kernel(const Buffer& buffer, std::size_t bytes);
 
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
 
   std::optional<ProgramCache> cache_;
-  std::map<std::string, Built> programs_;  ///< by ProgramCache::key
-  std::vector<cl::Buffer> kept_;           ///< see buffer()
-  std::map<std::vector<float>, cl::Image1DBuffer> table_images_;  ///< see table_image()
-  std::size_t bytes_ = 0;
+  std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key
+  std::vector<Buffer> kept_;                                  ///< see buffer()
+  struct TableImage {
+    Buffer values;
+    cl::Image1DBuffer image;
+  };
+  std::map<std::vector<float>, TableImage> table_images_;  ///< see table_image()
+  std::shared_ptr<MemoryUse> use_ = std::make_shared<MemoryUse>();
   double build_ms_ = 0;
 };
 

@@ -2,9 +2,7 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
-#include "device/arguments.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -37,25 +35,21 @@ std::array<cl_int, 3> offset_between(const ClpvGrid& coarser, const ClpvGrid& fi
 }  // namespace
 
 LateCarrier::LateCarrier(Session& session, const VolumeShape& shape, const VolumeFormat& format, int lanes)
-    : session_(session),
-      shape_(shape),
+    : shape_(shape),
       stencil_(session.device(),
                {.grid = shape.n,
                 .format = format,
-                .lanes = lanes > 0 ? lanes : preferred_row_lanes(session.device(), format)}) {
-  ProgramSource source{"carry_late.cl", {}, coefficient_macros(shape.coefficients)};
-  stencil_.add_literals(source.literals);
-  kernel_ = session.kernel(source, "carry_late");
-  if (format.layout == Layout::image)
-    spare_ = std::make_unique<Volume>(session, shape, "spare sum with late light", format);
-}
+                .lanes = lanes > 0 ? lanes : preferred_row_lanes(session.device(), format)}),
+      kernel_(session, {"carry_late.cl", stencil_.literals(), coefficient_macros(shape.coefficients)},
+              "carry_late"),
+      accumulator_(session) {}
 
 void LateCarrier::carry(const Volume& light, const ClpvGrid& coarser, Volume& sum, const ClpvGrid& finer) {
   const std::array<cl_int, 3> offset = offset_between(coarser, finer, shape_.n);
-  Volume& result = spare_ ? *spare_ : sum;
-  set_arguments(kernel_, light.memory(), sum.memory(), result.memory(), offset[0], offset[1], offset[2]);
-  stencil_.launch(session_, kernel_, shape_.channels);
-  if (spare_) std::swap(*spare_, sum);
+  accumulator_.add(sum, [&](const Volume& so_far, const Volume& next) {
+    kernel_.set(light.memory(), so_far.memory(), next.memory(), offset[0], offset[1], offset[2]);
+    stencil_.launch(kernel_, shape_.channels);
+  });
 }
 
 }  // namespace clpv

@@ -1,12 +1,11 @@
 // Late light, carried from a coarser cascade to the next finer one (kernels/carry_late.cl; docs/method.md, 'Late light').
 #pragma once
 
-#include <memory>
-
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/stencil.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/accumulator.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -26,12 +25,10 @@ class LateCarrier {
   void carry(const Volume& light, const ClpvGrid& coarser, Volume& sum, const ClpvGrid& finer);
 
  private:
-  Session& session_;
   VolumeShape shape_;
   Stencil stencil_;
-  cl::Kernel kernel_;
-  std::unique_ptr<Volume>
-      spare_;  ///< of images alone, which are not updated in place: changes places with the sum
+  Kernel kernel_;
+  Accumulator accumulator_;
 };
 
 }  // namespace clpv

@@ -24,12 +24,18 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   const auto bytes = [&](const VolumeShape& shape) {
     return static_cast<double>(stored_bytes(options.format(), shape));
   };
-  const double light = bytes(light_shape(tried, basis));
-  const double carried = bytes({grid, options.state == State::fluxes ? 6 : basis.size(), 3});
-  // Images, which are not updated in place, come with spare ones, and with planes to inject into.
-  const double spare = options.format().layout == Layout::image ? 3 * light + carried : 0.0;
-  return light * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) + 3 * carried +
-         2 * bytes(geometry_shape(tried, basis)) + spare;
+  const VolumeShape lit = light_shape(tried, basis), blocking = geometry_shape(tried, basis),
+                    carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
+  // What adding takes besides: steps, and what is carried down, add to light; injection adds to its cells.
+  const auto spare = [&](const VolumeShape& shape) {
+    return static_cast<double>(Accumulator::spare_bytes(options.format(), shape));
+  };
+  const auto cells = [&](const VolumeShape& shape) {
+    return static_cast<double>(Accumulator::cells_bytes(options.format(), shape));
+  };
+  return bytes(lit) * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) +
+         3 * bytes(carried) + 2 * bytes(blocking) + 2 * spare(lit) + spare(carried) + cells(lit) +
+         cells(blocking);
 }
 
 /// Refuses a grid whose volumes exceed the device, naming the largest that fits.
@@ -94,6 +100,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
+  session.build_described();
 }
 
 void Frame::prepare_lights(const Camera& camera) {

@@ -40,6 +40,8 @@ class Frame {
   /// Throws Error(run_time) where the device's memory does not suffice, naming a grid that would fit.
   /// `tuning`: launch shapes of propagation, for options.layout; by default the usual ones.
   Frame(Session& session, const Scene& scene, const RenderOptions& options, const Tuning& tuning = {});
+  Frame(const Frame&) = delete;  // its stages refer to its other parts
+  Frame& operator=(const Frame&) = delete;
 
   /// Enqueues all stages, marked on the session's timeline; shaded views are there once the queue is finished.
   /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).
@@ -88,8 +90,8 @@ class Frame {
   std::unique_ptr<Volume> geometry_;
   std::vector<std::unique_ptr<Volume>> accumulated_;
   std::vector<std::unique_ptr<Volume>> late_;  ///< a cascade; null for the finest, and without late light
-  cl::Buffer irradiance_;                      ///< float4 a pixel, as is image_
-  cl::Buffer image_;
+  Buffer irradiance_;                          ///< float4 a pixel, as is image_
+  Buffer image_;
   Show shown_ = Show::full;
 };
 

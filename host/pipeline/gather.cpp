@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "device/arguments.hpp"
 #include "pipeline/gather_source.hpp"
 #include "support/error.hpp"
 
@@ -11,7 +10,6 @@ namespace {
 
 // Neighbours in a row share cells. Of 64 x 1, 64 x 4, 32 x 8, 16 x 16 and 8 x 8 none was faster on a CPU.
 constexpr std::size_t kLocalX = 64, kLocalY = 1;
-constexpr cl_uint kVolumeArgument = 7;  // of kernel gather: the packed volumes, or the first image
 
 /// Gathering by the cosine evaluates no basis function.
 LobeOptions looked_up(const Transport& transport, const GatherOptions& options) {
@@ -30,15 +28,15 @@ ProgramSource source_of(const GatherForm& form, const GatherOptions& options, bo
                         const LookupTable& table) {
   ProgramSource source;
   source.file = "gather.cl";
-  source.literals = {{"CLPV_GRID", std::to_string(options.grid)},
-                     {"CLPV_PACKED", packed ? "1" : "0"},
-                     {"CLPV_PAIRS", std::to_string(packed_pairs(form))},
-                     {"CLPV_GATHER_OFFSET", float_literal(options.gather_offset)},
-                     {"CLPV_INVERSE_BLEND", float_literal(1 / options.blend_cells)},
-                     {"CLPV_FLOORED", options.floor > 0 ? "1" : "0"}};
+  source.literals.integer("CLPV_GRID", options.grid)
+      .flag("CLPV_PACKED", packed)
+      .integer("CLPV_PAIRS", packed_pairs(form))
+      .real("CLPV_GATHER_OFFSET", options.gather_offset)
+      .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells)
+      .flag("CLPV_FLOORED", options.floor > 0);
   if (!packed) {
     add_format_literals(source.literals, options.format);
-    source.literals["CLPV_FILTERED"] = std::to_string(options.filtered ? 1 : 0);
+    source.literals.flag("CLPV_FILTERED", options.filtered);
   }
   source.generated =
       table.macros() + gather_source(form, packed, table.exists(), options.lobes, options.floor);
@@ -73,21 +71,18 @@ Gatherer::Gatherer(Session& session, const Basis& basis, const Transport& transp
                                   .lanes = preferred_row_lanes(session.device(), options.format)}) {
   require_sound(options);
   if (!packs()) return;
-  ProgramSource pack{
-      "pack.cl", {{"CLPV_PAIRS", std::to_string(packed_pairs(form_))}}, pack_source(basis, form_)};
-  stencil_.add_literals(pack.literals);
-  pack_ = session.kernel(pack, "pack");
-  gather_[0] = session.kernel(source_, "gather");
+  ProgramSource pack{"pack.cl", stencil_.literals(), pack_source(basis, form_)};
+  pack.literals.integer("CLPV_PAIRS", packed_pairs(form_));
+  pack_.emplace(session, pack, "pack");
+  gather_.try_emplace(0, session, source_, "gather");
 }
 
-cl::Kernel& Gatherer::gather_kernel(std::size_t cascades) {
-  const auto [found, made] = gather_.try_emplace(packs() ? 0 : cascades);
-  if (made) {
-    ProgramSource source = source_;
-    source.generated += cascade_macro(cascades);
-    found->second = session_.kernel(source, "gather");
-  }
-  return found->second;
+Kernel& Gatherer::gather_kernel(std::size_t cascades) {
+  if (packs()) return gather_.at(0);
+  if (const auto found = gather_.find(cascades); found != gather_.end()) return found->second;
+  ProgramSource source = source_;
+  source.generated += cascade_macro(cascades);
+  return gather_.try_emplace(cascades, session_, source, "gather").first->second;
 }
 
 void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
@@ -112,43 +107,35 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
 }
 
 void Gatherer::reserve(std::size_t cascades) {
-  if (cascades <= reserved_) return;
-  const auto n = static_cast<std::size_t>(options_.grid);
-  grids_ = session_.buffer(cascades * sizeof(ClpvGrid), "gather's grids");
-  if (packs()) {
-    packed_ = session_.buffer(
-        cascades * n * n * n * static_cast<std::size_t>(packed_pairs(form_)) * sizeof(cl_float8),
-        "gather's packed volumes");
-  }
-  reserved_ = cascades;
+  session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
+  if (!packs()) return;
+  const auto n = static_cast<std::size_t>(options_.grid),
+             pairs = static_cast<std::size_t>(packed_pairs(form_));
+  session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
 }
 
 void Gatherer::pack(const Volume& volume, std::size_t slot) {
   const auto n = static_cast<std::size_t>(options_.grid);
-  pack_.setArg(0, volume.memory());
-  pack_.setArg(1, packed_);
-  pack_.setArg(2, static_cast<cl_uint>(slot * n * n * n));
-  stencil_.launch(session_, pack_, 1);
+  pack_->set(volume.memory(), packed_, static_cast<cl_uint>(slot * n * n * n));
+  stencil_.launch(*pack_, 1);
 }
 
 void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                      const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance, float scale) {
+                      const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale) {
   require_fit(camera, grids, accumulated);
   reserve(grids.size());
   session_.write(grids_, grids);
-  cl::Kernel& kernel = gather_kernel(grids.size());
-  set_arguments(kernel, camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()),
-                1 / scale, irradiance);
-  if (packs()) kernel.setArg(kVolumeArgument, packed_);
-  for (std::size_t c = 0; c < grids.size(); ++c) {
-    if (packs()) {
-      pack(*accumulated[c], c);
-    } else {
-      kernel.setArg(kVolumeArgument + static_cast<cl_uint>(c), accumulated[c]->memory());
-    }
+  Kernel& kernel = gather_kernel(grids.size());
+  kernel.set(camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()), 1 / scale,
+             irradiance);
+  if (packs()) {
+    for (std::size_t c = 0; c < grids.size(); ++c) pack(*accumulated[c], c);
+    kernel.add(packed_);
+  } else {
+    for (const Volume* volume : accumulated) kernel.add(volume->memory());
   }
-  table_.set(kernel);
-  session_.launch(kernel, cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocalX, kLocalY));
+  table_.add_to(kernel);
+  kernel.launch(cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocalX, kLocalY));
 }
 
 }  // namespace clpv

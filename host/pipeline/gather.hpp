@@ -3,18 +3,20 @@
 
 #include <CL/opencl.hpp>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "options/stage_options.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/stencil.hpp"
 #include "pipeline/surface.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -34,12 +36,12 @@ class Gatherer {
   /// there is no surface. `scale`: the volumes hold so many times the light (light_scale.hpp). Throws Error(run_time) where counts or shapes do not fit, or the device's memory
   /// does not suffice.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-              const std::vector<const Volume*>& accumulated, cl::Buffer& irradiance, float scale = 1);
+              const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1);
 
  private:
   /// Images are sampled as they are, unless they hold more than irradiance needs.
-  bool packs() const { return options_.format.layout != Layout::image || form_.projects(); }
-  cl::Kernel& gather_kernel(std::size_t cascades);
+  bool packs() const { return !sampled_by_device(options_.format) || form_.projects(); }
+  Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;
   void reserve(std::size_t cascades);
@@ -52,11 +54,10 @@ class Gatherer {
   LookupTable table_;
   ProgramSource source_;
   Stencil stencil_;  ///< of packing
-  cl::Kernel pack_;
-  std::map<std::size_t, cl::Kernel>
+  std::optional<Kernel> pack_;
+  std::map<std::size_t, Kernel>
       gather_;  ///< by number of cascades, of which only volumes not packed take note
-  cl::Buffer packed_, grids_;
-  std::size_t reserved_ = 0;  ///< cascades
+  Buffer packed_, grids_;
 };
 
 }  // namespace clpv

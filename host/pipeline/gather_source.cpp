@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "basis/table_kernel.hpp"
-#include "device/session.hpp"
 #include "pipeline/linear_code.hpp"
 #include "pipeline/mirrors.hpp"
-#include "pipeline/volume.hpp"
+#include "support/literal.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 namespace {

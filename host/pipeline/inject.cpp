@@ -1,6 +1,5 @@
 #include "pipeline/inject.hpp"
 
-#include "device/arguments.hpp"
 #include "kernels/shared/sort.h"
 #include "kernels/shared/thinned.h"
 #include "pipeline/inject_source.hpp"
@@ -27,10 +26,6 @@ std::size_t block_count(std::size_t texels) {
   return (texels + length - 1) / length;
 }
 
-std::string flag(bool on) {
-  return on ? "1" : "0";
-}
-
 void require_fit(const Volume& volume, const VolumeShape& wanted, const VolumeFormat& format,
                  const char* what) {
   const VolumeShape& found = volume.shape();
@@ -53,70 +48,56 @@ Injector::Injector(Session& session, const Basis& basis, const InjectOptions& op
       options_(options),
       table_(session, basis, options.lobes, options.table, TableUse::lobes),
       sorter_(session),
-      strip_(session.device().type == "cpu" ? kCpuStrip : 1) {}
+      strip_(session.device().type == "cpu" ? kCpuStrip : 1),
+      accumulator_(session) {}
 
 bool Injector::looks_up(Kind kind) const {
   return kind == Kind::light || blocks_by_lobes(options_.blocking);
 }
 
+Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format, int stride) const {
+  const bool light = kind == Kind::light;
+  const Literals both = Literals()
+                            .flag("CLPV_GEOMETRY", !light)
+                            .flag("CLPV_TRILINEAR", light && options_.trilinear)
+                            .flag("CLPV_SURFACE_PAPER", format == RsmFormat::paper)
+                            .number("CLPV_STRIDE", stride);
+  ProgramSource find{"find_cells.cl", both, {}}, sum{"inject.cl", both, {}};
+  find.literals.number("CLPV_STRIP", strip_);
+  sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
+  add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
+  sum.generated = (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
+                  (light ? inject_source(basis_, options_.lobes, options_.trilinear)
+                         : blocker_source(basis_, options_.lobes, options_.blocking));
+  return {Kernel(session_, find, "find_cells"), Kernel(session_, sum, "sum_segments"),
+          Kernel(session_, sum, "join_segments")};
+}
+
 Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format, int stride) {
-  const auto [found, made] = kernels_.try_emplace({kind, format, stride});
-  if (made) {
-    const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
-    const std::string paper = flag(format == RsmFormat::paper), steps = fmt::format("{}u", stride);
-    const ProgramSource find{"find_cells.cl",
-                             {{"CLPV_GEOMETRY", flag(!light)},
-                              {"CLPV_TRILINEAR", flag(trilinear)},
-                              {"CLPV_SURFACE_PAPER", paper},
-                              {"CLPV_STRIDE", steps},
-                              {"CLPV_STRIP", fmt::format("{}u", strip_)}},
-                             {}};
-    ProgramSource sum{"inject.cl",
-                      {{"CLPV_GEOMETRY", flag(!light)},
-                       {"CLPV_TRILINEAR", flag(trilinear)},
-                       {"CLPV_SURFACE_PAPER", paper},
-                       {"CLPV_STRIDE", steps},
-                       {"CLPV_GRID", std::to_string(options_.grid)},
-                       {"CLPV_UNIT_FLUX", flag(options_.unit_flux_lobes)}},
-                      light ? table_.macros() + inject_source(basis_, options_.lobes, trilinear)
-                            : (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
-                                  blocker_source(basis_, options_.lobes, options_.blocking)};
-    const bool planes = options_.format.layout == Layout::image;
-    add_format_literals(sum.literals,
-                        {planes ? Layout::soa : options_.format.layout, options_.format.storage});
-    found->second = {session_.kernel(find, "find_cells"), session_.kernel(sum, "sum_segments"),
-                     session_.kernel(sum, "join_segments")};
-  }
+  const std::tuple key(kind, format, stride);
+  auto found = kernels_.find(key);
+  if (found == kernels_.end()) found = kernels_.emplace(key, make_kernels(kind, format, stride)).first;
   return found->second;
 }
 
 void Injector::reserve(std::size_t texels) {
   sorter_.reserve(texels);
-  if (texels <= capacity_) return;
   const std::size_t lanes = options_.trilinear ? 8 : 1,
                     coefficients = static_cast<std::size_t>(basis_.size());
   const std::size_t blocks = block_count(texels);
-  details_ = session_.buffer(texels * (options_.trilinear ? 3 : 1) * sizeof(cl_float), "injection, texels");
-  partials_ =
-      session_.buffer(2 * blocks * 3 * coefficients * lanes * sizeof(cl_float), "injection, partial sums");
-  firsts_ = session_.buffer(blocks * sizeof(cl_uint), "injection, segments");
-  capacity_ = texels;
+  session_.reserve(details_, texels * (options_.trilinear ? 3 : 1) * sizeof(cl_float), "injection, texels");
+  session_.reserve(partials_, 2 * blocks * 3 * coefficients * lanes * sizeof(cl_float),
+                   "injection, partial sums");
+  session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
 }
 
 void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume) {
-  if (volume.updates_in_place()) {
-    inject_in_place(kind, surface, grid, stride, volume);
-    return;
-  }
-  PlaneStage& stage =
-      stages_.try_emplace(kind, session_, volume.shape(), volume.format().storage).first->second;
-  stage.take(volume);
-  inject_in_place(kind, surface, grid, stride, stage.planes());
-  stage.give(volume);
+  accumulator_.add_to_cells(volume,
+                            [&](const Volume& cells) { inject_cells(kind, surface, grid, stride, cells); });
 }
 
-void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
-                               Volume& volume) {
+void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                            const Volume& volume) {
   const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
   const auto step = static_cast<unsigned>(stride);
   const std::size_t width = CLPV_TAKEN(surface.view.width, step),
@@ -124,23 +105,24 @@ void Injector::inject_in_place(Kind kind, const Surface& surface, const ClpvGrid
   if (texels == 0) return;
   reserve(texels);
   Kernels& kernel = kernels(kind, surface.format, stride);
-  set_arguments(kernel.find_cells, surface.view, grid, surface.depth, surface.normal, surface.colour,
-                surface.colour_scale, sorter_.keys(), details_);
-  session_.launch(kernel.find_cells, cl::NDRange((width + strip_ - 1) / strip_, height),
-                  strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
+  kernel.find_cells
+      .set(surface.view, grid, surface.depth, surface.normal, surface.colour, surface.colour_scale,
+           sorter_.keys(), details_)
+      .launch(cl::NDRange((width + strip_ - 1) / strip_, height),
+              strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
   sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
 
   const auto length = static_cast<cl_uint>(segment_length(texels)),
              blocks = static_cast<cl_uint>(block_count(texels));
   for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
-    set_arguments(kernel.sum_segments, sorter_.sorted(), sorter_.count(), length, blocks, phase,
-                  surface.normal, surface.colour, surface.colour_scale, details_,
-                  static_cast<cl_uint>(texels), surface.view.width, volume.memory(), partials_, firsts_);
-    if (looks_up(kind)) table_.set(kernel.sum_segments);
-    session_.launch(kernel.sum_segments, cl::NDRange(blocks), kSegments);
-    set_arguments(kernel.join_segments, sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(),
-                  partials_, firsts_);
-    session_.launch(kernel.join_segments, cl::NDRange(blocks), kSegments);
+    kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, phase, surface.normal,
+                            surface.colour, surface.colour_scale, details_, static_cast<cl_uint>(texels),
+                            surface.view.width, volume.memory(), partials_, firsts_);
+    if (looks_up(kind)) table_.add_to(kernel.sum_segments);
+    kernel.sum_segments.launch(cl::NDRange(blocks), kSegments);
+    kernel.join_segments
+        .set(sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(), partials_, firsts_)
+        .launch(cl::NDRange(blocks), kSegments);
   }
 }
 

@@ -7,14 +7,15 @@
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "options/stage_options.hpp"
-#include "pipeline/convert.hpp"
 #include "pipeline/lookup_table.hpp"
 #include "pipeline/sort_by_cell.hpp"
 #include "pipeline/surface.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/accumulator.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -37,13 +38,15 @@ class Injector {
  private:
   enum class Kind { light, geometry };
   struct Kernels {
-    cl::Kernel find_cells, sum_segments, join_segments;
+    Kernel find_cells, sum_segments, join_segments;
   };
+  Kernels make_kernels(Kind kind, RsmFormat format, int stride) const;
   Kernels& kernels(Kind kind, RsmFormat format, int stride);
   bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
-  void inject_in_place(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
+  void inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                    const Volume& volume);
 
   Session& session_;
   const Basis& basis_;
@@ -52,9 +55,8 @@ class Injector {
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<std::tuple<Kind, RsmFormat, int>, Kernels> kernels_;  ///< int: the stride
-  std::map<Kind, PlaneStage> stages_;  ///< of images: a launch cannot both read and write one
-  std::size_t capacity_ = 0;
-  cl::Buffer details_, partials_, firsts_;
+  Accumulator accumulator_;
+  Buffer details_, partials_, firsts_;
 };
 
 }  // namespace clpv

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "basis/table_kernel.hpp"
-#include "device/session.hpp"
-#include "pipeline/volume.hpp"
+#include "support/literal.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernels/shared/light.h"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 

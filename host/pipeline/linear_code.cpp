@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "device/session.hpp"
+#include "support/literal.hpp"
 
 namespace clpv {
 namespace {

@@ -53,13 +53,12 @@ std::string LookupTable::macros() const {
       image ? "read_imagef(table, i).x" : "(table)[i]");
 }
 
-void LookupTable::set(cl::Kernel& kernel) const {
+void LookupTable::add_to(Kernel& kernel) const {
   if (!values_) return;
-  const cl_uint index = kernel.getInfo<CL_KERNEL_NUM_ARGS>() - 1;
   if (storage_ == TableStorage::image) {
-    kernel.setArg(index, image_);
+    kernel.add(image_);
   } else {
-    kernel.setArg(index, buffer_);
+    kernel.add(buffer_);
   }
 }
 

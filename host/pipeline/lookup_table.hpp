@@ -7,6 +7,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "options/choices.hpp"
 
@@ -29,13 +30,13 @@ class LookupTable {
   bool exists() const { return values_.has_value(); }
   std::string macros() const;
   static std::string no_macros();  ///< those of none
-  /// Sets the last argument of a kernel that was compiled with macros(), where there is a table.
-  void set(cl::Kernel& kernel) const;
+  /// The last argument of a kernel that was compiled with macros(), after the others; nothing where there is no table.
+  void add_to(Kernel& kernel) const;
 
  private:
   std::optional<ZonalTable> values_;
   TableStorage storage_;
-  cl::Buffer buffer_;
+  Buffer buffer_;
   cl::Image1DBuffer image_;
 };
 

@@ -19,41 +19,37 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
       basis_(basis),
       transport_(transport),
       options_(options),
-      stencil_(session.device(), options.stencil()) {
+      stencil_(session.device(), options.stencil()),
+      accumulator_(session) {
   if (options.lobe_time == LobeTime::kernel)
     lobes_.emplace(session, basis, transport, options.state, options.table);
   const bool fluxes = options.state == State::fluxes;
-  const VolumeShape light{options.grid, basis.size(), 3};
   const VolumeShape shape{options.grid, fluxes ? 6 : basis.size(), 3};
-  const auto make = [&](const VolumeShape& of, const char* what) {
-    return std::make_unique<Volume>(session, of, what, options.format);
+  const auto make = [&](const char* what) {
+    return std::make_unique<Volume>(session, shape, what, options.format);
   };
-  for (auto& volume : travelling_) volume = make(shape, "travelling light");
-  if (fluxes) sum_ = make(shape, "sum of fluxes");
-  if (travelling_[0]->updates_in_place()) return;
-  spare_ = make(light, "spare sum of light");
-  if (fluxes) travelling_spare_ = make(shape, "spare sum of fluxes");
+  for (auto& volume : travelling_) volume = make("travelling light");
+  if (fluxes) sum_ = make("sum of fluxes");
+}
+
+Propagator::Form Propagator::make_form(bool first, bool blocking) {
+  const State from = first ? State::coefficients : options_.state;
+  const TransportSource source =
+      transport_source(basis_, transport_, {from, options_.state, blocking, lobes_.has_value()});
+  const int channels = lobes_ || (blocking && source.arrive.flops() <= kLargestShared) ? 3 : 1;
+  ProgramSource program{"propagate.cl", stencil_.literals(), source.text};
+  if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
+  if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
+  program.literals.flag("CLPV_BLOCKING", blocking).integer("CLPV_CHANNELS", channels);
+  if (lobes_) lobes_->add_literals(program.literals);
+  return {source, channels, Kernel(session_, program, "propagate_step"),
+          Kernel(session_, program, "propagate_expand")};
 }
 
 Propagator::Form& Propagator::form(bool first, bool blocking) {
   // With coefficients travelling, the first step is like any other.
   std::optional<Form>& slot = forms_[first && options_.state == State::fluxes ? 1 : 0][blocking ? 1 : 0];
-  if (!slot) {
-    slot.emplace();
-    const State source = first ? State::coefficients : options_.state;
-    slot->source =
-        transport_source(basis_, transport_, {source, options_.state, blocking, lobes_.has_value()});
-    slot->channels = lobes_ || (blocking && slot->source.arrive.flops() <= kLargestShared) ? 3 : 1;
-    ProgramSource program{"propagate.cl", {}, slot->source.text};
-    if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
-    if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
-    program.literals = {{"CLPV_BLOCKING", blocking ? "1" : "0"},
-                        {"CLPV_CHANNELS", std::to_string(slot->channels)}};
-    stencil_.add_literals(program.literals);
-    if (lobes_) lobes_->add_literals(program.literals);
-    slot->step = session_.kernel(program, "propagate_step");
-    slot->expand = session_.kernel(program, "propagate_expand");
-  }
+  if (!slot) slot.emplace(make_form(first, blocking));
   return *slot;
 }
 
@@ -65,57 +61,36 @@ void Propagator::transmit(const Volume& geometry) {
 
 void Propagator::run_step(Form& form, bool blocking, const Volume& source, const Volume& target,
                           const Volume& sum_so_far, const Volume& sum) {
-  form.step.setArg(0, source.memory());
-  form.step.setArg(1, target.memory());
-  form.step.setArg(2, sum_so_far.memory());
-  form.step.setArg(3, sum.memory());
-  if (blocking) form.step.setArg(4, transmitter_->transmittance().memory());
-  if (lobes_) lobes_->set(form.step);
-  stencil_.launch(session_, form.step, form.channels == 3 ? 1 : 3);
+  form.step.set(source.memory(), target.memory(), sum_so_far.memory(), sum.memory());
+  if (blocking) form.step.add(transmitter_->transmittance().memory());
+  if (lobes_) lobes_->add_to(form.step);
+  stencil_.launch(form.step, form.channels == 3 ? 1 : 3);
 }
 
 void Propagator::run_expand(Form& form, const Volume& base, const Volume& sum, const Volume& accumulated) {
-  form.expand.setArg(0, base.memory());
-  form.expand.setArg(1, sum.memory());
-  form.expand.setArg(2, accumulated.memory());
-  stencil_.launch(session_, form.expand, 3);
+  form.expand.set(base.memory(), sum.memory(), accumulated.memory());
+  stencil_.launch(form.expand, 3);
 }
 
-Volume& Propagator::before_late(const PropagateVolumes& volumes) {
-  return spare_ ? *spare_ : volumes.accumulated;
-}
-
-Propagator::Sums Propagator::prepare_sums(const PropagateVolumes& volumes, int early_steps, int late_steps) {
-  const bool fluxes = options_.state == State::fluxes;
-  if (late_steps == 0 && volumes.late != nullptr) volumes.late->clear(session_);
-  if (fluxes && late_steps > 0 && !late_sum_)
+Volume& Propagator::sum_of(const PropagateVolumes& volumes, bool late) {
+  if (options_.state == State::coefficients) return late ? *volumes.late : volumes.accumulated;
+  if (late && !late_sum_)
     late_sum_ = std::make_unique<Volume>(session_, sum_->shape(), "late sum of fluxes", options_.format);
-  const auto late_sum = [&](Volume* result, Volume* spare) {
-    return late_steps > 0 ? std::optional(RunningSum(*result, spare, late_steps)) : std::nullopt;
-  };
-  if (fluxes) {
-    RunningSum early(*sum_, travelling_spare_.get(), early_steps);
-    early.so_far().clear(session_);
-    return {early, late_sum(late_sum_.get(), travelling_spare_.get())};
-  }
-  if (late_steps == 0) return {RunningSum(volumes.accumulated, spare_.get(), early_steps), std::nullopt};
-  return {RunningSum(before_late(volumes), &volumes.accumulated, early_steps),
-          late_sum(volumes.late, &volumes.accumulated)};
+  return late ? *late_sum_ : *sum_;
 }
 
 void Propagator::expand(Form& form, const PropagateVolumes& volumes, bool late) {
-  if (options_.state == State::coefficients) {
-    if (late) run_expand(form, before_late(volumes), *volumes.late, volumes.accumulated);
-    return;
-  }
-  if (!late) {
+  if (options_.state == State::fluxes) {
+    if (late) {
+      volumes.accumulated.clear(session_);
+      run_expand(form, volumes.accumulated, *late_sum_, *volumes.late);
+    }
     run_expand(form, volumes.injected, *sum_, volumes.accumulated);
-    return;
   }
-  volumes.accumulated.clear(session_);
-  run_expand(form, volumes.accumulated, *late_sum_, *volumes.late);
-  run_expand(form, volumes.injected, *sum_, before_late(volumes));
-  run_expand(form, before_late(volumes), *late_sum_, volumes.accumulated);
+  if (!late) return;
+  accumulator_.add(volumes.accumulated, [&](const Volume& early, const Volume& all) {
+    run_expand(form, early, sum_of(volumes, true), all);
+  });
 }
 
 void Propagator::propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step) {
@@ -123,7 +98,8 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   const int late_steps =
       volumes.late == nullptr ? 0 : std::min((iterations + 1) / 2, std::max(iterations - 1, 0));
   if (volumes.geometry != nullptr && iterations > 1) transmit(*volumes.geometry);
-  Sums sums = prepare_sums(volumes, iterations - late_steps, late_steps);
+  if (options_.state == State::fluxes) sum_->clear(session_);
+  if (volumes.late != nullptr) (late_steps > 0 ? sum_of(volumes, true) : *volumes.late).clear(session_);
   if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);
 
   const Volume* source = &volumes.injected;
@@ -131,13 +107,17 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   for (int step = 1; step <= iterations; ++step) {
     const bool blocking = volumes.geometry != nullptr && step > 1;
     const Volume& target = *travelling_[static_cast<std::size_t>(step % 2)];
-    RunningSum& sum = step > iterations - late_steps ? *sums.late : sums.early;
-    // Coefficients add up from the injected field on; fluxes, which it has none of, from zero.
-    const bool from_injected = step == 1 && options_.state == State::coefficients;
-    if (step == iterations - late_steps + 1) sum.so_far().clear(session_);  // the first late one
+    Volume& sum = sum_of(volumes, step > iterations - late_steps);
     last = &form(step == 1, blocking);
-    run_step(*last, blocking, *source, target, from_injected ? volumes.injected : sum.so_far(), sum.next());
-    sum.added();
+    const auto run = [&](const Volume& so_far, const Volume& next) {
+      run_step(*last, blocking, *source, target, so_far, next);
+    };
+    // Coefficients add up from the injected field on; fluxes, which it has none of, from zero.
+    if (step == 1 && options_.state == State::coefficients) {
+      run(volumes.injected, sum);
+    } else {
+      accumulator_.add(sum, run);
+    }
     source = &target;
     if (after_step) after_step(step, target);
   }

@@ -11,11 +11,11 @@
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
 #include "pipeline/run_time_lobes.hpp"
-#include "pipeline/running_sum.hpp"
 #include "pipeline/stencil.hpp"
 #include "pipeline/transmit.hpp"
 #include "pipeline/transport_source.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/accumulator.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -49,21 +49,16 @@ class Propagator {
  private:
   struct Form {
     TransportSource source;
-    cl::Kernel step, expand;
-    int channels = 1;  ///< a work-item of `step` serves
+    int channels;  ///< a work-item of `step` serves
+    Kernel step, expand;
   };
+  Form make_form(bool first, bool blocking);
   Form& form(bool first, bool blocking);
   void transmit(const Volume& geometry);
   void run_step(Form& form, bool blocking, const Volume& source, const Volume& target,
                 const Volume& sum_so_far, const Volume& sum);
-  struct Sums {
-    RunningSum early;
-    std::optional<RunningSum> late;
-  };
-  Sums prepare_sums(const PropagateVolumes& volumes, int early_steps, int late_steps);
-  /// Where the sum without the late steps waits to be expanded into `accumulated`: there, or where that cannot be both
-  /// read and written, in the spare one.
-  Volume& before_late(const PropagateVolumes& volumes);
+  /// What the early steps, or the late ones, add up in: light, or the fluxes it will come from.
+  Volume& sum_of(const PropagateVolumes& volumes, bool late);
   void expand(Form& form, const PropagateVolumes& volumes, bool late);
   void run_expand(Form& form, const Volume& base, const Volume& sum, const Volume& accumulated);
 
@@ -77,8 +72,7 @@ class Propagator {
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<Transmitter> transmitter_;
   std::unique_ptr<Volume> sum_, late_sum_;  ///< of the six fluxes
-  /// Of the light's shape and of what travels; for images alone, which are not updated in place.
-  std::unique_ptr<Volume> spare_, travelling_spare_;
+  Accumulator accumulator_;
 };
 
 }  // namespace clpv

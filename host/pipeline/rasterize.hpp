@@ -5,6 +5,10 @@
 // triangle that comes first in the scene is seen: two runs give the same bytes.
 #pragma once
 
+#include <compare>
+#include <map>
+
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/surface.hpp"
@@ -33,18 +37,26 @@ class Rasterizer {
 
   /// Depth alone [m], 0 where there is no surface, into view.width x view.height floats. Both sides cast
   /// shadows.
-  void rasterize_shadow(const ClpvView& view, cl::Buffer& depth);
+  void rasterize_shadow(const ClpvView& view, Buffer& depth);
 
  private:
-  /// A buffer that grows when more is asked of it.
-  struct Scratch {
-    cl::Buffer buffer;
-    std::size_t bytes = 0;
-  };
   struct Pass {
     ClpvView view;
     bool cull_back_faces;
   };
+
+  /// Kernels of one projection, which is in their code.
+  struct Drawing {
+    Kernel project, set_up, set_up_clipped, bin, draw_tiles, resolve_depth;
+  };
+  Drawing make_drawing(bool orthographic) const;
+  Drawing& drawing(const ClpvView& view);
+  /// What the code that resolves a surface is made for.
+  struct Resolving {
+    bool orthographic, from_light, paper, emissive;
+    auto operator<=>(const Resolving&) const = default;
+  };
+  Kernel& resolve(const Resolving& wanted);
 
   void clear(Surface& surface);
   void find_visible(const Pass& pass);
@@ -52,12 +64,13 @@ class Rasterizer {
   unsigned set_up(const Pass& pass, unsigned first, unsigned count);
   void draw_tiles(const ClpvView& view, bool fresh);
   void bin(const ClpvView& view, unsigned listed, bool fill);
-  cl::Buffer& grown(Scratch& scratch, std::size_t bytes, const char* what);
 
   Session& session_;
   SceneBuffers scene_;
   std::size_t most_listed_;
-  Scratch projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
+  std::map<bool, Drawing> drawing_;  ///< by whether the projection is orthographic
+  std::map<Resolving, Kernel> resolve_;
+  Buffer projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
 };
 
 }  // namespace clpv

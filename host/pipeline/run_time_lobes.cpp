@@ -39,15 +39,14 @@ RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport
 }
 
 void RunTimeLobes::add_literals(Literals& literals) const {
-  literals["CLPV_LOBES_AT_RUN_TIME"] = std::to_string(1);
-  literals["CLPV_FACES"] = std::to_string(faces_);
-  literals["CLPV_UNIT_FLUX"] = std::to_string(unit_flux_ ? 1 : 0);
+  literals.flag("CLPV_LOBES_AT_RUN_TIME", true)
+      .integer("CLPV_FACES", faces_)
+      .flag("CLPV_UNIT_FLUX", unit_flux_);
 }
 
-void RunTimeLobes::set(cl::Kernel& step) const {
-  const cl_uint arguments = step.getInfo<CL_KERNEL_NUM_ARGS>();
-  step.setArg(arguments - (table_.exists() ? 2 : 1), normals_);
-  table_.set(step);
+void RunTimeLobes::add_to(Kernel& step) const {
+  step.add(normals_);
+  table_.add_to(step);
 }
 
 }  // namespace clpv

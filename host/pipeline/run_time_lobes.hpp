@@ -25,15 +25,15 @@ class RunTimeLobes {
   std::string macros() const { return table_.macros(); }
   const std::string& text() const { return text_; }
   void add_literals(Literals& literals) const;
-  /// Sets the last arguments of a step.
-  void set(cl::Kernel& step) const;
+  /// The last arguments of a step, after the others.
+  void add_to(Kernel& step) const;
 
  private:
   LookupTable table_;
   std::string text_;
   std::size_t faces_ = 0;
   bool unit_flux_;
-  cl::Buffer normals_;
+  Buffer normals_;
 };
 
 }  // namespace clpv

@@ -10,13 +10,13 @@
 namespace clpv {
 
 struct SceneBuffers {
-  cl::Buffer vertices;   ///< ClpvVertex
-  cl::Buffer triangles;  ///< ClpvTriangle
-  cl::Buffer materials;  ///< ClpvMaterial; textures they lack are the white one
+  Buffer vertices;   ///< ClpvVertex
+  Buffer triangles;  ///< ClpvTriangle
+  Buffer materials;  ///< ClpvMaterial; textures they lack are the white one
   /// ClpvTexture: CLPV_TEXTURE_LEVELS mip levels a texture, the last one repeated; after the scene's textures a
   /// white one.
-  cl::Buffer textures;
-  cl::Buffer texels;  ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
+  Buffer textures;
+  Buffer texels;  ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
   unsigned vertex_count = 0, triangle_count = 0;
   /// What the scene has at all: textures, vertex colours other than 1, materials that emit.
   bool textured = false, coloured = false, emissive = false;

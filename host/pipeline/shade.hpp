@@ -5,6 +5,7 @@
 #include <CL/opencl.hpp>
 #include <vector>
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/light.h"
 #include "options/show.hpp"
@@ -19,7 +20,7 @@ namespace clpv {
 struct ShadowedLight {
   ClpvLight light{};
   std::vector<ClpvView> views;
-  std::vector<cl::Buffer> depths;
+  std::vector<Buffer> depths;
 };
 
 class Shader {
@@ -33,16 +34,16 @@ class Shader {
 
   /// `camera` as given to light() last. `irradiance`: of the volumes (Gatherer). `image`: float4 a pixel,
   /// RGBA, linear, finite; alpha 1 where there is a surface, else all 0.
-  void show(Show what, const Surface& camera, const cl::Buffer& irradiance, cl::Buffer& image);
+  void show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image);
 
  private:
   void add(const Surface& camera, const ShadowedLight& shadowed);
 
   Session& session_;
-  cl::Kernel light_, shade_;
-  cl::Buffer direct_;  // float4 a pixel, E of all lights
-  cl::Buffer views_;   // of the light at hand
-  std::size_t pixels_ = 0, reserved_views_ = 0;
+  Kernel light_, shade_;
+  Buffer direct_;  // float4 a pixel, E of all lights
+  Buffer views_;   // of the light at hand
+  std::size_t pixels_ = 0;
 };
 
 }  // namespace clpv

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "device/arguments.hpp"
 #include "kernels/shared/sort.h"
 #include "support/error.hpp"
 
@@ -18,6 +17,7 @@ constexpr std::size_t kMostTexels = std::size_t{1} << (32 - CLPV_RUN_BITS);  // 
 constexpr std::size_t kMostChunks = 512, kLeastChunk = 256;
 // Work-items here are long and few: small groups let all compute units have some.
 const cl::NDRange kLocal(16);
+const ProgramSource kSource{"sort_by_cell.cl", {}, {}};
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -25,46 +25,35 @@ std::size_t round_up(std::size_t value, std::size_t step) {
 
 }  // namespace
 
-CellSorter::CellSorter(Session& session) : session_(session) {
-  const ProgramSource source{"sort_by_cell.cl", {}, {}};
-  count_runs_ = session.kernel(source, "count_runs");
-  scatter_runs_ = session.kernel(source, "scatter_runs");
-  count_texels_ = session.kernel(source, "count_texels");
-  scatter_texels_ = session.kernel(source, "scatter_texels");
-  sum_digits_ = session.kernel(source, "sum_digits");
-  place_digits_ = session.kernel(source, "place_digits");
-  run_count_ = session.buffer(sizeof(cl_uint), "sort by cell, count");
-  count_ = session.buffer(sizeof(cl_uint), "sort by cell, count");
-}
+CellSorter::CellSorter(Session& session)
+    : session_(session),
+      count_runs_(session, kSource, "count_runs"),
+      scatter_runs_(session, kSource, "scatter_runs"),
+      count_texels_(session, kSource, "count_texels"),
+      scatter_texels_(session, kSource, "scatter_texels"),
+      sum_digits_(session, kSource, "sum_digits"),
+      place_digits_(session, kSource, "place_digits"),
+      run_count_(session.buffer(sizeof(cl_uint), "sort by cell, count")),
+      count_(session.buffer(sizeof(cl_uint), "sort by cell, count")) {}
 
 void CellSorter::reserve(std::size_t texels) {
-  if (texels <= capacity_) return;
   if (texels > kMostTexels) {
     throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels,
                 kMostTexels);
   }
-  keys_ = session_.buffer(texels * sizeof(cl_uint), "sort by cell, keys");
-  runs_ = session_.buffer(texels * sizeof(cl_uint2), "sort by cell, runs");
-  sorted_ = session_.buffer(texels * sizeof(cl_uint2), "sort by cell, result");
-  capacity_ = texels;
+  session_.reserve(keys_, texels * sizeof(cl_uint), "sort by cell, keys");
+  session_.reserve(runs_, texels * sizeof(cl_uint2), "sort by cell, runs");
+  session_.reserve(sorted_, texels * sizeof(cl_uint2), "sort by cell, result");
 }
 
 void CellSorter::reserve_counts(std::size_t digits, std::size_t chunks) {
-  if (digits > digits_capacity_) {
-    totals_ = session_.buffer(digits * sizeof(cl_uint), "sort by cell, totals");
-    digits_capacity_ = digits;
-  }
-  if (digits * chunks > counts_capacity_) {
-    counts_ = session_.buffer(digits * chunks * sizeof(cl_uint), "sort by cell, counts");
-    counts_capacity_ = digits * chunks;
-  }
+  session_.reserve(totals_, digits * sizeof(cl_uint), "sort by cell, totals");
+  session_.reserve(counts_, digits * chunks * sizeof(cl_uint), "sort by cell, counts");
 }
 
-void CellSorter::add_up(const cl::Buffer& count, cl_uint digits, cl_uint chunks) {
-  set_arguments(sum_digits_, counts_, chunks, digits, totals_);
-  session_.launch(sum_digits_, cl::NDRange(digits), kLocal);
-  set_arguments(place_digits_, counts_, chunks, digits, totals_, count);
-  session_.launch(place_digits_, cl::NDRange(digits), kLocal);
+void CellSorter::add_up(const Buffer& count, cl_uint digits, cl_uint chunks) {
+  sum_digits_.set(counts_, chunks, digits, totals_).launch(cl::NDRange(digits), kLocal);
+  place_digits_.set(counts_, chunks, digits, totals_, count).launch(cl::NDRange(digits), kLocal);
 }
 
 void CellSorter::sort(std::size_t texels, std::size_t cells) {
@@ -77,18 +66,16 @@ void CellSorter::sort(std::size_t texels, std::size_t cells) {
   reserve_counts(low_digits, chunks);
 
   session_.fill_zero(counts_, std::size_t{low_digits} * chunks * sizeof(cl_uint));
-  set_arguments(count_runs_, keys_, count, chunk, chunks, low_bits, counts_);
-  session_.launch(count_runs_, cl::NDRange(chunks), kLocal);
+  count_runs_.set(keys_, count, chunk, chunks, low_bits, counts_).launch(cl::NDRange(chunks), kLocal);
   add_up(run_count_, low_digits, chunks);
-  set_arguments(scatter_runs_, keys_, count, chunk, chunks, low_bits, counts_, runs_);
-  session_.launch(scatter_runs_, cl::NDRange(chunks), kLocal);
+  scatter_runs_.set(keys_, count, chunk, chunks, low_bits, counts_, runs_)
+      .launch(cl::NDRange(chunks), kLocal);
 
   session_.fill_zero(counts_, std::size_t{high_digits} * chunks * sizeof(cl_uint));
-  set_arguments(count_texels_, runs_, run_count_, chunk, chunks, low_bits, counts_);
-  session_.launch(count_texels_, cl::NDRange(chunks), kLocal);
+  count_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_).launch(cl::NDRange(chunks), kLocal);
   add_up(count_, high_digits, chunks);
-  set_arguments(scatter_texels_, runs_, run_count_, chunk, chunks, low_bits, counts_, sorted_);
-  session_.launch(scatter_texels_, cl::NDRange(chunks), kLocal);
+  scatter_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_, sorted_)
+      .launch(cl::NDRange(chunks), kLocal);
 }
 
 }  // namespace clpv

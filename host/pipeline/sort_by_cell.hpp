@@ -4,6 +4,7 @@
 #include <CL/opencl.hpp>
 #include <cstddef>
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 
 namespace clpv {
@@ -18,22 +19,21 @@ class CellSorter {
   void reserve(std::size_t texels);
 
   /// In: the cell of each texel, CLPV_NO_CELL for none; uint. Written by the caller before sort().
-  const cl::Buffer& keys() const { return keys_; }
+  const Buffer& keys() const { return keys_; }
   /// Sorts the first `texels` keys, each below `cells` or CLPV_NO_CELL.
   void sort(std::size_t texels, std::size_t cells);
   /// Out: uint2 (cell, texel), the first count() of them.
-  const cl::Buffer& sorted() const { return sorted_; }
+  const Buffer& sorted() const { return sorted_; }
   /// Out: uint, how many texels have a cell.
-  const cl::Buffer& count() const { return count_; }
+  const Buffer& count() const { return count_; }
 
  private:
-  void add_up(const cl::Buffer& count, cl_uint digits, cl_uint chunks);
+  void add_up(const Buffer& count, cl_uint digits, cl_uint chunks);
   void reserve_counts(std::size_t digits, std::size_t chunks);
 
   Session& session_;
-  cl::Kernel count_runs_, scatter_runs_, count_texels_, scatter_texels_, sum_digits_, place_digits_;
-  std::size_t capacity_ = 0, counts_capacity_ = 0, digits_capacity_ = 0;
-  cl::Buffer keys_, runs_, sorted_, counts_, totals_, run_count_, count_;
+  Kernel count_runs_, scatter_runs_, count_texels_, scatter_texels_, sum_digits_, place_digits_;
+  Buffer keys_, runs_, sorted_, counts_, totals_, run_count_, count_;
 };
 
 }  // namespace clpv

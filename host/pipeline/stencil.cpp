@@ -1,7 +1,6 @@
 #include "pipeline/stencil.hpp"
 
 #include <algorithm>
-#include <string>
 
 namespace clpv {
 namespace {
@@ -21,18 +20,19 @@ Stencil::Stencil(const Device& device, const StencilOptions& options) : options_
     options_.local[0] = std::min(items_per_row(options.grid, options_.lanes), kWidestGroup);
 }
 
-void Stencil::add_literals(Literals& literals) const {
-  literals["CLPV_GRID"] = std::to_string(options_.grid);
-  literals["CLPV_LOCAL_X"] = std::to_string(options_.local[0]);
-  literals["CLPV_LOCAL_Y"] = std::to_string(options_.local[1]);
+Literals Stencil::literals() const {
+  Literals literals;
+  literals.integer("CLPV_GRID", options_.grid)
+      .integer("CLPV_LOCAL_X", options_.local[0])
+      .integer("CLPV_LOCAL_Y", options_.local[1]);
   add_format_literals(literals, options_.format, options_.lanes);
+  return literals;
 }
 
-void Stencil::launch(Session& session, const cl::Kernel& kernel, int channels) const {
+void Stencil::launch(Kernel& kernel, int channels) const {
   const auto n = static_cast<std::size_t>(options_.grid);
-  session.launch(kernel,
-                 {items_per_row(options_.grid, options_.lanes), n, n * static_cast<std::size_t>(channels)},
-                 {options_.local[0], options_.local[1], 1});
+  kernel.launch({items_per_row(options_.grid, options_.lanes), n, n * static_cast<std::size_t>(channels)},
+                {options_.local[0], options_.local[1], 1});
 }
 
 }  // namespace clpv

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstddef>
 
-#include "device/session.hpp"
+#include "device/kernel.hpp"
 #include "options/stage_options.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 
@@ -18,9 +18,9 @@ class Stencil {
   int lanes() const { return options_.lanes; }
   const std::array<std::size_t, 2>& local() const { return options_.local; }
   /// CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X, CLPV_LOCAL_Y and the format's.
-  void add_literals(Literals& literals) const;
+  Literals literals() const;
   /// Once through the grid for each of `channels`, which are stacked along z.
-  void launch(Session& session, const cl::Kernel& kernel, int channels) const;
+  void launch(Kernel& kernel, int channels) const;
 
  private:
   StencilOptions options_;

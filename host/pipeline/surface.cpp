@@ -42,13 +42,13 @@ Bytes encode(const std::vector<glm::vec4>& values, float scale, float offset) {
   return stored;
 }
 
-std::vector<glm::vec4> read_texels(Session& session, const cl::Buffer& buffer, std::size_t count,
+std::vector<glm::vec4> read_texels(Session& session, const Buffer& buffer, std::size_t count,
                                    RsmFormat format, float scale, float offset) {
   if (format == RsmFormat::paper) return decode(session.read<cl_uchar4>(buffer, count), scale, offset);
   return session.read<glm::vec4>(buffer, count);
 }
 
-void write_texels(Session& session, const cl::Buffer& buffer, const std::vector<glm::vec4>& values,
+void write_texels(Session& session, const Buffer& buffer, const std::vector<glm::vec4>& values,
                   RsmFormat format, float scale, float offset) {
   if (format == RsmFormat::paper) {
     session.write(buffer, encode(values, scale, offset));
@@ -84,7 +84,7 @@ SurfaceImage read_surface(Session& session, const Surface& surface) {
   image.depth = session.read<float>(surface.depth, count);
   image.normal = read_texels(session, surface.normal, count, surface.format, 2, -1);
   image.colour = read_texels(session, surface.colour, count, surface.format, surface.colour_scale, 0);
-  if (surface.emissive() != nullptr) image.emissive = session.read<glm::vec4>(surface.emissive, count);
+  if (surface.emissive.exists()) image.emissive = session.read<glm::vec4>(surface.emissive, count);
   for (std::size_t i = 0; i < count; ++i) {
     glm::vec4& normal = image.normal[i];
     if (image.depth[i] == 0) {

@@ -19,10 +19,10 @@ struct Surface {
   ClpvView view{};
   RsmFormat format = RsmFormat::float32;
   float colour_scale = 1;  ///< what a stored 1 of `colour` means in format paper
-  cl::Buffer depth;        ///< float
-  cl::Buffer normal;       ///< unit, world space, turned towards the viewer; 0 where there is no surface
-  cl::Buffer colour;       ///< camera: albedo; light: flux of the virtual point light [W]
-  cl::Buffer emissive;     ///< camera only: float4, emitted radiance [W/m^2/sr]
+  Buffer depth;            ///< float
+  Buffer normal;           ///< unit, world space, turned towards the viewer; 0 where there is no surface
+  Buffer colour;           ///< camera: albedo; light: flux of the virtual point light [W]
+  Buffer emissive;         ///< camera only: float4, emitted radiance [W/m^2/sr]
 };
 
 /// A Surface read back, or made by a test; what the twins of host/reference work on.

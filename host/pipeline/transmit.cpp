@@ -121,20 +121,17 @@ std::string way_macros(int ways) {
 
 Transmitter::Transmitter(Session& session, const Basis& basis, const Transport& transport,
                          const StencilOptions& options)
-    : session_(session), stencil_(session.device(), options) {
-  const TransmitSource source = transmit_source(basis, transport);
-  operations_ = source.operations;
-  transmittance_ = std::make_unique<Volume>(session, VolumeShape{options.grid, source.ways, 1},
-                                            "transmittance", options.format);
-  ProgramSource program{"transmit.cl", {}, source.text};
-  stencil_.add_literals(program.literals);
-  kernel_ = session.kernel(program, "transmit");
-}
+    : Transmitter(session, transmit_source(basis, transport), options) {}
+
+Transmitter::Transmitter(Session& session, const TransmitSource& source, const StencilOptions& options)
+    : stencil_(session.device(), options),
+      operations_(source.operations),
+      kernel_(session, {"transmit.cl", stencil_.literals(), source.text}, "transmit"),
+      transmittance_(session, {options.grid, source.ways, 1}, "transmittance", options.format) {}
 
 void Transmitter::transmit(const Volume& geometry) {
-  kernel_.setArg(0, geometry.memory());
-  kernel_.setArg(1, transmittance_->memory());
-  stencil_.launch(session_, kernel_, 1);
+  kernel_.set(geometry.memory(), transmittance_.memory());
+  stencil_.launch(kernel_, 1);
 }
 
 }  // namespace clpv

@@ -1,7 +1,6 @@
 // What blockers let through: a cascade's geometry volume as the share of light that each way into a cell passes.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "basis/basis.hpp"
@@ -9,7 +8,7 @@
 #include "device/session.hpp"
 #include "pipeline/linear_code.hpp"
 #include "pipeline/stencil.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -36,15 +35,16 @@ class Transmitter {
   void transmit(const Volume& geometry);  ///< (grid + 1)^3 corners, one channel
 
   /// grid^3 cells, one number in [0, 1] a way, one channel.
-  const Volume& transmittance() const { return *transmittance_; }
+  const Volume& transmittance() const { return transmittance_; }
   const OperationCount& operations() const { return operations_; }
 
  private:
-  Session& session_;
+  Transmitter(Session& session, const TransmitSource& source, const StencilOptions& options);
+
   Stencil stencil_;
   OperationCount operations_;
-  cl::Kernel kernel_;
-  std::unique_ptr<Volume> transmittance_;
+  Kernel kernel_;
+  Volume transmittance_;
 };
 
 }  // namespace clpv

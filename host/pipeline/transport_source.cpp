@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "pipeline/volume.hpp"
 #include "support/error.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 namespace {

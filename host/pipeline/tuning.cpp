@@ -13,6 +13,7 @@
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 namespace {

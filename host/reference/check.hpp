@@ -8,7 +8,7 @@
 
 #include "device/session.hpp"
 #include "options/stages.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv::reference {
 

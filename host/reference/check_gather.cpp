@@ -69,14 +69,14 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
     cascades.push_back({grids[c], &lit[c].twin});
   }
   const Surface camera = upload_surface(session, image);
-  cl::Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
+  Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer(session, basis, transport, options).gather(camera, grids, volumes, irradiance);
   std::vector<glm::dvec4> twin;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
   CheckResult result =
       compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
                      "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport.kind), variant.name));
-  const bool by_filter = variant.format.layout == Layout::image && variant.filtered;
+  const bool by_filter = sampled_by_device(variant.format) && variant.filtered;
   result.allowed = tolerance_in(by_filter ? "gather-filter" : "gather", variant.format);
   return result;
 }
@@ -87,14 +87,14 @@ void check_formats(Session& session, CheckResults& results) {
   const Transport transport = make_transport(TransportKind::upwind, *basis);
   for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
     Variant variant{.name = format_name(format), .format = format};
-    if (format.layout == Layout::image) {
+    if (sampled_by_device(format)) {
       variant.name += " filter";
       results.push_back(check_one(session, *basis, transport, variant));
       variant.name = format_name(format) + " texels";
       variant.filtered = false;
     }
     results.push_back(check_one(session, *basis, transport, variant));
-    if (format.layout != Layout::image) continue;
+    if (!sampled_by_device(format)) continue;
     // More coefficients than irradiance needs are packed, from images too.
     const std::unique_ptr<Basis> large = make_basis("bins24");
     results.push_back(check_one(session, *large, make_transport(TransportKind::upwind, *large), variant));

@@ -214,7 +214,7 @@ void check_light(Session& session, const Scene& scene, const ClpvLight& light, c
   const SurfaceImage device = read_surface(session, surface);
   const Rasterized twin = rasterize_rsm(scene, light, view);
   append(results, device, twin, "rsm/" + name);
-  cl::Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
+  Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
   rasterizer.rasterize_shadow(view, depth);
   SurfaceImage shadow = twin.image;
   shadow.depth = session.read<float>(depth, device.depth.size());

@@ -97,7 +97,7 @@ struct Setting {
   SurfaceImage image;
   Surface camera;
   std::vector<glm::dvec3> indirect;
-  cl::Buffer irradiance, shown;
+  Buffer irradiance, shown;
 };
 
 Setting set_up(Session& session) {

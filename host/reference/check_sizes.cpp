@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "device/kernel.hpp"
 #include "kernels/shared/fields.h"
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
@@ -42,10 +43,8 @@ constexpr Place kHost[] = {
 
 CheckResults check_sizes(Session& session) {
   const std::size_t count = std::size(kHost);
-  cl::Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
-  cl::Kernel kernel = session.kernel({.file = "sizes.cl", .literals = {}, .generated = {}}, "sizes");
-  kernel.setArg(0, bytes);
-  session.launch(kernel, cl::NDRange(1), cl::NDRange(1));
+  Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
+  Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
   const auto device = session.read<std::uint32_t>(bytes, count);
 
   CheckResult result{"sizes", "shared structs", 0, tolerance("sizes"), {}};

@@ -1,8 +1,7 @@
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 #include <glm/gtc/packing.hpp>
 
-#include "device/cl_error.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -28,22 +27,11 @@ std::size_t host_numbers(const VolumeShape& shape) {
   return n * n * n * static_cast<std::size_t>(shape.coefficients) * static_cast<std::size_t>(shape.channels);
 }
 
-cl::Image3D make_image(Session& session, const VolumeShape& shape, Storage storage, std::size_t bytes,
-                       const std::string& what) {
+Image3D make_image(Session& session, const VolumeShape& shape, Storage storage, std::size_t bytes,
+                   const std::string& what) {
   const ImageExtent extent = image_extent(shape);
-  if (bytes > session.largest_buffer()) {
-    throw Error(ExitCode::run_time, "{}: an image of {} bytes; {} has room for {}", what, bytes,
-                session.device().name, session.largest_buffer());
-  }
   const cl::ImageFormat texel(CL_RGBA, storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
-  try {
-    cl::Image3D image(session.context(), CL_MEM_READ_WRITE, texel, extent.x, extent.y, extent.z);
-    session.account(bytes);
-    return image;
-  } catch (const cl::Error& error) {
-    throw cl_error(error, fmt::format("{} (an image of {} x {} x {} texels) on {}", what, extent.x, extent.y,
-                                      extent.z, session.device().name));
-  }
+  return session.image(texel, {extent.x, extent.y, extent.z}, bytes, what);
 }
 
 cl::array<cl::size_type, 3> region(const VolumeShape& shape) {
@@ -66,8 +54,8 @@ Volume::Volume(Session& session, const VolumeShape& shape, const std::string& wh
 }
 
 const cl::Memory& Volume::memory() const {
-  if (format_.layout == Layout::image) return image_;
-  return buffer_;
+  if (format_.layout == Layout::image) return image_.handle();
+  return buffer_.handle();
 }
 
 void Volume::clear(Session& session) {
@@ -76,8 +64,8 @@ void Volume::clear(Session& session) {
     return;
   }
   cl::Event event;
-  session.queue().enqueueFillImage(image_, cl_float4{{0, 0, 0, 0}}, {0, 0, 0}, region(shape_), nullptr,
-                                   &event);
+  session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0}, region(shape_),
+                                   nullptr, &event);
   session.timeline().add(event);
 }
 
@@ -90,24 +78,24 @@ void Volume::copy_from(Session& session, const Volume& from) {
     return;
   }
   cl::Event event;
-  session.queue().enqueueCopyImage(from.image_, image_, {0, 0, 0}, {0, 0, 0}, region(shape_), nullptr,
-                                   &event);
+  session.queue().enqueueCopyImage(from.image_.handle(), image_.handle(), {0, 0, 0}, {0, 0, 0},
+                                   region(shape_), nullptr, &event);
   session.timeline().add(event);
 }
 
 void Volume::read_stored(Session& session, void* numbers) const {
   if (format_.layout == Layout::image) {
-    session.queue().enqueueReadImage(image_, CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
+    session.queue().enqueueReadImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
   } else {
-    session.queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes_, numbers);
+    session.queue().enqueueReadBuffer(buffer_.handle(), CL_TRUE, 0, bytes_, numbers);
   }
 }
 
 void Volume::write_stored(Session& session, const void* numbers) {
   if (format_.layout == Layout::image) {
-    session.queue().enqueueWriteImage(image_, CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
+    session.queue().enqueueWriteImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
   } else {
-    session.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes_, numbers);
+    session.queue().enqueueWriteBuffer(buffer_.handle(), CL_TRUE, 0, bytes_, numbers);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "pipeline/volume_files.hpp"
+#include "volume/volume_files.hpp"
 
 #include <array>
 

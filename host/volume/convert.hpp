@@ -1,8 +1,9 @@
 // A volume in an image as planes in a buffer, for stages that change cells in place (kernels/convert.cl).
 #pragma once
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
-#include "pipeline/volume.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
 
@@ -16,11 +17,10 @@ class PlaneStage {
   void give(Volume& image);        ///< and the other way round
 
  private:
-  void launch(cl::Kernel& kernel, const Volume& from, const Volume& to);
+  void launch(Kernel& kernel, const Volume& from, const Volume& to) const;
 
-  Session& session_;
   Volume planes_;
-  cl::Kernel from_image_, to_image_;
+  Kernel from_image_, to_image_;
 };
 
 }  // namespace clpv

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "device/session.hpp"
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 
@@ -23,8 +23,6 @@ class Volume {
   std::size_t bytes() const { return bytes_; }
   /// For a kernel's argument of type CLPV_VOLUME_IN or CLPV_VOLUME_OUT.
   const cl::Memory& memory() const;
-  /// May one launch both read and write this volume? Not an image, in OpenCL 1.2.
-  bool updates_in_place() const { return format_.layout != Layout::image; }
 
   void clear(Session& session);
   /// `from`: the same shape and format.
@@ -40,8 +38,8 @@ class Volume {
   VolumeShape shape_;
   VolumeFormat format_;
   std::size_t bytes_ = 0;
-  cl::Buffer buffer_;  ///< one of the two is empty
-  cl::Image3D image_;
+  Buffer buffer_;  ///< one of the two is none
+  Image3D image_;
 };
 
 /// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and

@@ -1,4 +1,4 @@
-#include "pipeline/volume_format.hpp"
+#include "volume/volume_format.hpp"
 
 #include <fmt/format.h>
 
@@ -100,6 +100,18 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
   }
 }
 
+bool updates_in_place(const VolumeFormat& format) {
+  return format.layout != Layout::image;
+}
+
+VolumeFormat planes_format(Storage storage) {
+  return {Layout::soa, storage};
+}
+
+bool sampled_by_device(const VolumeFormat& format) {
+  return format.layout == Layout::image;
+}
+
 int most_lanes(const VolumeFormat& format) {
   return format.layout == Layout::image ? 1 : kMostLanes;
 }
@@ -114,9 +126,9 @@ int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
-  literals["CLPV_LAYOUT"] = literal_of(format.layout);
-  literals["CLPV_STORAGE_HALF"] = std::to_string(format.storage == Storage::float16 ? 1 : 0);
-  literals["CLPV_LANES"] = std::to_string(lanes);
+  literals.word("CLPV_LAYOUT", literal_of(format.layout))
+      .flag("CLPV_STORAGE_HALF", format.storage == Storage::float16)
+      .integer("CLPV_LANES", lanes);
 }
 
 int accesses_per_cell(const VolumeFormat& format, int coefficients) {

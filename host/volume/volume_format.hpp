@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/program.hpp"
+#include "device/literals.hpp"
 #include "options/choices.hpp"
 
 namespace clpv {
@@ -30,6 +30,15 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
                                        const VolumeShape& shape);
 /// Throws Error(device) "unsupported: ..." where one of them gives a reason.
 void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape);
+
+/// May one launch both read and write such a volume? Not an image, in OpenCL 1.2; Accumulator makes up for it.
+bool updates_in_place(const VolumeFormat& format);
+
+/// What PlaneStage keeps beside such a volume.
+VolumeFormat planes_format(Storage storage);
+
+/// Does the device's filter sample it between cells? Of images alone.
+bool sampled_by_device(const VolumeFormat& format);
 
 /// Cells along x that a work-item of a stencil can serve, or one alone: 8; of images, whose texels are of one cell, 1.
 int most_lanes(const VolumeFormat& format);

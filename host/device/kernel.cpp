@@ -1,0 +1,27 @@
+#include "device/kernel.hpp"
+
+#include "device/session.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+
+Kernel::Kernel(Session& session, const ProgramSource& source, std::string name)
+    : session_(&session), program_(session.describe(source)), name_(std::move(name)) {}
+
+cl::Kernel& Kernel::built() {
+  if (kernel_() == nullptr) {
+    kernel_ = session_->kernel(*program_, name_);
+    parameters_ = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
+  }
+  return kernel_;
+}
+
+void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
+  if (given_ != parameters_) {
+    throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_, given_,
+                parameters_);
+  }
+  session_->launch(built(), global, local);
+}
+
+}  // namespace clpv
