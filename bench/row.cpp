@@ -27,7 +27,8 @@ nlohmann::json variant_json(const Variant& variant) {
           {"occlusion", o.occlusion},
           {"grid", o.grid},
           {"iterations", o.iterations},
-          {"cascade", variant.cascade ? nlohmann::json(*variant.cascade) : nlohmann::json(nullptr)}};
+          {"cascade", variant.cascade ? nlohmann::json(*variant.cascade) : nlohmann::json(nullptr)},
+          {"filtered", variant.filtered}};
 }
 
 /// The same keys, of a row without volumes.
@@ -88,7 +89,10 @@ nlohmann::json to_json(const Row& row, int index) {
                          {"time_unit", "ms"}};
   json.update({{"suite", row.suite},
                {"stage", row.stage},
-               {"n", row.n > 0 ? nlohmann::json(row.n) : nlohmann::json(nullptr)}});
+               {"n", row.n > 0 ? nlohmann::json(row.n) : nlohmann::json(nullptr)},
+               {"axis", text_or_null(row.axis)},
+               {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
+               {"preset", text_or_null(row.preset)}});
   json.update(row.variant ? variant_json(*row.variant) : no_variant_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},

@@ -115,6 +115,7 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   variant.options.lobe_time = LobeTime::host;
   Case result;
   result.row = make_row("frame", "frame", variant, fmt::format("/{}", name_of(preset)));
+  result.row.preset = name_of(preset);
   result.make = [&session, options, render] { return frame_job(session, options, render); };
   return result;
 }

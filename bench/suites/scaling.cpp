@@ -15,10 +15,17 @@
 namespace clpv::bench {
 namespace {
 
-/// A row's axis and value are the end of its name: "/grid:64".
+/// What a row is a point of; its name ends with it as well: "/grid:64".
+void place(Row& row, const std::string& axis, int value) {
+  row.axis = axis, row.value = value;
+  row.name += fmt::format("/{}:{}", axis, value);
+}
+
 Case stage_at(const std::shared_ptr<Bench>& bench, const StageJob& job, const Variant& variant,
               const std::string& axis, int value) {
-  return stage_case(*bench, "scaling", job, variant, fmt::format("/{}:{}", axis, value));
+  Case made = stage_case(*bench, "scaling", job, variant);
+  place(made.row, axis, value);
+  return made;
 }
 
 std::vector<Case> grids(Session& session, const SuiteOptions& options, const std::string& basis) {
@@ -64,8 +71,8 @@ Case raster_case(Session& session, std::shared_ptr<const Scene> scene, const Ras
                  const RenderOptions& settings, const std::string& axis, int value) {
   Case result;
   Row& row = result.row;
-  row.suite = "scaling", row.stage = name_of(job.pass);
-  row.name = fmt::format("{}/{}:{}", row.stage, axis, value);
+  row.suite = "scaling", row.stage = row.name = name_of(job.pass);
+  place(row, axis, value);
   result.make = [&session, scene = std::move(scene), make = job.make, settings] {
     return make(session, scene, settings);
   };
@@ -123,7 +130,8 @@ std::shared_ptr<Session> part_of(const Device& device, unsigned units) {
 Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
   Case result;
   const Variant variant = plain_variant(options, basis);
-  result.row = make_row("scaling", name_of(Stage::propagate), variant, fmt::format("/units:{}", units));
+  result.row = make_row("scaling", name_of(Stage::propagate), variant);
+  place(result.row, "units", static_cast<int>(units));
   result.make = [&session, options, variant, units] {
     const auto part = part_of(session.device(), units);
     RenderOptions settings = options.settings;
@@ -149,16 +157,6 @@ struct Point {
   double x, ms;
 };
 
-/// Axis and value at the end of a row's name.
-bool split(const Row& row, std::string& series, std::string& axis, double& value) {
-  const auto slash = row.name.rfind('/'), colon = row.name.rfind(':');
-  if (slash == std::string::npos || colon == std::string::npos || colon < slash) return false;
-  axis = row.name.substr(slash + 1, colon - slash - 1);
-  value = std::stod(row.name.substr(colon + 1));
-  series = row.stage + (axis == "n" || !row.variant ? "" : "/" + row.variant->options.basis);
-  return true;
-}
-
 /// Of a propagation [ns].
 std::string a_cell_step(const Row& row) {
   if (row.stage != name_of(Stage::propagate) || !row.variant) return "-";
@@ -179,9 +177,8 @@ std::string table(const std::vector<Row>& rows) {
         fmt::format("{:<44} {:>10.3f} {:>9.3f} {:>14} {:>14}{}\n", row.name, row.times.median, row.times.mad,
                     a_cell_step(row), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
                     row.status == Status::wrong ? "  WRONG" : "");
-    std::string series, axis;
-    double value = 0;
-    if (split(row, series, axis, value)) all[{axis, series}].push_back({value, row.times.median});
+    const bool one_basis = row.axis != "n" && row.variant;
+    all[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}].push_back({row.value, row.times.median});
   }
   text += "\ntime grows as the value to the power\n";
   for (const auto& [key, points] : all) {
