@@ -9,8 +9,8 @@
 
 #include "device/kernel_files.hpp"
 #include "device/session.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "report/chart.hpp"
 #include "report/picture.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv::report {
 namespace {

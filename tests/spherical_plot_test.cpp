@@ -10,7 +10,7 @@
 #include "image/contact_sheet.hpp"
 #include "image/image_io.hpp"
 #include "image/label.hpp"
-#include "run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -9,7 +9,7 @@
 #include "device/device.hpp"
 #include "pipeline/volume_format.hpp"
 #include "support/error.hpp"
-#include "tests/run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
-#include "on_device.hpp"
 #include "pipeline/convert.hpp"
 #include "pipeline/propagate.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "basis/basis.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
-#include "bench/propagate_twin.hpp"
 #include "bench/suites.hpp"
 #include "reference/check.hpp"
+#include "reference/propagate.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -37,10 +37,11 @@ Job native_job(Bench& bench, const Variant& variant) {
     const int n = p->basis->size();
     const reference::Volume injected = to_reference(light, variant.grid, n, 3),
                             corners = to_reference(geometry, variant.grid + 1, n, 1);
-    return compare_volumes(
-        p->baseline.accumulated(),
-        propagated(p->transport, injected, variant.occlusion ? &corners : nullptr, variant.iterations),
-        variant.grid, reference::tolerance_in("propagate", format_of(variant)));
+    return compare_volumes(p->baseline.accumulated(),
+                           reference::propagate(p->transport, injected,
+                                                variant.occlusion ? &corners : nullptr, variant.iterations)
+                               .accumulated.values,
+                           variant.grid, reference::tolerance_in("propagate", format_of(variant)));
   };
   job.cost.flops = p->baseline.flops(variant.iterations);
   job.cost.bytes = p->baseline.bytes(variant.iterations);

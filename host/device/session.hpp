@@ -92,8 +92,8 @@ class Session {
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
 
   std::optional<ProgramCache> cache_;
-  std::map<std::string, Built> programs_;  ///< by ProgramCache::key
-  std::vector<cl::Buffer> kept_;           ///< see buffer()
+  std::map<std::string, Built> programs_;                         ///< by ProgramCache::key
+  std::vector<cl::Buffer> kept_;                                  ///< see buffer()
   std::map<std::vector<float>, cl::Image1DBuffer> table_images_;  ///< see table_image()
   std::size_t bytes_ = 0;
   double build_ms_ = 0;
