@@ -5,11 +5,11 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "bench/propagate_twin.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pipeline/propagate.hpp"
 #include "pipeline/tuning.hpp"
 #include "reference/check.hpp"
+#include "reference/propagate.hpp"
 #include "support/log.hpp"
 
 namespace clpv::bench {
@@ -168,9 +168,13 @@ Job propagate_job(Bench& bench, const Variant& variant) {
     const int grid = p->variant.options.grid, n = p->basis->size();
     const auto twin = bench.twin(twin_key(p->variant), [&] {
       const auto light = to_reference(bench.inputs().light(*p->basis, cascade), grid, n, 3);
-      if (!p->geometry) return propagated(p->transport, light, nullptr, p->variant.options.iterations);
+      const auto after_steps = [&](const reference::Volume* geometry) {
+        return reference::propagate(p->transport, light, geometry, p->variant.options.iterations)
+            .accumulated.values;
+      };
+      if (!p->geometry) return after_steps(nullptr);
       const auto geometry = to_reference(bench.inputs().geometry(*p->basis, cascade), grid + 1, n, 1);
-      return propagated(p->transport, light, &geometry, p->variant.options.iterations);
+      return after_steps(&geometry);
     });
     const RenderOptions& o = p->variant.options;
     const bool at_run_time = o.lobe_time == LobeTime::kernel;

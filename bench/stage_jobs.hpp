@@ -12,8 +12,8 @@
 #include "bench/job.hpp"
 #include "options/render_options.hpp"
 #include "options/stages.hpp"
-#include "volume/volume_format.hpp"
 #include "scene/scene.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv::bench {
 

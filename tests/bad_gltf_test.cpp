@@ -1,6 +1,6 @@
 // Hostile and broken glTF, one a test: node graphs, indices, accessors, buffers, cameras and lights. Each is refused
 // before anything of the size it asks for is allocated.
-#include "bad_input.hpp"
+#include "tests/support/bad_input.hpp"
 
 namespace clpv::test {
 namespace {

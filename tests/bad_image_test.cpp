@@ -1,5 +1,5 @@
 // Hostile and broken images of a model, one a test.
-#include "bad_input.hpp"
+#include "tests/support/bad_input.hpp"
 
 namespace clpv::test {
 namespace {

@@ -1,6 +1,6 @@
 // Hostile and broken files, JSON, URIs and scene files, one a test: each is refused with file, place, value found and value
 // allowed, as exit code 3 (bad_input).
-#include "bad_input.hpp"
+#include "tests/support/bad_input.hpp"
 
 namespace clpv::test {
 namespace {

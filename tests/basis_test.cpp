@@ -8,9 +8,9 @@
 
 #include "basis/clamped_cosine.hpp"
 #include "basis/srbf.hpp"
-#include "every_basis.hpp"
-#include "sphere_quadrature.hpp"
 #include "support/error.hpp"
+#include "tests/support/every_basis.hpp"
+#include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv {
 namespace {

@@ -1,4 +1,4 @@
-// Benchmarks: statistics, the fast twin and the baseline against the plain twin, reports, comparison of runs, and what
+// Benchmarks: statistics, the baseline against the twin, reports, comparison of runs, and what
 // `clpv bench` and `clpv tune` do as a user meets them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,13 +13,12 @@
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/ceilings.hpp"
 #include "bench/compare_runs.hpp"
-#include "bench/propagate_twin.hpp"
 #include "bench/report.hpp"
 #include "bench/statistics.hpp"
 #include "reference/propagate.hpp"
 #include "scene/json_schema.hpp"
 #include "support/error.hpp"
-#include "tests/run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -62,30 +61,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
-class FastTwin : public ::testing::TestWithParam<std::pair<const char*, TransportKind>> {};
-
-TEST_P(FastTwin, IsThePlainTwin) {
-  const auto& [name, kind] = GetParam();
-  const auto basis = make_basis(name);
-  const Transport transport = make_transport(kind, *basis);
-  const Scene scene(*basis, 5);
-  for (const reference::Volume* geometry :
-       {static_cast<const reference::Volume*>(nullptr), &scene.geometry}) {
-    const auto plain = reference::propagate(transport, scene.light, geometry, 3);
-    double most = 0;
-    for (const double value : plain.accumulated.values) most = std::max(most, std::abs(value));
-    EXPECT_LT(largest_difference(propagated(transport, scene.light, geometry, 3), plain.accumulated.values),
-              1e-12 * most);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Transports, FastTwin,
-                         ::testing::Values(std::pair{"sh2", TransportKind::sampled},
-                                           std::pair{"srbf4", TransportKind::exact},
-                                           std::pair{"srbf8v2", TransportKind::upwind},
-                                           std::pair{"sh2", TransportKind::semi_lagrangian}));
-
-TEST(BenchBaseline, IsThePlainTwin) {
+TEST(BenchBaseline, IsTheTwin) {
   if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
@@ -225,7 +201,8 @@ TEST(BenchProgram, JsonHasEveryKeyAndComparesWithItself) {
 }
 
 TEST(BenchProgram, RowsOfScalingSayWhatTheyArePointsOf) {
-  const auto out = test::run(kProgram + " bench scaling --filter 'iterations:4$' --repetitions 1 --format json");
+  const auto out =
+      test::run(kProgram + " bench scaling --filter 'iterations:4$' --repetitions 1 --format json");
   ASSERT_EQ(out.exit_code, 0) << out.err;
   const nlohmann::json row = nlohmann::json::parse(out.out)["benchmarks"][0];
   EXPECT_EQ(row["axis"], "iterations");

@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
-#include "scene_builder.hpp"
 #include "support/error.hpp"
-#include "temporary_folder.hpp"
+#include "tests/support/scene_builder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace clpv {
 namespace {

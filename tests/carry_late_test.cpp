@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "basis/transport.hpp"
-#include "on_device.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "reference/carry_late.hpp"
@@ -19,6 +18,7 @@
 #include "reference/gather.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

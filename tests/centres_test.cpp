@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "device/cl_error.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

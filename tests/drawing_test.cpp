@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "image/image_io.hpp"
-#include "run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {
@@ -78,9 +78,9 @@ TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
 }
 
 TEST_F(Drawing, AReportIsOnePageWithItsViews) {
-  const test::Outcome outcome =
-      clpv("report " + file("page") +
-           " " CLPV_SOURCE_DIR "/scenes/cornell.json --width 48 --height 27 --spp 4 --cache " + file("cache"));
+  const test::Outcome outcome = clpv(
+      "report " + file("page") +
+      " " CLPV_SOURCE_DIR "/scenes/cornell.json --width 48 --height 27 --spp 4 --cache " + file("cache"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("index.html"));
   const std::string html = test::read_file(file("page/index.html"));

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <random>
 
-#include "gather_fields.hpp"
 #include "support/error.hpp"
+#include "tests/support/gather_fields.hpp"
 
 namespace clpv {
 namespace {

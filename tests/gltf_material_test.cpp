@@ -1,7 +1,7 @@
 // glTF materials, textures and texture coordinates, feature by feature.
 #include <glm/gtc/constants.hpp>
 
-#include "gltf_fixture.hpp"
+#include "tests/support/gltf_fixture.hpp"
 
 namespace clpv::test {
 namespace {

@@ -2,7 +2,7 @@
 // out in world space.
 #include <glm/gtc/constants.hpp>
 
-#include "gltf_fixture.hpp"
+#include "tests/support/gltf_fixture.hpp"
 
 namespace clpv::test {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "image/image_io.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

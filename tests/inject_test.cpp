@@ -10,8 +10,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "on_device.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

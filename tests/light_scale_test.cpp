@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene_builder.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sphere_quadrature.hpp"
+#include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "on_device.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

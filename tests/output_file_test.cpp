@@ -8,11 +8,11 @@
 #include <cstring>
 #include <iterator>
 
-#include "run_program.hpp"
 #include "support/error.hpp"
 #include "support/npy.hpp"
 #include "support/progress.hpp"
 #include "support/vti.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

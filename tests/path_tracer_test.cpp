@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "support/error.hpp"
-#include "traced_scenes.hpp"
+#include "tests/support/traced_scenes.hpp"
 
 namespace clpv {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "image/image_io.hpp"
 #include "options/render_options.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -11,7 +11,7 @@
 #include <fstream>
 
 #include "device/session.hpp"
-#include "run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

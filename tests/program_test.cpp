@@ -10,8 +10,8 @@
 #include "device/kernel.hpp"
 #include "device/kernel_files.hpp"
 #include "device/session.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "on_device.hpp"
 #include "reference/propagate.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

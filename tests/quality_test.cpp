@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/quality_report.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

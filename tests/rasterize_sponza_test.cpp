@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "on_device.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
 #include "scene/load.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
-#include "on_device.hpp"
 #include "pipeline/view.hpp"
-#include "scene_builder.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv {
 namespace {

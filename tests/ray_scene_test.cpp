@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "on_device.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
-#include "traced_scenes.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/traced_scenes.hpp"
 
 namespace clpv {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
-#include "run_program.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "basis/quadrature.hpp"
 #include "basis/transport.hpp"
-#include "sphere_quadrature.hpp"
 #include "support/error.hpp"
+#include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv {
 namespace {

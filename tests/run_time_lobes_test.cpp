@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/table_kernel.hpp"
-#include "on_device.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/propagate.hpp"
-#include "run_program.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <glm/gtc/constants.hpp>
 
-#include "gltf_builder.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 
 #include "reference/ray_scene.hpp"
-#include "run_program.hpp"
 #include "scene/load.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv {
 namespace {

@@ -1,9 +1,9 @@
 // Shading against closed forms: Lambert's law for every kind of light, what each view shows, and the kernels' twin.
 #include "pipeline/shade.hpp"
 
-#include "on_device.hpp"
-#include "shade_scenes.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/shade_scenes.hpp"
 
 namespace clpv {
 namespace {

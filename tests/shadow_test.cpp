@@ -1,5 +1,5 @@
 // Shadows of known outline, and surfaces that must not shadow themselves (kernels/shade.cl).
-#include "shade_scenes.hpp"
+#include "tests/support/shade_scenes.hpp"
 
 namespace clpv {
 namespace {

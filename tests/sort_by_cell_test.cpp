@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "kernels/shared/sort.h"
-#include "on_device.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

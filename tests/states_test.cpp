@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "every_basis.hpp"
-#include "on_device.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/propagate.hpp"
 #include "scene/load.hpp"
+#include "tests/support/every_basis.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

@@ -2,11 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "on_device.hpp"
 #include "pipeline/mip_chain.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
-#include "scene_builder.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv {
 namespace {

@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "on_device.hpp"
 #include "reference/tolerances.hpp"
 #include "reference/transmit.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "basis/face_transport.hpp"
-#include "every_basis.hpp"
-#include "sphere_quadrature.hpp"
 #include "support/error.hpp"
+#include "tests/support/every_basis.hpp"
+#include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv {
 namespace {

@@ -9,7 +9,7 @@
 #include "device/device.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
-#include "tests/run_program.hpp"
+#include "tests/support/run_program.hpp"
 #include "volume/volume_format.hpp"
 
 namespace clpv {

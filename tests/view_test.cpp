@@ -8,8 +8,8 @@
 
 #include "pipeline/cascade.hpp"
 #include "reference/view.hpp"
-#include "scene_builder.hpp"
 #include "support/error.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "on_device.hpp"
 #include "pipeline/propagate.hpp"
 #include "support/error.hpp"
+#include "tests/support/on_device.hpp"
 #include "volume/accumulator.hpp"
 
 namespace clpv {

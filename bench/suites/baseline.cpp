@@ -4,9 +4,9 @@
 
 #include "basis/basis.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
-#include "bench/propagate_twin.hpp"
 #include "bench/suites.hpp"
 #include "reference/check.hpp"
+#include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 
@@ -39,9 +39,11 @@ Job native_job(Bench& bench, const Variant& variant) {
     const int n = p->basis->size();
     const reference::Volume injected = to_reference(light, o.grid, n, 3),
                             corners = to_reference(geometry, o.grid + 1, n, 1);
-    return compare_volumes(p->baseline.accumulated(),
-                           propagated(p->transport, injected, o.occlusion ? &corners : nullptr, o.iterations),
-                           o.grid, reference::tolerance_in("propagate", o.format()));
+    return compare_volumes(
+        p->baseline.accumulated(),
+        reference::propagate(p->transport, injected, o.occlusion ? &corners : nullptr, o.iterations)
+            .accumulated.values,
+        o.grid, reference::tolerance_in("propagate", o.format()));
   };
   job.cost.flops = p->baseline.flops(o.iterations);
   job.cost.bytes = p->baseline.bytes(o.iterations);

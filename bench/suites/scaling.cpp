@@ -178,7 +178,8 @@ std::string table(const std::vector<Row>& rows) {
                     a_cell_step(row), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
                     row.status == Status::wrong ? "  WRONG" : "");
     const bool one_basis = row.axis != "n" && row.variant;
-    all[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}].push_back({row.value, row.times.median});
+    all[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}].push_back(
+        {row.value, row.times.median});
   }
   text += "\ntime grows as the value to the power\n";
   for (const auto& [key, points] : all) {

@@ -76,7 +76,8 @@ Ended run(const fs::path& python, const fs::path& package, const std::vector<std
   raw.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0600);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   pid_t child = 0;
   const int failed = posix_spawn(&child, python.c_str(), &actions, nullptr, raw.data(), environ);
@@ -114,7 +115,8 @@ Drawing::Drawing(Picture picture, std::string asked_by)
   }
   fs::remove_all(folder_);
   if (lacking.empty())
-    throw Error(ExitCode::run_time, "{} needs python3, which is not in the path (Debian: python3)", asked_by_);
+    throw Error(ExitCode::run_time, "{} needs python3, which is not in the path (Debian: python3)",
+                asked_by_);
   throw Error(ExitCode::run_time, "{} needs modules of Python, named by Debian's packages: {}", asked_by_,
               fmt::join(lacking, "; "));
 }
@@ -133,7 +135,8 @@ void Drawing::draw(const fs::path& output) const {
   if (ended.code == 0) return;
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, joined(ended.said));
-  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", asked_by_, package_.string(), ended.code, ended.said);
+  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", asked_by_, package_.string(), ended.code,
+              ended.said);
 }
 
 }  // namespace clpv

@@ -38,7 +38,8 @@ void refuse_misspelt_command(const CLI::App& app) {
   if (word == words.end()) return;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  const auto nearest = std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
+  const auto nearest =
+      std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
   if (edits(*word, *nearest) <= kMostEdits)
     throw Error(ExitCode::usage, "'{}' is no command; did you mean {}?", *word, *nearest);
   throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -57,7 +56,8 @@ std::string as_arguments(const GivenOptions& given) {
 }
 
 /// Documents as the page takes them, each with the file it is from, for messages.
-nlohmann::json read_documents(const std::vector<std::string>& paths, const char* wanted, const char* command) {
+nlohmann::json read_documents(const std::vector<std::string>& paths, const char* wanted,
+                              const char* command) {
   nlohmann::json all = nlohmann::json::array();
   for (const std::string& path : paths) {
     const Bytes bytes = read_file(path, kLargestDocument, path);
@@ -92,7 +92,8 @@ float exposure_of(const Image& truth) {
 }
 
 /// An image as the page takes it: as a display shows it, and its numbers.
-nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const Image& image, float exposure) {
+nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const Image& image,
+                         float exposure) {
   write_png(drawing.folder() / (stem + ".png"), display_image(image, exposure, ToneMap::aces));
   write_npy(drawing.folder() / (stem + ".npy"), image.pixels,
             std::array{static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "reference/transmit.hpp"
 
@@ -25,31 +27,6 @@ int column_of(const glm::ivec3& normal) {
   return static_cast<int>(std::find(kAxes.begin(), kAxes.end(), normal) - kAxes.begin());
 }
 
-void add_faces(const FaceTransport& scheme, const Volume& from, const Volume* geometry, bool clamp,
-               const glm::ivec3& p, Volume& to) {
-  for (const Face& face : scheme.faces) {
-    const double open = geometry == nullptr ? 1.0 : transmitted(*geometry, p, face.normal, face.blocked_by);
-    for (int channel = 0; channel < from.channels; ++channel) {
-      const double flux = open * flux_through(face, cell(from, channel, p - face.travel), clamp);
-      for (int i = 0; i < from.coefficients; ++i)
-        to.at(channel, i, p.x, p.y, p.z) += flux * scheme.lobes(i, column_of(face.normal));
-    }
-  }
-}
-
-void add_operators(const OperatorTransport& scheme, const Volume& from, const Volume* geometry,
-                   const glm::ivec3& p, Volume& to) {
-  for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
-    const bool blocks = geometry != nullptr && neighbour.offset != glm::ivec3(0);
-    const double open = blocks ? transmitted(*geometry, p, -neighbour.offset, neighbour.blocked_by) : 1.0;
-    for (int channel = 0; channel < from.channels; ++channel) {
-      const std::vector<double> arrived = neighbour.weights * cell(from, channel, p - neighbour.offset);
-      for (int i = 0; i < from.coefficients; ++i)
-        to.at(channel, i, p.x, p.y, p.z) += open * arrived[static_cast<std::size_t>(i)];
-    }
-  }
-}
-
 template <typename Visit>
 void for_each_cell(int n, Visit visit) {
   for (int z = 0; z < n; ++z) {
@@ -59,26 +36,114 @@ void for_each_cell(int n, Visit visit) {
   }
 }
 
+/// One number a cell, in the order of Volume::values.
+using Plane = std::vector<double>;
+
+/// 1 - B of every cell on one way into it.
+Plane transmittances(const Volume& geometry, const glm::ivec3& side, const std::vector<double>& weights) {
+  Plane open;
+  for_each_cell(geometry.n - 1,
+                [&](const glm::ivec3& p) { open.push_back(transmitted(geometry, p, side, weights)); });
+  return open;
+}
+
+/// The ways into a cell, each with what it lets through: `shares` is empty where nothing blocks, `shares[w]` where nothing
+/// blocks on that way.
+std::vector<Plane> shares_of(const Transport& transport, const Volume* geometry) {
+  std::vector<Plane> shares;
+  if (geometry == nullptr) return shares;
+  if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
+    for (const Face& face : faces->faces)
+      shares.push_back(transmittances(*geometry, face.normal, face.blocked_by));
+    return shares;
+  }
+  for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
+    const bool blocks = neighbour.offset != glm::ivec3(0);
+    shares.push_back(blocks ? transmittances(*geometry, -neighbour.offset, neighbour.blocked_by) : Plane());
+  }
+  return shares;
+}
+
+/// sum_i weights[i] c_i of the cell that lies `travel` upstream of each one; 0 from outside.
+Plane arriving(const Volume& from, int channel, const glm::ivec3& travel, std::span<const double> weights) {
+  const int n = from.n, first = std::max(0, travel.x), last = n + std::min(0, travel.x);
+  Plane sum(static_cast<std::size_t>(n) * n * n, 0.0);
+  for (int i = 0; i < from.coefficients; ++i) {
+    const double weight = weights[static_cast<std::size_t>(i)];
+    if (weight == 0) continue;
+    for (int z = std::max(0, travel.z); z < n + std::min(0, travel.z); ++z) {
+      for (int y = std::max(0, travel.y); y < n + std::min(0, travel.y); ++y) {
+        double* to = sum.data() + (static_cast<std::size_t>(z) * n + y) * n;
+        const double* c = from.values.data() + from.index(channel, i, 0, y - travel.y, z - travel.z);
+        for (int x = first; x < last; ++x) to[x] += weight * c[x - travel.x];
+      }
+    }
+  }
+  return sum;
+}
+
+void add(const Plane& light, double factor, int channel, int i, Volume& to) {
+  double* c = to.values.data() + to.index(channel, i, 0, 0, 0);
+  for (std::size_t at = 0; at < light.size(); ++at) c[at] += factor * light[at];
+}
+
+void block(Plane& light, const std::vector<Plane>& shares, std::size_t way) {
+  if (shares.empty() || shares[way].empty()) return;
+  for (std::size_t at = 0; at < light.size(); ++at) light[at] *= shares[way][at];
+}
+
+void add_faces(const FaceTransport& scheme, const Volume& from, const std::vector<Plane>& shares, bool clamp,
+               int channel, Volume& to) {
+  for (std::size_t w = 0; w < scheme.faces.size(); ++w) {
+    const Face& face = scheme.faces[w];
+    Plane flux = arriving(from, channel, face.travel, face.flux);
+    if (clamp) {
+      for (double& value : flux) value = std::max(0.0, value);
+    }
+    block(flux, shares, w);
+    for (int i = 0; i < from.coefficients; ++i)
+      add(flux, scheme.lobes(i, column_of(face.normal)), channel, i, to);
+  }
+}
+
+void add_operators(const OperatorTransport& scheme, const Volume& from, const std::vector<Plane>& shares,
+                   int channel, Volume& to) {
+  for (std::size_t w = 0; w < scheme.neighbours.size(); ++w) {
+    const OperatorTransport::Neighbour& neighbour = scheme.neighbours[w];
+    for (int i = 0; i < from.coefficients; ++i) {
+      Plane arrived = arriving(from, channel, neighbour.offset, neighbour.weights.row(i));
+      block(arrived, shares, w);
+      add(arrived, 1, channel, i, to);
+    }
+  }
+}
+
+Volume step(const Transport& transport, const Volume& travelling, const std::vector<Plane>& shares,
+            bool clamp) {
+  Volume next(travelling.n, travelling.coefficients, travelling.channels);
+  for (int channel = 0; channel < next.channels; ++channel) {
+    if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
+      add_faces(*faces, travelling, shares, clamp, channel, next);
+    } else {
+      add_operators(std::get<OperatorTransport>(transport.scheme), travelling, shares, channel, next);
+    }
+  }
+  return next;
+}
+
 }  // namespace
 
 Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
                       bool clamp) {
-  Volume next(travelling.n, travelling.coefficients, travelling.channels);
-  for_each_cell(next.n, [&](const glm::ivec3& p) {
-    if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-      add_faces(*faces, travelling, geometry, clamp, p, next);
-    } else {
-      add_operators(std::get<OperatorTransport>(transport.scheme), travelling, geometry, p, next);
-    }
-  });
-  return next;
+  return step(transport, travelling, shares_of(transport, geometry), clamp);
 }
 
 Propagation propagate(const Transport& transport, const Volume& injected, const Volume* geometry,
                       int iterations, bool clamp) {
+  const std::vector<Plane> shares = shares_of(transport, geometry);
   Propagation result{injected, injected};
-  for (int step = 1; step <= iterations; ++step) {
-    result.travelling = propagate_step(transport, result.travelling, step > 1 ? geometry : nullptr, clamp);
+  for (int t = 1; t <= iterations; ++t) {
+    result.travelling = step(transport, result.travelling, t > 1 ? shares : std::vector<Plane>(), clamp);
     for (std::size_t i = 0; i < result.accumulated.values.size(); ++i) {
       result.accumulated.values[i] += result.travelling.values[i];
     }

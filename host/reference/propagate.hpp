@@ -1,4 +1,5 @@
-// The twin of kernels/propagate.cl: one step after another in double, straight from docs/method.md, 'Propagation'.
+// The twin of kernels/propagate.cl: one step after another in double, a plane at a time (a plane: one coefficient of all
+// cells), straight from docs/method.md, 'Propagation'.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
 // The common ground of tests that must be refused: a sound model to spoil.
 #pragma once
 
-#include "gltf_builder.hpp"
 #include "scene/bounds.hpp"
-#include "tiny_images.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/tiny_images.hpp"
 
 namespace clpv::test {
 

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "on_device.hpp"
 #include "pipeline/gather.hpp"
 #include "reference/gather.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv::test {
 

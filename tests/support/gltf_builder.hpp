@@ -13,7 +13,7 @@
 
 #include "scene/load.hpp"
 #include "support/error.hpp"
-#include "temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test {
 

@@ -1,8 +1,8 @@
 // The common ground of tests that load a small glTF model: a folder, a builder, and what to look at.
 #pragma once
 
-#include "gltf_builder.hpp"
-#include "tiny_images.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/tiny_images.hpp"
 
 namespace clpv::test {
 

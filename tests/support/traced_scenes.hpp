@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "reference/path_tracer.hpp"
-#include "scene_builder.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv::test {
 

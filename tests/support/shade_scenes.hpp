@@ -12,10 +12,10 @@
 #include <numbers>
 #include <vector>
 
-#include "on_device.hpp"
 #include "pipeline/shade.hpp"
 #include "reference/shade.hpp"
 #include "reference/view.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv {
 namespace shade_scenes {

@@ -1,0 +1,8 @@
+#include "tests/support/every_basis.hpp"
+
+namespace clpv::test {
+
+INSTANTIATE_TEST_SUITE_P(Names, EveryBasis, ::testing::ValuesIn(smooth_bases()),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace clpv::test
