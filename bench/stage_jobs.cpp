@@ -16,7 +16,7 @@ Row make_row(const std::string& suite, std::string_view stage, const Variant& va
   row.n = make_basis(o)->size();
   row.name = fmt::format("{}/{}/{}", stage, o.basis, format_name(o.format()));
   if (o.state != plain.state) row.name += fmt::format("/{}", name_of(o.state));
-  if (lobes_of(o) != lobes_of(plain)) row.name += "/" + lobes_of(o);
+  if (lobes_of(o) != lobes_of(plain)) row.name += fmt::format("/{}", lobes_of(o));
   if (o.transport != plain.transport) row.name += fmt::format("/{}", name_of(o.transport));
   if (o.occlusion) row.name += "/occlusion";
   if (variant.cascade) row.name += fmt::format("/cascade:{}", *variant.cascade);

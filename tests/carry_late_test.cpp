@@ -158,7 +158,7 @@ struct Lit {
   double irradiance = 0;  ///< mean over all pixels and channels
 };
 
-Lit lit(int cascades, bool late, const std::string& layout = "soa") {
+Lit lit(int cascades, bool late, Layout layout = Layout::soa) {
   const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/cornell.json");
   RenderOptions options;
   options.width = 48, options.height = 27, options.grid = 16, options.iterations = 6;
@@ -193,7 +193,7 @@ TEST(CarryLate, AFrameOfImagesIsLitAsOneOfBuffers) {
   if (unsupported(test_session().device(), {Layout::image, Storage::float32}))
     GTEST_SKIP() << "no 3-D images to write";
   const double wanted = lit(3, true).irradiance;
-  EXPECT_NEAR(lit(3, true, "image").irradiance, wanted, 1e-5 * wanted);
+  EXPECT_NEAR(lit(3, true, Layout::image).irradiance, wanted, 1e-5 * wanted);
 }
 
 TEST(CarryLate, KernelAgreesWithItsTwin) {

@@ -1,6 +1,7 @@
 // What gathering evaluates, against what it stands for: the exact irradiance of a cell's light, and closed forms.
 #include "basis/gather_form.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "tests/support/run_program.hpp"
 

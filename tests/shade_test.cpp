@@ -2,6 +2,7 @@
 #include "pipeline/shade.hpp"
 
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/shade_scenes.hpp"
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "support/error.hpp"
-
 namespace clpv {
 namespace {
 

@@ -10,6 +10,7 @@
 
 #include "reference/tolerances.hpp"
 #include "reference/transmit.hpp"
+#include "support/named_enum.hpp"
 #include "tests/support/on_device.hpp"
 
 namespace clpv {

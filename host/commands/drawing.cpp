@@ -93,7 +93,8 @@ Ended run(const fs::path& python, const fs::path& package, const std::vector<std
 /// One line of it.
 std::string joined(const std::string& said) {
   std::istringstream in(said);
-  return fmt::format("{}", fmt::join(std::istream_iterator<std::string>(in), {}, " "));
+  return fmt::format(
+      "{}", fmt::join(std::istream_iterator<std::string>(in), std::istream_iterator<std::string>(), " "));
 }
 
 }  // namespace
