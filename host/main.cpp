@@ -3,13 +3,27 @@
 #include <iostream>
 
 #include "commands/commands.hpp"
+#include "commands/misspelt.hpp"
 #include "device/cl_error.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
+namespace {
+
+void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::RequiredError&) {
+    if (app.get_subcommands().empty()) clpv::refuse_misspelt_command(app);
+    throw;
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace clpv;
-  CLI::App app{"clpv: cascaded light propagation volumes in OpenCL"};
+  CLI::App app{"clpv: cascaded light propagation volumes in OpenCL", "clpv"};
   Shared shared;
   app.set_version_flag("--version", std::string("clpv ") + CLPV_VERSION);
   app.add_option("--device", shared.device,
@@ -35,8 +49,12 @@ int main(int argc, char** argv) {
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"
       "4 no device, or one that lacks what was asked; 5 validation failed. stdout is data, stderr is talk.");
+  if (argc == 1) {
+    std::cout << app.help();
+    return 0;
+  }
   try {
-    app.parse(argc, argv);
+    parse(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error, std::cout, std::cerr) == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const Error& error) {
