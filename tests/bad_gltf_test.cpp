@@ -10,6 +10,15 @@ using ::testing::HasSubstr;
 
 struct BadGltfTest : BadInputTest {};
 
+TEST_F(BadGltfTest, ModelsForReadersOfLaterVersions) {
+  model.document["asset"]["minVersion"] = "2.1";
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/asset/minVersion"), HasSubstr("'2.1'"), HasSubstr("2.0")));
+  model.document["asset"]["minVersion"] = 2;
+  EXPECT_THAT(refused(), HasSubstr("/asset/minVersion"));
+  model.document["asset"] = {{"version", "2.1"}, {"minVersion", "2.0"}};
+  EXPECT_NO_THROW(load_scene(model.write(folder)));
+}
+
 TEST_F(BadGltfTest, CyclesInTheNodeGraph) {
   model.document["nodes"] =
       json::parse(R"([{"children": [1]}, {"children": [2]}, {"children": [0], "mesh": 0}])");

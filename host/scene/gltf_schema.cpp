@@ -38,7 +38,7 @@ void append(Rules& rules, Rules more) {
 Rules document_rules() {
   using namespace rule;
   Rules rules = {object("").must(), object("/asset").must(), text("/asset/version").must(),
-                 object("/extensions")};
+                 text("/asset/minVersion"), object("/extensions")};
   for (const char* name : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "textures",
                            "images", "samplers", "animations", "skins"}) {
     rules.push_back(list(std::string("/") + name, 0, bounds::kListEntries));
@@ -178,6 +178,9 @@ Rules view_rules() {
 void check_asset(const json& document, const std::string& file) {
   const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
   if (!version.starts_with("2.")) refuse(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
+  // What a loader must know to read the model; `version` alone promises that a reader of any 2.x does.
+  const std::string least = document["asset"].value("minVersion", "2.0");
+  if (least != "2.0") refuse(file, "/asset/minVersion", "'" + least.substr(0, 60) + "'", "2.0");
   if (!document.contains("extensionsRequired")) return;
   for (std::size_t i = 0; i < document["extensionsRequired"].size(); ++i) {
     const std::string& name = document["extensionsRequired"][i].get_ref<const std::string&>();
