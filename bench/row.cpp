@@ -62,7 +62,11 @@ nlohmann::json to_json(const Row& row, int index) {
                {"occlusion", v.occlusion},
                {"grid", v.grid > 0 ? nlohmann::json(v.grid) : nlohmann::json(nullptr)},
                {"iterations", propagated ? nlohmann::json(v.iterations) : nlohmann::json(nullptr)},
-               {"cascade", v.cascade ? nlohmann::json(*v.cascade) : nlohmann::json(nullptr)}});
+               {"cascade", v.cascade ? nlohmann::json(*v.cascade) : nlohmann::json(nullptr)},
+               {"filtered", v.filtered},
+               {"axis", text_or_null(row.axis)},
+               {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
+               {"preset", text_or_null(row.preset)}});
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
                {"timer", row.from_events ? "event" : "wall"},

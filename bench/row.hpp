@@ -46,6 +46,9 @@ struct Row {
   Variant variant;
   Status status = Status::ok;
   std::string reason;  ///< why unsupported, or where wrong
+  std::string axis;    ///< of suite scaling: what grows ("grid"), and its `value`
+  double value = 0;
+  std::string preset;  ///< of suite frame
 
   std::vector<double> samples_ms;
   Statistics times;    ///< of samples_ms

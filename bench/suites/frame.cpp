@@ -119,6 +119,7 @@ Case frame_case(Session& session, const SuiteOptions& options, const std::string
   variant.occlusion = render.occlusion;
   Case result;
   result.row = make_row("frame", "frame", variant, "/" + preset);
+  result.row.preset = preset;
   result.make = [&session, options, render] { return frame_job(session, options, render); };
   return result;
 }

@@ -15,10 +15,17 @@
 namespace clpv::bench {
 namespace {
 
-/// A row's axis and value are the end of its name: "/grid:64".
+/// What a row is a point of; its name ends with it as well: "/grid:64".
+void place(Row& row, const std::string& axis, int value) {
+  row.axis = axis, row.value = value;
+  row.name += fmt::format("/{}:{}", axis, value);
+}
+
 Case stage_at(const std::shared_ptr<Bench>& bench, const std::string& stage, const Variant& variant,
               const std::string& axis, int value) {
-  return stage_case(*bench, "scaling", stage, variant, fmt::format("/{}:{}", axis, value));
+  Case made = stage_case(*bench, "scaling", stage, variant);
+  place(made.row, axis, value);
+  return made;
 }
 
 std::vector<Case> grids(Session& session, const SuiteOptions& options, const std::string& basis) {
@@ -66,7 +73,8 @@ Case raster_case(Session& session, std::shared_ptr<const Scene> scene, const std
   Case result;
   Row& row = result.row;
   row.suite = "scaling", row.stage = kind;
-  row.name = fmt::format("{}/{}:{}", kind, axis, value);
+  row.name = kind;
+  place(row, axis, value);
   row.variant.layout = row.variant.storage = row.variant.state = row.variant.lobe =
       row.variant.transport = {};
   row.variant.grid = row.variant.iterations = 0;
@@ -127,7 +135,8 @@ std::shared_ptr<Session> part_of(const Device& device, unsigned units) {
 Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
   Case result;
   const Variant variant = plain_variant(options, basis);
-  result.row = make_row("scaling", "propagate", variant, fmt::format("/units:{}", units));
+  result.row = make_row("scaling", "propagate", variant);
+  place(result.row, "units", static_cast<int>(units));
   result.make = [&session, options, variant, units] {
     const auto part = part_of(session.device(), units);
     Settings settings = options.settings;
@@ -153,16 +162,6 @@ struct Point {
   double x, ms;
 };
 
-/// Axis and value at the end of a row's name.
-bool split(const Row& row, std::string& series, std::string& axis, double& value) {
-  const auto slash = row.name.rfind('/'), colon = row.name.rfind(':');
-  if (slash == std::string::npos || colon == std::string::npos || colon < slash) return false;
-  axis = row.name.substr(slash + 1, colon - slash - 1);
-  value = std::stod(row.name.substr(colon + 1));
-  series = row.stage + (axis == "n" || row.variant.basis.empty() ? "" : "/" + row.variant.basis);
-  return true;
-}
-
 std::string table(const std::vector<Row>& rows) {
   std::map<std::pair<std::string, std::string>, std::vector<Point>> all;
   std::string text = fmt::format("{:<44} {:>10} {:>9} {:>14} {:>14}\n", "row", "median ms", "mad",
@@ -178,9 +177,9 @@ std::string table(const std::vector<Row>& rows) {
                     row.stage == "propagate" ? fmt::format("{:.3f}", row.times.median * 1e6 / cells) : "-",
                     fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
                     row.status == Status::wrong ? "  WRONG" : "");
-    std::string series, axis;
-    double value = 0;
-    if (split(row, series, axis, value)) all[{axis, series}].push_back({value, row.times.median});
+    const bool one_basis = row.axis != "n" && !row.variant.basis.empty();
+    all[{row.axis, row.stage + (one_basis ? "/" + row.variant.basis : "")}].push_back(
+        {row.value, row.times.median});
   }
   text += "\ntime grows as the value to the power\n";
   for (const auto& [key, points] : all) {
