@@ -1,6 +1,9 @@
-# bin/clpv, the library, its headers and a CMake package: find_package(clpv), link clpv::clpv.
+# bin/clpv and the Python package that draws for it, the library, its headers and a CMake package: find_package(clpv),
+# link clpv::clpv.
 include(CMakePackageConfigHelpers)
 install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY tools/clpv_draw DESTINATION ${CMAKE_INSTALL_DATADIR}/clpv
+        FILES_MATCHING PATTERN "*.py" PATTERN "*.html" PATTERN __pycache__ EXCLUDE)
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY host/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clpv FILES_MATCHING PATTERN "*.hpp"
         PATTERN commands EXCLUDE)

@@ -1,4 +1,4 @@
-// The paper's figures of bases and lobes, as contact sheets of spherical plots.
+// The paper's figures of bases and lobes, drawn by tools/clpv_draw.
 #pragma once
 
 #include <filesystem>
@@ -22,8 +22,7 @@ std::vector<std::unique_ptr<Basis>> paper_bases(double lambda);
 ///   figure2.png  the Poisson kernel with lambda .4; the eight functions of srbf8v2, joint and one by one
 ///   figure3.png  the clamped cosine along +z and along (-2, 1, -3), and each basis's lobe for it
 ///   figure6.png  the same along the six main axes
-/// and returns their paths. Warns where no font is found: the pictures then lack their words.
-/// Throws Error(run_time) where a file cannot be written.
+/// and returns their paths. Throws Error(run_time) where a file cannot be written, or Python or a module is missing.
 std::vector<std::filesystem::path> write_basis_figures(const BasisFigures& figures,
                                                        const std::filesystem::path& folder);
 

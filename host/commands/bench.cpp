@@ -4,15 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
 #include "bench/compare_runs.hpp"
 #include "bench/context.hpp"
-#include "bench/plot.hpp"
 #include "bench/report.hpp"
 #include "commands/commands.hpp"
+#include "commands/drawing.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
@@ -76,6 +78,17 @@ nlohmann::json earlier_run(const Options& options) {
   return report;
 }
 
+/// Finds out before the work whether charts can be drawn. None where none are asked for.
+std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
+  if (options.plot.empty()) return nullptr;
+  auto drawing = std::make_unique<const Drawing>(Picture::bench, "--plot");
+  std::error_code failed;
+  std::filesystem::create_directories(options.plot, failed);
+  if (failed) throw Error(ExitCode::run_time, "--plot {}: {}", options.plot, failed.message());
+  check_writable(std::filesystem::path(options.plot) / "roofline.svg");
+  return drawing;
+}
+
 /// Tells of the rows that failed. Exit code 5 where an output was wrong.
 void judge(const std::vector<bench::Row>& rows) {
   const auto wrong = std::count_if(rows.begin(), rows.end(),
@@ -92,7 +105,7 @@ void run(Options options, const Shared& shared) {
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.suite.tuned = !options.no_tune;
   if (!options.out.empty()) check_writable(options.out);
-  if (!options.plot.empty()) bench::require_plots(options.plot);
+  const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = suite_named(options.suite);
   if (!options.scene.empty()) {
@@ -118,7 +131,10 @@ void run(Options options, const Shared& shared) {
         "{}{}", options.out.empty() ? "\n" : "",
         bench::comparison_table(bench::compare_runs(before, report_of(session, results), options.compare)));
   }
-  if (!options.plot.empty()) bench::plot(report_of(session, results), options.plot);
+  if (plot) {
+    plot->add("bench.json", report_of(session, results));
+    plot->draw(options.plot);
+  }
   session.store_programs();
   judge(results.rows);
 }

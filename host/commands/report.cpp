@@ -1,20 +1,23 @@
-// clpv report: one page with images beside the truth, errors against costs, and benchmarks.
-#include "report/report.hpp"
-
+// clpv report: one page with images beside the truth, errors against costs, and benchmarks; drawn by tools/clpv_draw.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/drawing.hpp"
 #include "commands/frame_options.hpp"
 #include "commands/quality_subjects.hpp"
 #include "commands/tracing_options.hpp"
+#include "image/compare.hpp"
+#include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/input.hpp"
 #include "support/error.hpp"
+#include "support/npy.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
 
@@ -52,15 +55,21 @@ std::string as_arguments(const GivenOptions& given) {
   return text;
 }
 
-nlohmann::json read_document(const std::string& path, const char* wanted) {
-  const Bytes bytes = read_file(path, kLargestDocument, path);
-  const nlohmann::json document =
-      parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
-  if (!document.is_object() || !document.contains(wanted)) {
-    throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON", path, wanted,
-                std::string(wanted) == "variants" ? "quality" : "bench");
+/// Documents as the page takes them, each with the file it is from, for messages.
+nlohmann::json read_documents(const std::vector<std::string>& paths, const char* wanted,
+                              const char* command) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const std::string& path : paths) {
+    const Bytes bytes = read_file(path, kLargestDocument, path);
+    const nlohmann::json document =
+        parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+    if (!document.is_object() || !document.contains(wanted)) {
+      throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON", path, wanted,
+                  command);
+    }
+    all.push_back({{"file", path}, {"document", document}});
   }
-  return document;
+  return all;
 }
 
 GivenOptions sized(const Options& options, GivenOptions given) {
@@ -82,35 +91,59 @@ float exposure_of(const Image& truth) {
   return sum > 0 ? static_cast<float>(std::log2(kMean * count / sum)) : 0;
 }
 
-report::Shot shot(Session& session, const Subject& subject, const Camera& camera, const Options& options,
-                  const Way& way) {
+/// An image as the page takes it: as a display shows it, and its numbers.
+nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const Image& image,
+                         float exposure) {
+  write_png(drawing.folder() / (stem + ".png"), display_image(image, exposure, ToneMap::aces));
+  write_npy(drawing.folder() / (stem + ".npy"), image.pixels,
+            std::array{static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
+                       image.channels.size()});
+  return {{"image", stem + ".png"}, {"values", stem + ".npy"}};
+}
+
+Image render_indirect(Session& session, const Subject& subject, const Camera& camera, const Options& options,
+                      const Way& way) {
   const RenderOptions resolved = resolve_options(sized(options, way.given), subject.scene);
   Frame frame(session, subject.scene, resolved);
   frame.render(camera);
-  report::Shot shot{way.title, as_arguments(way.given),
-                    make_image(resolved.width, resolved.height, {"R", "G", "B", "A"})};
-  shot.image.pixels = frame.read(Show::indirect);
-  return shot;
+  Image image = make_image(resolved.width, resolved.height, {"R", "G", "B", "A"});
+  image.pixels = frame.read(Show::indirect);
+  return image;
 }
 
-void add_views(std::vector<report::View>& views, Session& session, const Options& options, Subject& subject,
-               const fs::path& references) {
-  const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
-  trace_truths(subject, size.width, size.height, options.tracing.resolved(), references);
-  Progress progress("report", subject.cameras.size() * ways().size());
-  for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
-    const Camera& camera = subject.cameras[view];
-    const reference::Reference& truth = subject.truths[view];
-    report::View& shown = views.emplace_back();
-    shown.scene = subject.scene.name;
-    shown.camera = camera.name;
-    shown.truth = extract_layer(truth.image, "indirect", truth.file.string());
-    shown.exposure = exposure_of(shown.truth);
-    for (const Way& way : ways()) {
-      shown.shots.push_back(shot(session, subject, camera, options, way));
-      progress.advance();
-    }
+/// What one camera sees: the truth, and each way's image of it with its errors.
+nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
+                    const Drawing& drawing, const std::string& stem, Progress& progress) {
+  const Camera& camera = subject.cameras[index];
+  const reference::Reference& traced = subject.truths[index];
+  const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
+  const float exposure = exposure_of(truth);
+  nlohmann::json shots = nlohmann::json::array();
+  for (const Way& way : ways()) {
+    const Image image = render_indirect(session, subject, camera, options, way);
+    nlohmann::json shot = to_json(compare(image, way.title, truth, "truth"));
+    shot.update(add_image(drawing, fmt::format("{}-{}", stem, shots.size()), image, exposure));
+    shot.update({{"title", way.title}, {"options", as_arguments(way.given)}});
+    shots.push_back(std::move(shot));
+    progress.advance();
   }
+  return {{"scene", subject.scene.name},
+          {"camera", camera.name},
+          {"truth", add_image(drawing, stem + "-truth", truth, exposure)},
+          {"shots", shots}};
+}
+
+nlohmann::json views(Session& session, const Options& options, const Drawing& drawing) {
+  nlohmann::json all = nlohmann::json::array();
+  for (Subject& subject : load_subjects(options.subjects)) {
+    const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
+    trace_truths(subject, size.width, size.height, options.tracing.resolved(),
+                 quality_cache(options.cache) / "references");
+    Progress progress("report", subject.cameras.size() * ways().size());
+    for (std::size_t i = 0; i < subject.cameras.size(); ++i)
+      all.push_back(view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
+  }
+  return all;
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -121,21 +154,20 @@ void run(const Options& options, const Shared& shared) {
   const fs::path output = fs::path(options.folder) / "index.html";
   check_writable(output);
 
-  report::Contents contents;
-  for (const std::string& path : options.quality) contents.quality.push_back(read_document(path, "variants"));
-  for (const std::string& path : options.benchmarks)
-    contents.benchmarks.push_back(read_document(path, "benchmarks"));
+  const Drawing drawing(Picture::report, "clpv report");
+  nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
+                        {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
   Session session(choose_device(shared.device), ProgramCache::of_user());
-  std::vector<Subject> subjects = load_subjects(options.subjects);
-  for (Subject& subject : subjects)
-    add_views(contents.views, session, options, subject, quality_cache(options.cache) / "references");
+  report["views"] = views(session, options, drawing);
   session.store_programs();
   const RenderOptions best;
-  contents.marked = {"paper", "best", best.basis + " " + best.transport};
-  contents.subtitle =
+  report["marked"] = {
+      {{"preset", "paper"}}, {{"preset", "best"}}, {{"basis", best.basis}, {"transport", best.transport}}};
+  report["subtitle"] =
       fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels", CLPV_VERSION, session.device().name,
                   session.device().platform, session.device().driver, options.width, options.height);
-  write_file(output, report::page(contents));
+  drawing.add("report.json", report);
+  drawing.draw(output);
   fmt::print("{}\n", output.string());
 }
 

@@ -1,0 +1,70 @@
+"""Charts of benchmarks: they go by the fields of rows."""
+import json
+import pathlib
+import tempfile
+import unittest
+
+from support import bench_document, row
+from clpv_draw import bench, documents
+from matplotlib import pyplot
+
+
+class Charts(unittest.TestCase):
+    def tearDown(self):
+        pyplot.close("all")
+
+    def test_scaling_takes_axis_and_value_from_the_row(self):
+        rows = [row("scaling", "propagate", axis="grid", value=v, median=v / 10.0) for v in (64, 16, 32)]
+        axis, = bench.scaling(rows + [row("scaling", "inject", axis="grid", value=16)]).axes
+        self.assertEqual(axis.get_xlabel(), "grid")
+        self.assertEqual(axis.lines[0].get_xdata().tolist(), [16, 32, 64])
+        self.assertEqual([t.get_text() for t in axis.get_xticklabels()], ["16", "32", "64"])
+
+    def test_layouts_tell_texels_and_occlusion_apart(self):
+        rows = [row("layouts", "gather", layout="image", storage="half", filtered=f, median=m)
+                for f, m in ((True, 2.0), (False, 1.0))]
+        plain, shadowed = bench.layouts(rows + [row("layouts", "gather", occlusion=True)]).axes
+        self.assertEqual([t.get_text() for t in plain.get_yticklabels()], ["image/half texels", "image/half"])
+        self.assertEqual(shadowed.get_title(), "gather sh2, occlusion")
+
+    def test_frames_are_told_by_preset(self):
+        rows = [row("frame", stage, preset=p, median=m) for p in ("paper", "best")
+                for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0))]
+        axis, = bench.frame(rows).axes
+        self.assertEqual([t.get_text() for t in axis.get_yticklabels()], ["sh2 paper", "sh2 best"])
+        self.assertEqual(axis.patches[-1].get_x() + axis.patches[-1].get_width(), 8.0)
+
+    def test_logarithmic_axes_are_written_plainly(self):
+        figure = bench.layouts([row("layouts", "gather", median=m) for m in (1.0, 30.0)])
+        figure.canvas.draw()
+        ticks = [t.get_text() for t in figure.axes[0].get_xticklabels()]
+        self.assertIn("10", ticks)
+        self.assertFalse([t for t in ticks if "math" in t])
+
+    def test_rows_that_failed_are_left_out(self):
+        failed = row("layouts", "gather", status="unsupported", median=0, min=0, p95=0)
+        self.assertIsNone(bench.layouts([failed]))
+        self.assertIsNone(bench.roofline([failed], {"gflops": 100.0, "bandwidths": []}))
+
+    def test_files_are_those_the_rows_allow_and_the_same_twice(self):
+        rows = [row("bases", "propagate"), row("bases", "propagate", state="fluxes", occlusion=True)]
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            source, one, two = folder, folder / "one", folder / "two"
+            (source / "bench.json").write_text(json.dumps(bench_document(*rows)))
+            for target in (one, two):
+                target.mkdir()
+                bench.draw(source, target)
+            self.assertEqual(sorted(p.name for p in one.iterdir()),
+                             ["bases.png", "bases.svg", "roofline.png", "roofline.svg"])
+            for made in one.iterdir():
+                self.assertEqual(made.read_bytes(), (two / made.name).read_bytes(), made.name)
+
+    def test_a_document_of_another_shape_is_told_by_its_place(self):
+        with self.assertRaisesRegex(documents.BadDocument, r"x.json: /benchmarks/1/median is \"4\"; allowed: a number"):
+            documents.checked({"benchmarks": [row("a", "b"), row("a", "b", median="4")]}, "x.json", "benchmarks",
+                              bench.ROW)
+
+
+if __name__ == "__main__":
+    unittest.main()

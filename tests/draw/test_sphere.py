@@ -1,0 +1,112 @@
+"""Spherical plots against surfaces whose outlines are known, and sheets of them."""
+import math
+import unittest
+
+from support import ROOT  # noqa: F401  (puts the package into the path)
+from clpv_draw import sphere, style
+import numpy
+from matplotlib import pyplot
+
+SIZE = 200  # pixels
+GRID = sphere.directions((91, 180))
+
+
+def image_of(values, **options):
+    figure = pyplot.figure(figsize=(2, 2), dpi=SIZE / 2)
+    axis = figure.add_axes((0, 0, 1, 1))
+    axis.axis("off")
+    sphere.plot(axis, values, **options)
+    figure.canvas.draw()
+    pixels = numpy.asarray(figure.canvas.buffer_rgba())[..., :3] / 255.0
+    pyplot.close(figure)
+    return pixels
+
+
+def blue(image):
+    return image[..., 2] > image[..., 0] + 0.1
+
+
+def red(image):
+    return image[..., 0] > image[..., 2] + 0.1
+
+
+def box(mask):
+    """left, right, top, bottom"""
+    rows, columns = numpy.nonzero(mask)
+    return columns.min(), columns.max(), rows.min(), rows.max()
+
+
+class SphericalPlot(unittest.TestCase):
+    def test_a_constant_is_a_disc_of_its_radius(self):
+        image = image_of(numpy.full(GRID.shape[:2], 0.8), extent=1)
+        left, right, top, bottom = box(blue(image))
+        self.assertAlmostEqual(blue(image).sum(), math.pi * 80**2, delta=0.03 * math.pi * 80**2)
+        self.assertAlmostEqual(right - left, 160, delta=2)
+        self.assertAlmostEqual(bottom - top, 160, delta=2)
+        self.assertEqual(red(image).sum(), 0)
+
+    def test_the_clamped_cosine_is_a_sphere_through_the_origin(self):
+        left, right, _, bottom = box(blue(image_of(numpy.maximum(0, GRID[..., 2]), extent=1)))
+        self.assertAlmostEqual(right - left, 100, delta=2)
+        self.assertAlmostEqual((left + right) / 2, 100, delta=1)
+        self.assertLess(bottom, 106, "all of it is above the origin, seen from 24 degrees above")
+
+    def test_negative_lobes_have_another_colour(self):
+        image = image_of(GRID[..., 2], extent=1.1)
+        up, down = box(blue(image)), box(red(image))
+        self.assertLess(up[2], down[2])
+        self.assertLess(up[3], down[3])
+        self.assertAlmostEqual(up[1] - up[0], down[1] - down[0], delta=2)
+
+    def test_what_is_nearer_hides(self):
+        near, far = (numpy.maximum(0, sign * GRID[..., 1]) for sign in (-1, 1))  # the eye is at -y
+        alone = red(image_of(far, colours=numpy.broadcast_to(sphere.NEGATIVE, GRID.shape))).sum()
+        values, colours = sphere.joint(numpy.stack([near, far]), [sphere.POSITIVE, sphere.NEGATIVE])
+        both = red(image_of(values, colours=colours)).sum()
+        self.assertGreater(both, 100)
+        self.assertLess(both, alone - 100)
+
+    def test_an_axis_is_hidden_inside_and_behind(self):
+        ball = numpy.full(GRID.shape[:2], 0.5)
+        points = numpy.array([[0, 0, 0.3], [0, 0, 0.9], -0.9 * sphere.TOWARDS, 0.9 * sphere.TOWARDS])
+        self.assertEqual(sphere.hidden(ball, points, 1.2).tolist(), [True, False, True, False])
+
+    def test_the_outline_of_the_same_sphere_follows_its_edge(self):
+        values = numpy.maximum(0, GRID[..., 0])
+        without = image_of(values, extent=1)
+        changed = abs(image_of(values, extent=1, outline=(numpy.array([0.5, 0, 0]), 0.5)) - without).max(axis=2) > 0.1
+        left, right, top, bottom = box(blue(without))
+        rows, columns = numpy.nonzero(changed)
+        distance = numpy.hypot(columns - (left + right) / 2, rows - (top + bottom) / 2)
+        self.assertGreater(len(rows), 100)
+        self.assertLess(abs(distance - 50).max(), 4)
+
+
+class Sheet(unittest.TestCase):
+    def test_tiles_stand_in_rows_under_their_title(self):
+        sheet = style.Sheet(["a title"], 2, 3, (1, 0.8))
+        places = numpy.array(sheet.places)
+        self.assertEqual(places[0, 1], places[1, 1])
+        self.assertEqual(places[0, 0], places[2, 0])
+        self.assertLess(places[2, 1] + places[2, 3], places[0, 1])
+        self.assertLess(places[0, 1] + places[0, 3], 1)
+        self.assertGreaterEqual(places[:, :2].min(), 0)
+        pyplot.close(sheet.figure)
+
+    def test_captions_are_beside_their_tiles_and_inside_the_sheet(self):
+        for above in (False, True):
+            sheet = style.Sheet(["a title"], 2, 4, (1, 0.8), caption_lines=2, above=above)
+            boxes = []
+            for i in range(4):
+                axis = sheet.tile(i, f"first {i}\nsecond")
+                boxes.append(axis.texts[0].get_window_extent(sheet.figure.canvas.get_renderer()))
+                middle = axis.get_window_extent().y0 + axis.get_window_extent().height / 2
+                self.assertEqual(boxes[-1].y0 > middle, above)
+            for i, one in enumerate(boxes):
+                self.assertTrue(sheet.figure.bbox.y0 <= one.y0 and one.y1 <= sheet.figure.bbox.y1)
+                self.assertFalse(any(one.overlaps(axis.get_window_extent()) for axis in sheet.figure.axes))
+            pyplot.close(sheet.figure)
+
+
+if __name__ == "__main__":
+    unittest.main()

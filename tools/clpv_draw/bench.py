@@ -1,0 +1,166 @@
+"""Charts of what `clpv bench` measured: what the rows allow of layouts, roofline, scaling, bases and frame.
+
+A row tells what it is in its fields; its name is for readers. Each chart is a function from rows to a figure, or None
+where no row is for it.
+"""
+import math
+
+from matplotlib import pyplot
+
+from clpv_draw import documents, style
+from clpv_draw.documents import NUMBER, TEXT_OR_NULL
+
+ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout": TEXT_OR_NULL,
+       "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}
+DEVICE_CHARS = 70
+CLOSEST_LABELS = 0.7  # of the bandwidth before: nearer ones would overlap
+
+
+def of_suite(rows, suite):
+    return [row for row in rows if row["suite"] == suite and row["status"] == "ok"]
+
+
+def distinct(values):
+    return list(dict.fromkeys(values))
+
+
+def error_bars(rows):
+    """Distances from the median down to the fastest and up to the 95th percentile."""
+    return [[max(0.0, r["median"] - r["min"]) for r in rows], [max(0.0, r["p95"] - r["median"]) for r in rows]]
+
+
+def work_of(row):
+    return f"{row['stage']} {row['basis']}" + (", occlusion" if row["occlusion"] else "")
+
+
+def layouts(rows):
+    rows = of_suite(rows, "layouts")
+    groups = distinct(map(work_of, rows))
+    if not groups:
+        return None
+    figure, axes = style.panels(len(groups), 2, (4.5, 2.4))
+    for axis, group in zip(axes, groups):
+        members = sorted((r for r in rows if work_of(r) == group), key=lambda r: r["median"])
+        names = [f"{r['layout']}/{r['storage']}" + ("" if r.get("filtered", True) else " texels") for r in members]
+        colours = [style.colour(1 if r["layout"] == "image" else 0) for r in members]
+        axis.barh(names, [r["median"] for r in members], xerr=error_bars(members), color=colours,
+                  error_kw={"lw": 0.8, "ecolor": style.INK})
+        style.logarithmic(axis.xaxis)
+        axis.set(title=group, xlabel="ms (bars: median; whiskers: fastest to 95 %)")
+        axis.invert_yaxis()
+        for i, r in enumerate(members):
+            axis.annotate(f"{r['median']:.2f}", (r["median"], i), textcoords="offset points", xytext=(4, 5), size=7)
+    return figure
+
+
+def roofline(rows, ceilings):
+    points = [r for r in rows if r["status"] == "ok" and r["flops"] > 0 and r["bytes"] > 0 and r["median"] > 0]
+    if not points or not ceilings.get("gflops"):
+        return None
+    figure, axis = pyplot.subplots(figsize=(7.5, 5))
+    lowest = min(0.1, min(r["flops"] / r["bytes"] for r in points) / 2)
+    highest = max(50.0, max(r["flops"] / r["bytes"] for r in points) * 2)
+    labelled = math.inf
+    for bandwidth in sorted(ceilings["bandwidths"], key=lambda b: -b["gbps"]):
+        knee = ceilings["gflops"] / bandwidth["gbps"]
+        axis.plot([lowest, knee], [lowest * bandwidth["gbps"], ceilings["gflops"]], color=style.SOFT, lw=0.8)
+        if bandwidth["gbps"] > CLOSEST_LABELS * labelled:
+            continue
+        labelled = bandwidth["gbps"]
+        axis.annotate(f"{bandwidth['gbps']:.0f} GB/s at {bandwidth['working_set'] / 2**20:.3g} MiB",
+                      (lowest, lowest * bandwidth["gbps"]), size=6, color=style.SOFT, rotation=30,
+                      rotation_mode="anchor", textcoords="offset points", xytext=(2, 2))
+    axis.axhline(ceilings["gflops"], color=style.INK, lw=1)
+    axis.annotate(f"{ceilings['gflops']:.0f} GFLOP/s fused multiply-adds", (highest, ceilings["gflops"]), size=7,
+                  ha="right", va="bottom")
+    markers = "osD^vPX*"
+    for i, kind in enumerate(distinct((r["stage"], r["layout"]) for r in points)):
+        members = [r for r in points if (r["stage"], r["layout"]) == kind]
+        axis.scatter([r["flops"] / r["bytes"] for r in members], [r["gflops"] for r in members], s=18,
+                     color=style.colour(i), marker=markers[i % len(markers)], label=" ".join(kind), zorder=3)
+    axis.set(xlabel="operations a byte that must move", ylabel="GFLOP/s", xlim=(lowest, highest), title="Roofline")
+    style.logarithmic(axis.xaxis)
+    style.logarithmic(axis.yaxis)
+    axis.legend(fontsize=7, loc="lower right")
+    return figure
+
+
+def scaling(rows):
+    rows = [r for r in of_suite(rows, "scaling") if r.get("axis")]
+    names = distinct(r["axis"] for r in rows)
+    if not names:
+        return None
+    figure, axes = style.panels(len(names), 3, (3.4, 3))
+    for axis, name in zip(axes, names):
+        members = sorted((r for r in rows if r["axis"] == name), key=lambda r: r["value"])
+        for i, stage in enumerate(distinct(r["stage"] for r in members)):
+            series = [r for r in members if r["stage"] == stage]
+            axis.errorbar([r["value"] for r in series], [r["median"] for r in series], yerr=error_bars(series),
+                          marker="o", ms=3, lw=1, color=style.colour(i), label=stage)
+        axis.set(xscale="log", xlabel=name, ylabel="ms")
+        style.logarithmic(axis.yaxis)
+        values = distinct(r["value"] for r in members)
+        axis.set_xticks(values, [f"{v:g}" for v in values])
+        axis.minorticks_off()
+        axis.legend(fontsize=7)
+    return figure
+
+
+def bases(rows):
+    rows = [r for r in of_suite(rows, "bases") if r["stage"] == "propagate" and r["lobe"] == "exact"]
+    sizes = {r["basis"]: r["n"] for r in sorted(rows, key=lambda r: r["n"])}
+    if not sizes:
+        return None
+    kinds = [("coefficients", False), ("fluxes", False), ("coefficients", True), ("fluxes", True)]
+    figure, axis = pyplot.subplots(figsize=(9, 3.6))
+    width = 0.8 / len(kinds)
+    for k, (state, occlusion) in enumerate(kinds):
+        found = {r["basis"]: r for r in rows if r["state"] == state and r["occlusion"] == occlusion}
+        at = [i + (k - 1.5) * width for i, name in enumerate(sizes) if name in found]
+        members = [found[name] for name in sizes if name in found]
+        axis.bar(at, [r["median"] for r in members], width, yerr=error_bars(members), color=style.colour(k),
+                 error_kw={"lw": 0.7, "ecolor": style.INK}, label=state + (", occlusion" if occlusion else ""))
+    axis.set_xticks(range(len(sizes)), [f"{name}\nN={n}" for name, n in sizes.items()])
+    axis.set(ylabel="ms", title="Propagation by basis and state")
+    style.logarithmic(axis.yaxis)
+    axis.legend(fontsize=7, ncol=2)
+    return figure
+
+
+def frame(rows):
+    rows = [r for r in of_suite(rows, "frame") if r.get("preset")]
+    frames = [r for r in rows if r["stage"] == "frame"]
+    if not frames:
+        return None
+    figure, axis = pyplot.subplots(figsize=(8, 1.2 + 0.5 * len(frames)))
+    names = [f"{r['basis']} {r['preset']}" for r in frames]
+    left = [0.0] * len(frames)
+    for i, stage in enumerate(distinct(r["stage"] for r in rows if r["stage"] != "frame")):
+        times = {(r["basis"], r["preset"]): r["median"] for r in rows if r["stage"] == stage}
+        widths = [times.get((f["basis"], f["preset"]), 0.0) for f in frames]
+        axis.barh(names, widths, left=left, color=style.colour(i), hatch="//" if i >= len(style.COLOURS) else None,
+                  label=stage)
+        left = [a + b for a, b in zip(left, widths)]
+    axis.plot([f["median"] for f in frames], names, "|", color=style.INK, ms=14, label="frame (wall)")
+    axis.set(xlabel="ms, medians", title="Frames by stage")
+    axis.legend(fontsize=7, ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.25))
+    return figure
+
+
+def save(figure, folder, name, context):
+    device = f"{context['device']} ({context['platform']} {context['driver']})"[:DEVICE_CHARS]
+    figure.text(0.995, 0.004, f"clpv {context['git_describe']} on {device}", ha="right", va="bottom", size=6,
+                color=style.SOFT)
+    figure.tight_layout(rect=(0, 0.015, 1, 1))
+    for suffix in ("svg", "png"):
+        documents.write(folder / f"{name}.{suffix}", style.rendered(figure, suffix, dpi=150))
+
+
+def draw(source, folder):
+    document = documents.read(source / "bench.json")
+    rows, context = documents.checked(document, "bench.json", "benchmarks", ROW), document["context"]
+    charts = {"layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"]), "scaling": scaling(rows),
+              "bases": bases(rows), "frame": frame(rows)}
+    for name, figure in charts.items():
+        if figure:
+            save(figure, folder, name, context)

@@ -1,0 +1,40 @@
+"""JSON that clpv wrote, checked before it is drawn; files written whole or not at all."""
+import json
+import os
+
+NUMBER = (int, float)
+TEXT_OR_NULL = (str, type(None))
+NAMES = {str: "text", int: "a number", float: "a number", bool: "true or false", dict: "an object", type(None): "null"}
+
+
+class BadDocument(Exception):
+    """A document is not of the shape its command writes: file, place, value found, value allowed."""
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def checked(document, source, key, fields):
+    """The rows document[key], once each has the fields {name: type or types}."""
+    rows = document.get(key) if isinstance(document, dict) else None
+    if not isinstance(rows, list):
+        raise BadDocument(f"{source}: no list '{key}' in it")
+    for i, row in enumerate(rows):
+        for name, kind in fields.items():
+            value = row.get(name) if isinstance(row, dict) else None
+            if not isinstance(value, kind):
+                kinds = kind if isinstance(kind, tuple) else (kind,)
+                allowed = " or ".join(dict.fromkeys(NAMES[k] for k in kinds))
+                raise BadDocument(f"{source}: /{key}/{i}/{name} is {json.dumps(value)}; allowed: {allowed}")
+    return rows
+
+
+def write(path, data):
+    """Puts the bytes at `path` through a file beside it: whoever reads it sees the old file or the new one."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        beside.write_bytes(data)
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
