@@ -23,7 +23,7 @@ void parse(CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace clpv;
-  CLI::App app{"clpv: cascaded light propagation volumes in OpenCL"};
+  CLI::App app{"clpv: cascaded light propagation volumes in OpenCL", "clpv"};
   Shared shared;
   app.set_version_flag("--version", std::string("clpv ") + CLPV_VERSION);
   app.add_option("--device", shared.device,

@@ -60,7 +60,8 @@ nlohmann::json add_kernels(Surfaces& surfaces, double lambda) {
     rows.push_back({{"lambda", bandwidth}, {"centre", triple(centre)}});
   };
   add({0, 0, 1}, kFigure2Lambda);
-  for (const glm::dvec3& centre : make_basis("srbf8v2", lambda)->centres()) add(centre, lambda);
+  const std::unique_ptr<Basis> eight = make_basis("srbf8v2", lambda);
+  for (const glm::dvec3& centre : eight->centres()) add(centre, lambda);
   return rows;
 }
 

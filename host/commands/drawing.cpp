@@ -90,11 +90,11 @@ Ended run(const fs::path& python, const fs::path& package, const std::vector<std
           {std::istreambuf_iterator<char>(in), {}}};
 }
 
-/// One line of it.
-std::string joined(const std::string& said) {
+/// All of it in one line.
+std::string in_a_line(const std::string& said) {
   std::istringstream in(said);
-  return fmt::format(
-      "{}", fmt::join(std::istream_iterator<std::string>(in), std::istream_iterator<std::string>(), " "));
+  const std::vector<std::string> words{std::istream_iterator<std::string>(in), {}};
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ Drawing::Drawing(Picture picture, std::string asked_by)
       python_ = python;
       return;
     }
-    lacking.push_back(fmt::format("{} lacks {}", python.string(), joined(ended.said)));
+    lacking.push_back(fmt::format("{} lacks {}", python.string(), in_a_line(ended.said)));
   }
   fs::remove_all(folder_);
   if (lacking.empty())
@@ -135,7 +135,7 @@ void Drawing::draw(const fs::path& output) const {
   const Ended ended = run(python_, package_, {name_of(picture_), folder_.string(), output.string()}, folder_);
   if (ended.code == 0) return;
   if (ended.code == static_cast<int>(ExitCode::bad_input))
-    throw Error(ExitCode::bad_input, "{}: {}", asked_by_, joined(ended.said));
+    throw Error(ExitCode::bad_input, "{}: {}", asked_by_, in_a_line(ended.said));
   throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", asked_by_, package_.string(), ended.code,
               ended.said);
 }

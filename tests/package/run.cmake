@@ -13,3 +13,9 @@ run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PRE
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 run(${WORK}/prefix/bin/clpv devices)
+# The package that draws came along, and the program takes that one.
+file(WRITE ${WORK}/prefix/share/clpv/clpv_draw/__main__.py "raise SystemExit('installed')")
+execute_process(COMMAND ${WORK}/prefix/bin/clpv basis sh2 --figures ${WORK}/figures ERROR_VARIABLE said)
+if(NOT EXISTS ${WORK}/prefix/share/clpv/clpv_draw/page.html OR NOT said MATCHES "installed")
+  message(FATAL_ERROR "the installed program does not use its own clpv_draw: ${said}")
+endif()

@@ -41,7 +41,7 @@ def as_png(pixels):
 
 
 def false_colour(shot, truth):
-    """Luminance of the absolute difference over the truth's root mean square, 0 to FULL_SCALE, over the pixels that show
+    """Luminance of the absolute difference over the truth's root mean square, 0 to FULL_SCALE, over pixels that show
     a surface in both; the others are transparent. R G B A each."""
     surface = truth[..., 3] > 0
     squares = (truth[surface, :3] @ LUMINANCE) ** 2

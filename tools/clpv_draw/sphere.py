@@ -10,7 +10,7 @@ from matplotlib.tri import Triangulation
 
 POSITIVE, NEGATIVE = (0.07, 0.26, 0.62), (0.85, 0.16, 0.03)  # linear: a blue, a vermilion
 AXIS, LABEL = 0.86, 0.94  # of the extent
-SAMPLES = 200  # along half an axis, and along the ray that tells whether something hides it
+SAMPLES = 100  # along half an axis, and along the ray that tells whether something hides it
 
 
 def unit(v):
@@ -108,7 +108,7 @@ def plot(axis, values, colours=None, extent=1.2, outline=None):
         flat = screen.reshape(-1, 3)
         mesh = TriMesh(Triangulation(flat[:, 0], flat[:, 1], triangles))
         mesh.set_facecolor(lit(signed(values) if colours is None else colours, normals_of(points)).reshape(-1, 3))
-        axis.add_collection(mesh)
+        axis.add_collection(mesh, autolim=False)
     draw_axes(axis, values, extent)
     if outline:
         centre, radius = outline
