@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "scene/json_schema.hpp"
+#include "support/json_schema.hpp"
 
 namespace clpv::bench {
 namespace {

@@ -6,8 +6,8 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
+#include "checks/check.hpp"
 #include "pipeline/gather.hpp"
-#include "reference/check.hpp"
 #include "reference/gather.hpp"
 
 namespace clpv::bench {

@@ -5,8 +5,8 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
+#include "checks/check.hpp"
 #include "pipeline/inject.hpp"
-#include "reference/check.hpp"
 #include "reference/inject.hpp"
 
 namespace clpv::bench {

@@ -6,9 +6,9 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
+#include "checks/check.hpp"
 #include "pipeline/propagate.hpp"
 #include "pipeline/tuning.hpp"
-#include "reference/check.hpp"
 #include "reference/propagate.hpp"
 #include "support/log.hpp"
 

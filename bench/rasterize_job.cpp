@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "bench/stage_jobs.hpp"
+#include "pathtracer/ray_scene.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
-#include "reference/ray_scene.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {

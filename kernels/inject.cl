@@ -11,7 +11,7 @@
 //
 // From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_STRIDE (shared/thinned.h),
 // CLPV_SURFACE_PAPER; as text
-// what host/pipeline/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
+// what host/codegen/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
 #include "deliver.h"

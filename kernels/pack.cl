@@ -1,7 +1,7 @@
 // Packs a cascade's volume for gathering (gather_packed.h): from each cell's coefficients the numbers that irradiance is
 // made of, one record a cell.
 //
-// In: light volume [W/sr]; out: `packed`, records from the first-th on. The host writes (host/pipeline/gather_source.cpp)
+// In: light volume [W/sr]; out: `packed`, records from the first-th on. The host writes (host/codegen/gather_source.cpp)
 //   Gathered, Gathered clpv_gathered(const Coefficients)     those numbers: M c (host/basis/gather_form.hpp)
 //   CLPV_EACH_PAIR(DO)                                       DO(j, even, odd) for each two of them; even(c), odd(c) are
 //                                                            members of Gathered c, in one lane

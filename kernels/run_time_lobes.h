@@ -2,7 +2,7 @@
 // its normal and weighs it by the flux through it.
 //
 // Normals come from memory, so that no compiler does the work beforehand. Where lobes are rotated, the table is an
-// argument, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, and as text what host/pipeline/inject_source.hpp lists.
+// argument, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, and as text what host/codegen/inject_source.hpp lists.
 #ifndef CLPV_RUN_TIME_LOBES_H
 #define CLPV_RUN_TIME_LOBES_H
 

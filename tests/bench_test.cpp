@@ -16,8 +16,8 @@
 #include "bench/report.hpp"
 #include "bench/statistics.hpp"
 #include "reference/propagate.hpp"
-#include "scene/json_schema.hpp"
 #include "support/error.hpp"
+#include "support/json_schema.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::bench {

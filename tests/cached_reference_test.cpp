@@ -1,5 +1,5 @@
 // References are traced once, and anew when anything they depend on changes or their file is damaged.
-#include "reference/cached_reference.hpp"
+#include "evaluate/cached_reference.hpp"
 
 #include <gtest/gtest.h>
 

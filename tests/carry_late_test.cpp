@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "basis/transport.hpp"
+#include "checks/check.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "reference/carry_late.hpp"
-#include "reference/check.hpp"
 #include "reference/gather.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"

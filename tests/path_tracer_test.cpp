@@ -1,5 +1,5 @@
 // The path tracer against closed forms: what the pipeline is held against has to be right itself.
-#include "reference/path_tracer.hpp"
+#include "pathtracer/path_tracer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Quality runs: the matrix of variants, what is kept of a stopped run, how results are told, and the command.
-#include "pipeline/quality.hpp"
+#include "evaluate/quality.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/quality_report.hpp"
+#include "evaluate/quality_report.hpp"
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 

@@ -1,5 +1,5 @@
 // What rays meet: holes, textures and single sides as path tracing sees them, and all of it as the rasteriser does.
-#include "reference/ray_scene.hpp"
+#include "pathtracer/ray_scene.hpp"
 
 #include <gtest/gtest.h>
 

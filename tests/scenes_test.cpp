@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "reference/ray_scene.hpp"
+#include "pathtracer/ray_scene.hpp"
 #include "scene/load.hpp"
 #include "tests/support/run_program.hpp"
 

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "checks/check.hpp"
 #include "device/kernel.hpp"
-#include "reference/check.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

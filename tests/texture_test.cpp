@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/mip_chain.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
+#include "scene/mip_chain.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "reference/tolerances.hpp"
+#include "checks/tolerances.hpp"
 #include "reference/transmit.hpp"
 #include "support/named_enum.hpp"
 #include "tests/support/on_device.hpp"

@@ -5,7 +5,7 @@
 #include "basis/basis.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/suites.hpp"
-#include "reference/check.hpp"
+#include "checks/check.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"

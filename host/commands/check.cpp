@@ -1,5 +1,5 @@
 // clpv check: every stage's kernels against their double-precision twins, on a device of the user's choice.
-#include "reference/check.hpp"
+#include "checks/check.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // clpv quality: how far the frames of many variants are from the path-traced truth, and what they cost.
-#include "pipeline/quality.hpp"
+#include "evaluate/quality.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "commands/frame_options.hpp"
 #include "commands/quality_subjects.hpp"
 #include "commands/tracing_options.hpp"
-#include "pipeline/quality_report.hpp"
+#include "evaluate/quality_report.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "reference/cached_reference.hpp"
+#include "evaluate/cached_reference.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "reference/path_tracer.hpp"
+#include "pathtracer/path_tracer.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "codegen/cell_macros.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pipeline/gather_source.hpp"
+#include "codegen/gather_source.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -1,8 +1,8 @@
 #include "pipeline/inject.hpp"
 
+#include "codegen/inject_source.hpp"
 #include "kernels/shared/sort.h"
 #include "kernels/shared/thinned.h"
-#include "pipeline/inject_source.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

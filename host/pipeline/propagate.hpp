@@ -8,12 +8,12 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "codegen/transport_source.hpp"
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
 #include "pipeline/run_time_lobes.hpp"
 #include "pipeline/stencil.hpp"
 #include "pipeline/transmit.hpp"
-#include "pipeline/transport_source.hpp"
 #include "volume/accumulator.hpp"
 #include "volume/volume.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pipeline/inject_source.hpp"
+#include "codegen/inject_source.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -7,9 +7,9 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "codegen/transport_source.hpp"
 #include "device/session.hpp"
 #include "pipeline/lookup_table.hpp"
-#include "pipeline/transport_source.hpp"
 
 namespace clpv {
 

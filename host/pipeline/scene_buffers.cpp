@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "kernels/shared/raster.h"
-#include "pipeline/mip_chain.hpp"
+#include "scene/mip_chain.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

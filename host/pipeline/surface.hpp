@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "device/session.hpp"
+#include "image/surface_image.hpp"
 #include "kernels/shared/view.h"
 #include "options/choices.hpp"
 
 namespace clpv {
-
-static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
 
 /// One value a pixel, row 0 first, on the device. Depth [m] along the view's forward axis, 0: no surface
 /// there. `format` paper: normal and colour hold 4 bytes a pixel; float32: 4 floats (kernels/surface.h).
@@ -23,13 +22,6 @@ struct Surface {
   Buffer normal;           ///< unit, world space, turned towards the viewer; 0 where there is no surface
   Buffer colour;           ///< camera: albedo; light: flux of the virtual point light [W]
   Buffer emissive;         ///< camera only: float4, emitted radiance [W/m^2/sr]
-};
-
-/// A Surface read back, or made by a test; what the twins of host/reference work on.
-struct SurfaceImage {
-  ClpvView view{};
-  std::vector<float> depth;
-  std::vector<glm::vec4> normal, colour, emissive;  ///< xyz; w unused
 };
 
 /// A surface of the view's size for a rasteriser to fill; contents undefined. `with_emissive`: has

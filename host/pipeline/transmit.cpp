@@ -4,6 +4,8 @@
 
 #include <optional>
 
+#include "codegen/cell_macros.hpp"
+
 namespace clpv {
 namespace {
 

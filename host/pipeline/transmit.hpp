@@ -5,8 +5,8 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "codegen/linear_code.hpp"
 #include "device/session.hpp"
-#include "pipeline/linear_code.hpp"
 #include "pipeline/stencil.hpp"
 #include "volume/volume.hpp"
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "options/render_options.hpp"
-#include "scene/json_schema.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"

@@ -7,9 +7,9 @@
 #include "basis/basis.hpp"
 #include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
+#include "image/surface_image.hpp"
 #include "kernels/shared/grid.h"
-#include "pipeline/gather.hpp"
-#include "pipeline/surface.hpp"
+#include "options/stage_options.hpp"
 #include "reference/volume.hpp"
 
 namespace clpv::reference {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "basis/basis.hpp"
+#include "image/surface_image.hpp"
 #include "kernels/shared/grid.h"
-#include "pipeline/inject.hpp"
-#include "pipeline/surface.hpp"
+#include "options/stage_options.hpp"
 #include "reference/volume.hpp"
 
 namespace clpv::reference {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/mip_chain.hpp"
 #include "reference/texture_lookup.hpp"
 #include "reference/triangle.hpp"
+#include "scene/mip_chain.hpp"
 #include "support/error.hpp"
 
 namespace clpv::reference {

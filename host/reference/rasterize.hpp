@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/surface.hpp"
+#include "image/surface_image.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {

@@ -4,9 +4,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "image/surface_image.hpp"
 #include "kernels/shared/light.h"
-#include "pipeline/shade.hpp"
-#include "pipeline/surface.hpp"
+#include "options/show.hpp"
 
 namespace clpv::reference {
 

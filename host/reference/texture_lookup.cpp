@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/mip_chain.hpp"
+#include "scene/mip_chain.hpp"
 
 namespace clpv::reference {
 namespace {

@@ -79,12 +79,6 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 
 }  // namespace
 
-void refuse(const std::string& file, std::string_view place, std::string_view found,
-            std::string_view allowed) {
-  throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place, place.empty() ? "" : ": ",
-              found, allowed);
-}
-
 Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);

@@ -8,13 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "support/refuse.hpp"
+
 namespace clpv {
 
 using Bytes = std::vector<std::uint8_t>;
-
-/// Throws Error(bad_input): "FILE: PLACE: found FOUND; allowed: ALLOWED". PLACE is a JSON pointer or empty.
-[[noreturn]] void refuse(const std::string& file, std::string_view place, std::string_view found,
-                         std::string_view allowed);
 
 /// A regular file's contents. `place` names who asked for it. Throws Error(bad_input) where it is missing, no
 /// regular file, unreadable, or longer than `limit` bytes.

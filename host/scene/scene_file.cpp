@@ -10,10 +10,10 @@
 
 #include "scene/bounds.hpp"
 #include "scene/input.hpp"
-#include "scene/json_schema.hpp"
 #include "scene/light_cone.hpp"
 #include "scene/light_kind.hpp"
 #include "support/error.hpp"
+#include "support/json_schema.hpp"
 
 namespace clpv {
 namespace {

@@ -1,5 +1,7 @@
 #include "volume/convert.hpp"
 
+#include "codegen/cell_macros.hpp"
+
 namespace clpv {
 namespace {
 

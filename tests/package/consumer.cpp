@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "basis/basis.hpp"
+#include "checks/check.hpp"
 #include "device/session.hpp"
-#include "reference/check.hpp"
 
 int main() {
   const auto basis = clpv::make_basis("sh2");

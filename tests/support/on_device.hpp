@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "checks/check.hpp"
 #include "device/session.hpp"
-#include "reference/check.hpp"
 
 namespace clpv::test {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "reference/path_tracer.hpp"
+#include "pathtracer/path_tracer.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::test {

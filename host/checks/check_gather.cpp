@@ -1,0 +1,126 @@
+// Gathering: kernels against the twin, on random light in three nested cascades seen by surfaces in and round
+// them.
+#include <fmt/format.h>
+
+#include <memory>
+#include <random>
+
+#include "checks/check.hpp"
+#include "checks/check_surfaces.hpp"
+#include "checks/tolerances.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/gather.hpp"
+#include "reference/gather.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kGrid = 9;  // odd, so that no pitch is a power of two
+constexpr int kCascades = 3;
+constexpr double kFinestEdge = 4;  // [m]; the coarsest is 16 m across
+
+Volume random_light(int coefficients, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  Volume volume(kGrid, coefficients);
+  for (double& value : volume.values) value = uniform(random);
+  return volume;
+}
+
+struct Variant {
+  std::string name;
+  double floor = 0;
+  LobeOptions lobes = {};
+  TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};
+  bool filtered = true;  ///< images alone
+};
+
+/// One cascade's sums, on the device and for the twin.
+struct Lit {
+  Volume twin;
+  clpv::Volume device;
+  Lit(Session& session, int coefficients, const VolumeFormat& format, std::mt19937& random)
+      : twin(random_light(coefficients, random)),
+        device(session, {kGrid, coefficients, 3}, "check: light", format) {
+    device.write(session, {twin.values.begin(), twin.values.end()});
+  }
+};
+
+CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
+                      const Variant& variant) {
+  std::mt19937 random(11);
+  SurfaceImage image = random_surfaces(random);
+  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
+    if (rounding_decides(basis, variant.lobes, glm::dvec3(image.normal[pixel]))) image.depth[pixel] = 0;
+  }
+  const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
+  const GatherOptions options{.grid = kGrid,
+                              .floor = variant.floor,
+                              .lobes = variant.lobes,
+                              .table = variant.table,
+                              .format = variant.format,
+                              .filtered = variant.filtered};
+  std::vector<Lit> lit;
+  for (int c = 0; c < kCascades; ++c) lit.emplace_back(session, basis.size(), variant.format, random);
+  std::vector<const clpv::Volume*> volumes;
+  std::vector<Cascade> cascades;
+  for (std::size_t c = 0; c < grids.size(); ++c) {
+    volumes.push_back(&lit[c].device);
+    cascades.push_back({grids[c], &lit[c].twin});
+  }
+  const Surface camera = upload_surface(session, image);
+  Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
+  Gatherer(session, basis, transport, options).gather(camera, grids, volumes, irradiance);
+  std::vector<glm::dvec4> twin;
+  for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
+  CheckResult result =
+      compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
+                     "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport.kind), variant.name));
+  const bool by_filter = sampled_by_device(variant.format) && variant.filtered;
+  result.allowed = tolerance_in(by_filter ? "gather-filter" : "gather", variant.format);
+  return result;
+}
+
+/// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
+void check_formats(Session& session, CheckResults& results) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const Transport transport = make_transport(TransportKind::upwind, *basis);
+  for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
+    Variant variant{.name = format_name(format), .format = format};
+    if (sampled_by_device(format)) {
+      variant.name += " filter";
+      results.push_back(check_one(session, *basis, transport, variant));
+      variant.name = format_name(format) + " texels";
+      variant.filtered = false;
+    }
+    results.push_back(check_one(session, *basis, transport, variant));
+    if (!sampled_by_device(format)) continue;
+    // More coefficients than irradiance needs are packed, from images too.
+    const std::unique_ptr<Basis> large = make_basis("bins24");
+    results.push_back(check_one(session, *large, make_transport(TransportKind::upwind, *large), variant));
+  }
+}
+
+}  // namespace
+
+CheckResults check_gather(Session& session, bool thorough) {
+  CheckResults results;
+  for (const std::string& name : basis_names()) {
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    // One transport that gathers radiant intensity, one that gathers through its own matrix.
+    results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"plain"}));
+    results.push_back(
+        check_one(session, *basis, make_transport(TransportKind::upwind, *basis), {"floor", 0.15}));
+    if (basis->centres().empty()) continue;  // no table
+    const LobeOptions functions{.table_functions = true};
+    results.push_back(
+        check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"table", 0, functions}));
+    if (!session.device().images || (!thorough && basis->size() > 4)) continue;
+    results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis),
+                                {"table image", 0, functions, TableStorage::image}));
+  }
+  check_formats(session, results);
+  return results;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,193 @@
+// Propagation: kernels against the twin on a small grid of random light and random blockers.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+
+#include "checks/check.hpp"
+#include "checks/tolerances.hpp"
+#include "pipeline/propagate.hpp"
+#include "reference/propagate.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kGrid = 7;         // no multiple of anything: borders, partial work-groups
+constexpr int kFormatGrid = 17;  // whole blocks of 8 cells and one cell more
+constexpr int kSteps = 5;        // light crosses the grid and meets blockers
+
+/// Lobes of random direction and colour in a third of the cells; what injection leaves.
+Volume random_light(const Basis& basis, int n, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Volume volume(n, basis.size());
+  for (int cell = 0; cell < n * n * n; ++cell) {
+    const int x = cell % n, y = cell / n % n, z = cell / n / n;
+    const glm::dvec3 d = glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
+    if (uniform(random) > -0.33) continue;
+    const std::vector<double> lobe = basis.clamped_cosine(d);
+    for (int channel = 0; channel < 3; ++channel) {
+      const double power = 1 + uniform(random);
+      for (int i = 0; i < basis.size(); ++i)
+        volume.at(channel, i, x, y, z) = static_cast<float>(power * lobe[static_cast<std::size_t>(i)]);
+    }
+  }
+  return volume;
+}
+
+/// Surfels of random direction and cover, two-sided or as areas, on half the corners.
+Volume random_blockers(const Basis& basis, const Transport& transport, int n, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const int numbers = blocking_size(transport.blocking, basis);
+  Volume volume(n + 1, numbers, 1);
+  for (int z = 0; z <= n; ++z) {
+    for (int y = 0; y <= n; ++y) {
+      for (int x = 0; x <= n; ++x) {
+        const glm::dvec3 d =
+            glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
+        const double cover = std::max(0.0, 1.5 * uniform(random));
+        const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
+        for (int i = 0; i < numbers; ++i) {
+          const auto k = static_cast<std::size_t>(i);
+          const double share = blocks_by_lobes(transport.blocking) ? front[k] + back[k] : std::abs(d[i]);
+          volume.at(0, i, x, y, z) = static_cast<float>(cover * share);
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+std::vector<float> to_float(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
+
+CheckResult compare(const std::vector<float>& device, const Volume& twin, double allowed,
+                    const std::string& variant) {
+  CheckResult result{"propagate", variant, 0, allowed, {}};
+  double largest = 0;
+  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
+  for (std::size_t at = 0; at < twin.values.size(); ++at) {
+    const double error = std::abs(device[at] - twin.values[at]) / largest;
+    if (error <= result.worst) continue;  // a NaN is not, and stays the worst
+    result.worst = error;
+    const auto n = static_cast<std::size_t>(twin.n);
+    result.place = fmt::format("cell {},{},{} plane {}: {:.7g}, twin {:.7g}", at % n, at / n % n,
+                               at / n / n % n, at / n / n / n, device[at], twin.values[at]);
+    if (std::isnan(error)) break;
+  }
+  return result;
+}
+
+CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
+                      const PropagateOptions& options, bool blockers) {
+  std::mt19937 random(7);
+  const int n = options.grid;
+  const Volume light = random_light(basis, n, random);
+  const Volume geometry = random_blockers(basis, transport, n, random);
+  clpv::Volume injected(session, {n, basis.size(), 3}, "check: injected light", options.format);
+  clpv::Volume accumulated(session, {n, basis.size(), 3}, "check: accumulated light", options.format);
+  clpv::Volume corners(session, {n + 1, geometry.coefficients, 1}, "check: geometry", options.format);
+  injected.write(session, to_float(light.values));
+  corners.write(session, to_float(geometry.values));
+  Propagator propagator(session, basis, transport, options);
+  propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
+  const Propagation twin = propagate(transport, light, blockers ? &geometry : nullptr, kSteps);
+  return compare(
+      accumulated.read(session), twin.accumulated,
+      options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
+                                            : tolerance_in("propagate", options.format),
+      fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(transport.kind), name_of(options.state),
+                  !blockers                               ? "free"
+                  : transport.blocking == Blocking::areas ? "areas"
+                                                          : "blockers",
+                  transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
+                  options.lobe_time == LobeTime::host     ? ""
+                  : options.table == TableStorage::buffer ? "/kernel"
+                                                          : "/kernel image") +
+          (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format))));
+}
+
+/// `full`: every transport in both states, with and without blockers.
+void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
+                     CheckResults& results) {
+  for (const TransportKind kind : values_of<TransportKind>()) {
+    if (!full && kind != TransportKind::sampled && kind != TransportKind::upwind) continue;
+    const Transport transport = make_transport(kind, basis, lobes);
+    const bool faces = std::holds_alternative<FaceTransport>(transport.scheme);
+    if (!faces && lobes.kind == LobeKind::rotate) continue;  // has no lobes
+    const auto add = [&](State state, bool blockers) {
+      results.push_back(check_one(session, basis, transport, {.grid = kGrid, .state = state}, blockers));
+    };
+    // The first step never blocks, so a run with blockers has run both of its kernels. Not so with fluxes, whose first
+    // step is a kernel of its own.
+    if (full || !faces) add(State::coefficients, true);
+    if (faces) add(State::fluxes, true);
+    if (faces && full) add(State::fluxes, false);
+  }
+}
+
+/// Lobes made in the kernel: exact and rotated ones, the table as a buffer and as an image.
+void check_run_time_lobes(Session& session, const Basis& basis, bool full, CheckResults& results) {
+  const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
+    if (table == TableStorage::image && !session.device().images) return;
+    const LobeOptions lobes{.kind = kind, .table_functions = kind == LobeKind::rotate};
+    results.push_back(check_one(session, basis, make_transport(transport, basis, lobes),
+                                {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}, true));
+  };
+  add(TransportKind::sampled, LobeKind::rotate, TableStorage::buffer);
+  if (!full) return;
+  add(TransportKind::exact, LobeKind::exact, TableStorage::buffer);
+  add(TransportKind::exact, LobeKind::rotate, TableStorage::image);
+}
+
+/// Blockers as areas: what the basis is hardly matters, which ways there are does.
+void check_areas(Session& session, bool thorough, CheckResults& results) {
+  for (const char* name : {"sh2", "bins24"}) {
+    if (!thorough && std::string(name) != "sh2") continue;
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    for (const TransportKind transport : values_of<TransportKind>()) {
+      results.push_back(check_one(session, *basis, make_transport(transport, *basis, {}, Blocking::areas),
+                                  {.grid = kGrid}, true));
+    }
+  }
+}
+
+/// Every other way for volumes to lie in memory: one basis and transport, since these have no part in it.
+void check_formats(Session& session, CheckResults& results) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const Transport transport = make_transport(TransportKind::upwind, *basis);
+  const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
+  for (const VolumeFormat& format : other_formats(session.device(), corners)) {
+    results.push_back(check_one(session, *basis, transport, {.grid = kFormatGrid, .format = format}, true));
+  }
+}
+
+}  // namespace
+
+CheckResults check_propagate(Session& session, bool thorough) {
+  // One basis with mirrors and orthogonal, one with mirrors alone, one with neither in full; of the others each basis and
+  // each transport, not each pair: building kernels is what takes the time.
+  const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
+  CheckResults results;
+  for (const std::string& name : basis_names()) {
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    const bool full = thorough || in_full.count(name) > 0;
+    check_constants(session, *basis, {}, full, results);
+    // In full for the cheapest that has a table; else without and with one, and where it errs most.
+    const std::set<std::string> lobes = {"sh2", "srbf4", "srbf8v2", "srbf14"};
+    if (thorough || lobes.count(name) > 0)
+      check_run_time_lobes(session, *basis, thorough || name == "srbf4", results);
+    if (!basis->centres().empty() && thorough) {
+      check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
+    }
+  }
+  check_areas(session, thorough, results);
+  check_formats(session, results);
+  return results;
+}
+
+}  // namespace clpv::reference

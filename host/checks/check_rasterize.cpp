@@ -1,0 +1,271 @@
+// The rasteriser against its twin: random and awkward triangles, every kind of view.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "checks/check.hpp"
+#include "checks/tolerances.hpp"
+#include "pipeline/rasterize.hpp"
+#include "pipeline/view.hpp"
+#include "reference/rasterize.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kWidth = 41, kHeight = 27;  // no multiples of a tile
+constexpr int kLightSize = 37;
+
+class SceneMaker {
+ public:
+  explicit SceneMaker(unsigned seed) : random_(seed) {}
+
+  /// Triangles from specks to some that reach through the eye, of every kind of material.
+  Scene soup() {
+    Scene scene = with_materials();
+    for (int i = 0; i < 120; ++i) {
+      const glm::vec3 middle = 4.0f * direction() + glm::vec3(0, 0, -4);
+      const float size = std::exp(4 * uniform() - 2);  // 0.02 to 7 m
+      add(scene, {middle + size * direction(), middle + size * direction(), middle + size * direction()});
+    }
+    return scene;
+  }
+
+  /// A curved sheet of triangles that share all their vertices, and a floor through the eye, under it.
+  Scene sheet() {
+    Scene scene = with_materials();
+    constexpr unsigned kCells = 8;
+    for (unsigned j = 0; j <= kCells; ++j) {
+      for (unsigned i = 0; i <= kCells; ++i) {
+        const glm::vec2 at = glm::vec2(i, j) + 0.3f * glm::vec2(uniform(), uniform());
+        vertex(scene, {at.x - 4, at.y - 3, -4 + 0.5f * std::sin(at.x) * std::sin(at.y)}, {0, 0, 1});
+      }
+    }
+    for (unsigned j = 0; j < kCells; ++j) {
+      for (unsigned i = 0; i < kCells; ++i) {
+        const unsigned a = j * (kCells + 1) + i, c = a + kCells + 2;
+        scene.triangles.push_back({{a, a + 1, c}, (i + j) % 4});
+        scene.triangles.push_back({{a, c, c - 1}, (i + j) % 4});
+      }
+    }
+    add(scene, {glm::vec3(-9, -0.9f, 7), glm::vec3(9, -1, 6), glm::vec3(1, -1.1f, -30)});
+    return scene;
+  }
+
+  /// Corners on pixel centres and borders of an orthographic view of 1/8 m a pixel, surfaces at the same depth, and
+  /// triangles without area.
+  Scene lattice() {
+    Scene scene = with_materials();
+    for (int i = 0; i < 60; ++i) {
+      const auto at = [&] { return glm::vec3(step(), step(), -2 - static_cast<float>(i % 3)); };
+      add(scene, {at(), at(), at()});
+    }
+    add(scene, {glm::vec3(0, 0, -1), glm::vec3(1, 1, -1), glm::vec3(2, 2, -1)});
+    add(scene, {glm::vec3(1, 0, -1), glm::vec3(1, 0, -1), glm::vec3(1, 0, -1)});
+    return scene;
+  }
+
+ private:
+  float uniform() { return std::uniform_real_distribution<float>(-1, 1)(random_); }
+  glm::vec3 direction() { return {uniform(), uniform(), uniform()}; }
+  float step() { return std::round(32 * uniform()) / 16; }
+
+  unsigned vertex(Scene& scene, const glm::vec3& p, const glm::vec3& normal) {
+    const glm::vec3 n = glm::normalize(normal + 0.3f * direction());
+    Vertex v{{p.x, p.y, p.z}, {n.x, n.y, n.z}, {3 * uniform(), 3 * uniform()}, {}};
+    for (int c = 0; c < 4; ++c) v.colour[c] = 0.9f + 0.1f * uniform();
+    scene.vertices.push_back(v);
+    return static_cast<unsigned>(scene.vertices.size() - 1);
+  }
+
+  void add(Scene& scene, const std::array<glm::vec3, 3>& p) {
+    const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::vec3(0, 0, 1);
+    Triangle triangle{};
+    for (std::size_t i = 0; i < 3; ++i) triangle.vertex[i] = vertex(scene, p[i], normal);
+    triangle.material = static_cast<unsigned>(scene.triangles.size() % scene.materials.size());
+    scene.triangles.push_back(triangle);
+  }
+
+  /// Plain, textured, double-sided, masked, emissive; textures of odd sizes and every wrap mode.
+  Scene with_materials() {
+    Scene scene;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      Texture texture{.width = 5 + 4 * i,
+                      .height = 8 - 2 * i,
+                      .wrap_u = i,
+                      .wrap_v = (i + 1) % 3,
+                      .rgba = {},
+                      .name = {}};
+      for (std::uint32_t k = 0; k < texture.width * texture.height; ++k) {
+        for (int c = 0; c < 3; ++c) texture.rgba.push_back(static_cast<std::uint8_t>(random_() % 256));
+        texture.rgba.push_back(random_() % 4 == 0 ? 0 : 255);
+      }
+      scene.textures.push_back(texture);
+    }
+    for (unsigned i = 0; i < 6; ++i) {
+      Material m{{0.9f, 0.6f, 0.3f, 1}, {0, 0, 0}, 0.5f, i % 4 == 0 ? CLPV_NO_TEXTURE : i % 3,
+                 CLPV_NO_TEXTURE,       0,         0};
+      if (i % 2 == 1) m.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+      if (i == 2 || i == 3) m.flags |= CLPV_MATERIAL_MASKED;
+      if (i == 5) m.emissive[1] = 2, m.emissive_texture = 1;
+      scene.materials.push_back(m);
+    }
+    return scene;
+  }
+
+  std::mt19937 random_;
+};
+
+/// Holds a device's surface against the twin's, pixel by pixel.
+class Comparison {
+ public:
+  Comparison(const SurfaceImage& device, const Rasterized& twin, const std::string& variant)
+      : twin_(twin),
+        values_{"rasterize", variant, 0, tolerance("rasterize"), {}},
+        edges_{"rasterize-edges", variant, 0, tolerance("rasterize-edges"), {}} {
+    std::size_t apart = 0;
+    for (std::size_t at = 0; at < twin.doubtful.size(); ++at) {
+      const double error = pixel_error(device, at);
+      if (!twin.doubtful[at]) {
+        keep(error, at);
+      } else if (!(error <= values_.allowed)) {
+        ++apart;
+      }
+    }
+    edges_.worst = static_cast<double>(apart) / static_cast<double>(twin.doubtful.size());
+    edges_.place = fmt::format("{} of {} pixels, {} of them doubtful", apart, twin.doubtful.size(),
+                               std::ranges::count(twin.doubtful, true));
+  }
+
+  CheckResult values() const { return values_; }
+  CheckResult edges() const { return edges_; }
+
+ private:
+  static double largest(const std::vector<glm::vec4>& field) {
+    float most = 0;
+    for (const glm::vec4& v : field) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return most > 0 ? most : 1.0;
+  }
+
+  static double apart(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, std::size_t at) {
+    if (a.empty() || b.empty()) return 0;
+    double error = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double e = std::abs(static_cast<double>(a[at][c]) - b[at][c]);
+      if (!(e <= error)) error = e;
+    }
+    return error / largest(b);
+  }
+
+  double pixel_error(const SurfaceImage& device, std::size_t at) {
+    const SurfaceImage& twin = twin_.image;
+    const double depth = std::abs(static_cast<double>(device.depth[at]) - twin.depth[at]) /
+                         std::max(1.0f, *std::max_element(twin.depth.begin(), twin.depth.end()));
+    const double fields[] = {depth, apart(device.normal, twin.normal, at),
+                             apart(device.colour, twin.colour, at),
+                             apart(device.emissive, twin.emissive, at)};
+    double worst = 0;
+    for (const double e : fields) {
+      if (!(e <= worst)) worst = e;  // NaN too
+    }
+    found_ = fmt::format(
+        "depth {:.7g}, twin {:.7g}; errors of depth {:.1e}, normal {:.1e}, colour {:.1e}, emission {:.1e}",
+        device.depth[at], twin.depth[at], fields[0], fields[1], fields[2], fields[3]);
+    return worst;
+  }
+
+  void keep(double error, std::size_t at) {
+    if (error <= values_.worst || std::isnan(values_.worst)) return;
+    values_.worst = error;
+    const unsigned width = twin_.image.view.width;
+    values_.place = fmt::format("pixel {},{}: {}", at % width, at / width, found_);
+  }
+
+  const Rasterized& twin_;
+  CheckResult values_, edges_;
+  std::string found_;
+};
+
+void append(CheckResults& results, const SurfaceImage& device, const Rasterized& twin,
+            const std::string& variant) {
+  const Comparison comparison(device, twin, variant);
+  results.push_back(comparison.values());
+  results.push_back(comparison.edges());
+}
+
+void check_camera(Session& session, const Scene& scene, const std::string& name, CheckResults& results) {
+  Camera camera;
+  camera.near_depth = 0.3f;
+  const ClpvView view = camera_view(camera, kWidth, kHeight);
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, true);
+  rasterizer.rasterize_camera(surface);
+  append(results, read_surface(session, surface), rasterize_camera(scene, view), "camera/" + name);
+}
+
+void check_light(Session& session, const Scene& scene, const ClpvLight& light, const ClpvView& view,
+                 const std::string& name, CheckResults& results) {
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, false);
+  rasterizer.rasterize_rsm(light, surface);
+  const SurfaceImage device = read_surface(session, surface);
+  const Rasterized twin = rasterize_rsm(scene, light, view);
+  append(results, device, twin, "rsm/" + name);
+  Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
+  rasterizer.rasterize_shadow(view, depth);
+  SurfaceImage shadow = twin.image;
+  shadow.depth = session.read<float>(depth, device.depth.size());
+  append(results, shadow, twin, "shadow/" + name);
+}
+
+ClpvLight sun() {
+  ClpvLight light{};
+  light.kind = CLPV_LIGHT_DIRECTIONAL;
+  light.direction[2] = -1;
+  for (int c = 0; c < 3; ++c) light.intensity[c] = 1.0f + static_cast<float>(c);
+  return light;
+}
+
+/// Looks down the z axis, 1/8 m a pixel: the lattice's corners fall on pixel centres and borders.
+ClpvView lattice_view() {
+  ClpvView view = camera_view(Camera{}, 2 * kLightSize - 10, kLightSize - 5);
+  view.orthographic = 1;
+  view.half_width = static_cast<float>(view.width) / 16;
+  view.half_height = static_cast<float>(view.height) / 16;
+  view.near_depth = 2.5f;  // between the lattice's layers
+  view.far_depth = 3.5f;
+  return view;
+}
+
+ClpvLight spot() {
+  ClpvLight light{};
+  light.kind = CLPV_LIGHT_SPOT;
+  light.position[0] = 1, light.position[1] = 3;
+  light.direction[1] = -0.6f, light.direction[2] = -0.8f;
+  light.range = 9;
+  light.cone_scale = 4, light.cone_offset = -2.8f;
+  for (int c = 0; c < 3; ++c) light.intensity[c] = 10.0f * static_cast<float>(c + 1);
+  return light;
+}
+
+}  // namespace
+
+CheckResults check_rasterize(Session& session) {
+  CheckResults results;
+  SceneMaker maker(3);
+  const Scene soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();
+  const Bounds bounds{glm::vec3(-12, -12, -12), glm::vec3(12, 12, 8)};
+  check_camera(session, soup, "soup", results);
+  check_camera(session, sheet, "sheet", results);
+  check_light(session, lattice, sun(), lattice_view(), "lattice", results);
+  const ClpvGrid cascade{{-2, -2, -6}, 0.5f, 8, {}};
+  check_light(session, soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize), "directional",
+              results);
+  check_light(session, sheet, spot(), spot_view(spot(), kLightSize, bounds), "spot", results);
+  return results;
+}
+
+}  // namespace clpv::reference

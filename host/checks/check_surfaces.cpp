@@ -1,0 +1,78 @@
+#include "checks/check_surfaces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "checks/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr unsigned kWidth = 45, kHeight = 31;  // no multiple of any work-group
+constexpr float kFarthest = 12;                // [m]
+constexpr double kHeightError = 1e-6;  // of a turned centre's height in single precision; measured 3e-7
+
+}  // namespace
+
+SurfaceImage random_surfaces(std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(0, 1);
+  SurfaceImage image;
+  ClpvView& view = image.view;
+  view.eye[0] = 0.3f, view.eye[1] = -0.2f, view.eye[2] = 0.6f;
+  view.right[2] = view.up[1] = view.forward[0] = 1;
+  view.half_width = 1.2f, view.half_height = 0.8f;
+  view.near_depth = 0.01f, view.far_depth = 100;
+  view.width = kWidth, view.height = kHeight;
+  for (unsigned pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+    const float depth = 1.1f * uniform(random) - 0.1f;
+    const glm::vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.4995f);
+    image.depth.push_back(depth > 0 ? kFarthest * depth * depth : 0.0f);
+    image.normal.emplace_back(glm::normalize(n), 0.0f);
+    image.colour.emplace_back(uniform(random), uniform(random), uniform(random), 1.0f);
+    image.emissive.emplace_back(uniform(random), uniform(random), uniform(random), 0.0f);
+  }
+  return image;
+}
+
+bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm::dvec3& direction) {
+  if (basis.centres().empty()) return false;
+  const ZonalTable table(options.table_size, [](double) { return 0.0; });
+  const double near = kHeightError * options.table_size / 2;
+  const auto unsure = [&](const glm::dvec3& a, const glm::dvec3& b) {
+    return table.to_step(glm::dot(a, b)) < near;
+  };
+  const glm::dmat3 there = rotation_to(direction), back = rotation_to(-direction);
+  for (const glm::dvec3& a : basis.centres()) {
+    if (options.table_functions && (unsure(a, direction) || unsure(a, -direction))) return true;
+    if (options.kind != LobeKind::rotate) continue;
+    for (const glm::dvec3& b : basis.centres()) {
+      if (unsure(a, there * b) || unsure(a, back * b)) return true;
+    }
+  }
+  return false;
+}
+
+CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& twin,
+                           unsigned width, std::string_view stage, const std::string& variant) {
+  CheckResult result{std::string(stage), variant, 0, tolerance(stage), {}};
+  double largest = 0;
+  for (const glm::dvec4& value : twin) {
+    for (int channel = 0; channel < 4; ++channel) largest = std::max(largest, std::abs(value[channel]));
+  }
+  for (std::size_t at = 0; at < 4 * twin.size(); ++at) {
+    const std::size_t pixel = at / 4;
+    const int channel = static_cast<int>(at % 4);
+    const double found = device[pixel].s[channel], wanted = twin[pixel][channel];
+    const double error = std::abs(found - wanted) / largest;
+    if (error <= result.worst) continue;  // a NaN is not, and stays the worst
+    result.worst = error;
+    result.place = fmt::format("pixel {},{} channel {}: {:.7g}, twin {:.7g}", pixel % width, pixel / width,
+                               channel, found, wanted);
+    if (std::isnan(error)) break;
+  }
+  return result;
+}
+
+}  // namespace clpv::reference

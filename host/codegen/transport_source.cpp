@@ -1,0 +1,206 @@
+#include "codegen/transport_source.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "codegen/cell_macros.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+int axis_index(const glm::ivec3& axis) {
+  for (int i = 0; i < 6; ++i) {
+    if (kAxes[static_cast<std::size_t>(i)] == axis) return i;
+  }
+  return -1;
+}
+
+struct Generated {
+  std::string neighbours;  // body of CLPV_EACH_NEIGHBOUR
+  LinearCode arrive;
+  std::vector<std::string> gains;
+  int count = 0;       // neighbours
+  bool apart = false;  // gains are the fluxes through each face, not yet what the cell gains
+};
+
+void add_neighbour(Generated& out, const glm::ivec3& travel) {
+  out.neighbours += fmt::format(" DO({}, {}, {}, {})", out.count, -travel.x, -travel.y, -travel.z);
+  ++out.count;
+}
+
+// max(x, 0) is x/2 + |x/2|, the halves in the constants: on CPU devices comparisons attract a vectoriser of straight
+// lines that then keeps work-items from being vectorised, which is worth ten times as much.
+
+/// Half the fluxes of the travelling state through the 30 faces: F = flux . c, or with fluxes travelling
+/// F = (flux L) . phi.
+Matrix half_face_rows(const FaceTransport& faces, State source) {
+  const int n = static_cast<int>(faces.faces.front().flux.size());
+  Matrix rows(static_cast<int>(faces.faces.size()), n);
+  for (int f = 0; f < rows.rows(); ++f) {
+    for (int i = 0; i < n; ++i)
+      rows(f, i) = 0.5 * faces.faces[static_cast<std::size_t>(f)].flux[static_cast<std::size_t>(i)];
+  }
+  return source == State::fluxes ? rows * faces.lobes : rows;
+}
+
+void generate_faces(Generated& out, const Basis& basis, const FaceTransport& faces, const StepForm& form) {
+  const Matrix rows = half_face_rows(faces, form.source);
+  const Mirrors mirrors = form.source == State::fluxes ? mirrors_of_fluxes() : mirrors_of(basis);
+  std::array<std::string, 6> through;
+  through.fill("0.0f");
+  for (int k = 0; k < 6; ++k) {
+    const glm::ivec3 travel = kAxes[static_cast<std::size_t>(k)];
+    Matrix five(5, rows.columns());
+    for (int f = 0; f < 5; ++f)
+      std::copy(rows.row(5 * k + f).begin(), rows.row(5 * k + f).end(), five.row(f).begin());
+    const auto fluxes = out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
+                                           mirrors.across(axis_of(travel)));
+    for (int f = 0; f < 5; ++f) {
+      const int way = 5 * k + f;
+      const std::string& half = fluxes[static_cast<std::size_t>(f)];
+      std::string flux = out.arrive.name(fmt::format("{0} + fabs({0})", half), {.additions = 1});
+      if (form.lobes_at_run_time) {
+        if (form.blocking)
+          flux = out.arrive.name(fmt::format("{} * t.c{}", flux, way), {.multiplications = 1});
+        out.gains.push_back(flux);
+        continue;
+      }
+      std::string& sum =
+          through[static_cast<std::size_t>(axis_index(faces.faces[static_cast<std::size_t>(way)].normal))];
+      if (!form.blocking) {
+        sum = out.arrive.add(sum, flux);
+      } else if (sum == "0.0f") {
+        sum = out.arrive.name(fmt::format("{} * t.c{}", flux, way), {.multiplications = 1});
+      } else {
+        sum = out.arrive.name(fmt::format("fma({}, t.c{}, {})", flux, way, sum), {.fused = 1});
+      }
+    }
+    add_neighbour(out, travel);
+  }
+  if (form.lobes_at_run_time) {
+    out.apart = true;
+    return;
+  }
+  const std::vector<std::string> received(through.begin(), through.end());
+  if (form.target == State::fluxes) {
+    out.gains = received;
+  } else {
+    out.gains = out.arrive.product(faces.lobes, received,
+                                   {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
+  }
+}
+
+/// Mirrors of all neighbours' inputs together: a mirror swaps neighbours and the functions within each.
+SignedPermutation mirror_of_neighbours(const OperatorTransport& scheme, const SignedPermutation& within,
+                                       int axis, int n) {
+  if (!within.exists()) return {};
+  SignedPermutation result;
+  for (const auto& neighbour : scheme.neighbours) {
+    glm::ivec3 image = neighbour.offset;
+    image[axis] = -image[axis];
+    int other = -1;
+    for (std::size_t q = 0; q < scheme.neighbours.size(); ++q) {
+      if (scheme.neighbours[q].offset == image) other = static_cast<int>(q);
+    }
+    if (other < 0) return {};
+    for (int i = 0; i < n; ++i) {
+      result.target.push_back(other * n + within.target[static_cast<std::size_t>(i)]);
+      result.sign.push_back(within.sign[static_cast<std::size_t>(i)]);
+    }
+  }
+  return result;
+}
+
+constexpr int kMostSharedInputs =
+    512;  // above, rows are so sparse (direction bins) that mirrors have nothing to share
+
+void generate_operators(Generated& out, const Basis& basis, const OperatorTransport& scheme,
+                        const StepForm& form) {
+  const int n = basis.size();
+  const int count = static_cast<int>(scheme.neighbours.size());
+  const Mirrors mirrors = mirrors_of(basis);
+  Matrix rows(n, n * count);
+  std::vector<std::string> inputs;
+  int way = 0;  // in the order of transmit_source()
+  for (int k = 0; k < count; ++k) {
+    const auto& neighbour = scheme.neighbours[static_cast<std::size_t>(k)];
+    for (int r = 0; r < n; ++r) {
+      for (int i = 0; i < n; ++i) rows(r, k * n + i) = neighbour.weights(r, i);
+    }
+    const bool blocked = neighbour.offset != glm::ivec3(0);
+    for (const std::string& field : fields(fmt::format("a{}", k), n)) {
+      inputs.push_back(form.blocking && blocked ? fmt::format("({} * t.c{})", field, way) : field);
+    }
+    if (blocked) ++way;
+    add_neighbour(out, neighbour.offset);
+  }
+  for (int r = 0; form.blocking && r < static_cast<int>(inputs.size()); ++r) {
+    bool used = false;
+    for (int row = 0; row < n; ++row) used = used || rows(row, r) != 0;
+    if (used && inputs[static_cast<std::size_t>(r)].front() == '(') {
+      inputs[static_cast<std::size_t>(r)] =
+          out.arrive.name(inputs[static_cast<std::size_t>(r)], {.multiplications = 1});
+    }
+  }
+  std::vector<SignedPermutation> symmetries;
+  for (int axis = 0; axis < 3 && n * count <= kMostSharedInputs; ++axis) {
+    symmetries.push_back(mirror_of_neighbours(scheme, mirrors.all[static_cast<std::size_t>(axis)], axis, n));
+  }
+  out.gains = out.arrive.product(rows, inputs, symmetries);
+}
+
+std::string expand_function(const Transport& transport, const Basis& basis, State target) {
+  std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target sum) {\n";
+  if (target == State::coefficients) {
+    text += "  Coefficients r;\n";
+    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = sum.c{0};\n", i);
+    return text + "  return r;\n}\n";
+  }
+  LinearCode code;
+  const auto values = code.product(std::get<FaceTransport>(transport.scheme).lobes, fields("sum", 6),
+                                   {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
+  text += code.text() + "  Coefficients r;\n";
+  for (int i = 0; i < basis.size(); ++i)
+    text += fmt::format("  r.c{} = {};\n", i, values[static_cast<std::size_t>(i)]);
+  return text + "  return r;\n}\n";
+}
+
+std::string arrive_macro(const Generated& out) {
+  std::string gained = "\n" + out.arrive.text() + (out.apart ? "" : "  Target gained;\n");
+  for (std::size_t i = 0; i < out.gains.size(); ++i)
+    gained += fmt::format("  {}{}{} = {};\n", out.apart ? "through[" : "gained.c", i, out.apart ? "]" : "",
+                          out.gains[i]);
+  return macro_text("CLPV_ARRIVE", gained);
+}
+
+}  // namespace
+
+TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
+  const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
+  if (faces == nullptr && (form.source == State::fluxes || form.target == State::fluxes)) {
+    throw Error(ExitCode::usage, "state fluxes: transport '{}' has no faces; allowed: coefficients",
+                name_of(transport.kind));
+  }
+  Generated out;
+  if (faces != nullptr) {
+    generate_faces(out, basis, *faces, form);
+  } else {
+    generate_operators(out, basis, std::get<OperatorTransport>(transport.scheme), form);
+  }
+  TransportSource result;
+  result.source_count = form.source == State::fluxes ? 6 : basis.size();
+  result.target_count = form.target == State::fluxes ? 6 : basis.size();
+  result.neighbours = out.count;
+  result.arrive = out.arrive.operations();
+  result.text = coefficient_macros(basis.size()) + cell_macros("Source", "SOURCE", result.source_count) +
+                cell_macros("Target", "TARGET", result.target_count) +
+                fmt::format("#define CLPV_SOURCE_N {}\n#define CLPV_TARGET_N {}\n", result.source_count,
+                            result.target_count) +
+                fmt::format("#define CLPV_EACH_NEIGHBOUR(DO){}\n", out.neighbours) + arrive_macro(out) +
+                expand_function(transport, basis, form.target);
+  return result;
+}
+
+}  // namespace clpv

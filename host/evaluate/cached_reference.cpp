@@ -1,0 +1,107 @@
+#include "evaluate/cached_reference.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cctype>
+
+#include "image/image_io.hpp"
+#include "pathtracer/traced_view.hpp"
+#include "pipeline/view.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/named_enum.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv::reference {
+namespace {
+
+// To be raised when the tracer's results change, so that kept references are traced anew.
+constexpr int kTracerRevision = 1;
+
+std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
+                const PathTracerOptions& options) {
+  Fingerprint print;
+  print.add(CLPV_VERSION).add(kTracerRevision).add(scene_fingerprint(scene));
+  for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  print.add(std::vector{view}).add(options.bounces).add(options.seed).add(options.emissive_lights);
+  print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
+  return print.hex();
+}
+
+/// A name as a part of a file's: whatever else a scene's author wrote becomes '_'.
+std::string in_file_name(std::string name) {
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+  }
+  return name;
+}
+
+Image all_views(const TracedImage& traced) {
+  Image image;
+  for (const Show show : values_of<Show>())
+    append_layer(image, traced_view(traced, show), std::string(name_of(show)));
+  return image;
+}
+
+void describe(Image& image, const Scene& scene, const Camera& camera, const TracedImage& traced,
+              const PathTracerOptions& options) {
+  image.metadata["command"] = "reference";
+  image.metadata["version"] = CLPV_VERSION;
+  image.metadata["scene"] = scene.name;
+  image.metadata["camera"] = camera.name;
+  image.metadata["bounces"] =
+      options.bounces == PathTracerOptions::kAllBounces ? "all" : std::to_string(options.bounces);
+  image.metadata["seed"] = std::to_string(options.seed);
+  image.metadata["spp_traced"] = std::to_string(traced.samples);
+  image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
+}
+
+Reference read_reference(const std::filesystem::path& file) {
+  Reference reference;
+  reference.image = read_image(file);
+  reference.file = file;
+  for (const std::string& name : names_of<Show>())
+    extract_layer(reference.image, name, file.string());  // throws
+  reference.samples = static_cast<std::uint32_t>(std::stoul(reference.image.metadata.at("spp_traced")));
+  reference.noise = std::stod(reference.image.metadata.at("noise_reached"));
+  return reference;
+}
+
+}  // namespace
+
+std::string scene_fingerprint(const Scene& scene) {
+  Fingerprint print;
+  print.add(scene.vertices).add(scene.triangles).add(scene.materials);
+  for (const Texture& texture : scene.textures) {
+    print.add(texture.width).add(texture.height).add(texture.wrap_u).add(texture.wrap_v).add(texture.rgba);
+  }
+  return print.hex();
+}
+
+Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
+                           int width, int height, const PathTracerOptions& options,
+                           const TraceProgress& progress) {
+  const ClpvView view = camera_view(camera, width, height);
+  const std::filesystem::path file =
+      folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
+                           key(scene, camera, view, options));
+  if (std::filesystem::exists(file)) {
+    try {
+      return read_reference(file);
+    } catch (const std::exception& error) {
+      spdlog::warn("{}; traced anew", error.what());
+    }
+  }
+  std::error_code failure;
+  std::filesystem::create_directories(folder,
+                                      failure);  // what is wrong with the folder, check_writable tells
+  check_writable(file);
+  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress);
+  Reference reference{all_views(traced), file, true, traced.samples, traced.noise};
+  describe(reference.image, scene, camera, traced, options);
+  write_exr(file, reference.image);
+  return reference;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,160 @@
+#include "evaluate/quality.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "device/kernel_files.hpp"
+#include "evaluate/quality_report.hpp"
+#include "image/compare.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/median.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+Image shown(Frame& frame, Show show) {
+  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
+  image.pixels = frame.read(show);
+  return image;
+}
+
+void fill_errors(QualityCell& cell, const Image& image, const reference::Reference& truth, Show show) {
+  const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
+  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
+  cell.nrmse = c.nrmse_valid;
+  cell.best_gain = c.best_gain;
+  cell.nrmse_best_gain = c.nrmse_best_gain;
+  cell.energy_ratio = c.energy_ratio;
+  if (c.valid_pixels > 0) {
+    cell.perceptual = static_cast<double>(c.perceptual_failures) / static_cast<double>(c.valid_pixels);
+  }
+}
+
+/// Sums of the stages of one frame.
+std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bool& from_events) {
+  std::map<std::string, double> sums;
+  for (const StageTime& time : times) {
+    sums[std::string(name_of(time.mark.pass))] += time.ms;
+    from_events = from_events && time.from_events;
+  }
+  return sums;
+}
+
+}  // namespace
+
+QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
+                    Show show, int frames) {
+  QualityCell cell;
+  std::map<std::string, std::vector<double>> samples;
+  std::vector<double> totals;
+  for (int i = 0; i <= frames; ++i) {
+    session.timeline().clear();
+    frame.render(camera);
+    const Image image = shown(frame, show);
+    if (i == 0) continue;  // a first launch compiles
+    double total = 0;
+    for (const auto& [stage, ms] : stage_sums(session.timeline().times(), cell.from_events)) {
+      samples[stage].push_back(ms);
+      total += ms;
+    }
+    totals.push_back(total);
+    if (i == frames) fill_errors(cell, image, truth, show);
+  }
+  for (const auto& [stage, values] : samples) cell.stage_ms[stage] = median(values);
+  cell.frame_ms = median(totals);
+  return cell;
+}
+
+std::string quality_key(const reference::Reference& truth, const Device& device, const RenderOptions& options,
+                        Show show, int frames) {
+  static const std::string program = program_fingerprint();
+  Fingerprint print;
+  print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
+  print.add(to_json(options).dump()).add(name_of(show)).add(frames);
+  if (!options.centres.empty()) {
+    for (const glm::dvec3& centre : make_basis(options)->centres())
+      print.add(centre.x).add(centre.y).add(centre.z);
+  }
+  for (const auto& [name, embedded] : detail::embedded_kernel_files()) print.add(kernel_file(name));
+  return print.hex();
+}
+
+QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);  // what is wrong with it, check_writable tells
+  check_writable(file("probe"));
+}
+
+std::filesystem::path QualityStore::file(const std::string& key) const {
+  return folder_ / (key + ".json");
+}
+
+std::optional<QualityCell> QualityStore::find(const std::string& key) const {
+  std::ifstream stream(file(key));
+  if (!stream) return std::nullopt;
+  try {
+    return cell_from_json(nlohmann::json::parse(stream));
+  } catch (const nlohmann::json::exception& error) {
+    spdlog::warn("{}: {}; measured anew", file(key).string(), error.what());
+    return std::nullopt;
+  }
+}
+
+void QualityStore::keep(const std::string& key, const QualityCell& cell) const {
+  write_file(file(key), to_json(cell).dump(2) + "\n");
+}
+
+namespace {
+
+void add(QualitySummary& sum, const QualityCell& cell) {
+  ++sum.views;
+  if (!cell.refused.empty()) {
+    ++sum.refused;
+    return;
+  }
+  const double nrmse = cell.nrmse.value_or(0);
+  sum.nrmse += nrmse;
+  sum.worst_nrmse = std::max(sum.worst_nrmse, nrmse);
+  sum.nrmse_best_gain += cell.nrmse_best_gain.value_or(0);
+  sum.energy_ratio += cell.energy_ratio.value_or(0);
+  sum.perceptual += cell.perceptual.value_or(0);
+  sum.frame_ms += cell.frame_ms;
+  for (const auto& [stage, ms] : cell.stage_ms) sum.stage_ms[stage] += ms;
+}
+
+void divide(QualitySummary& sum) {
+  const int rendered = sum.views - sum.refused;
+  if (rendered == 0) return;
+  for (double* value :
+       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.perceptual, &sum.frame_ms}) {
+    *value /= rendered;
+  }
+  for (auto& [stage, ms] : sum.stage_ms) ms /= rendered;
+}
+
+}  // namespace
+
+std::vector<QualitySummary> summarise(const std::vector<QualityCell>& cells) {
+  std::vector<QualitySummary> sums;
+  for (const QualityCell& cell : cells) {
+    auto sum = std::ranges::find(sums, cell.variant, &QualitySummary::variant);
+    if (sum == sums.end()) {
+      sum = sums.insert(sums.end(), QualitySummary{});
+      sum->variant = cell.variant;
+    }
+    add(*sum, cell);
+  }
+  for (QualitySummary& sum : sums) divide(sum);
+  std::ranges::stable_sort(sums, [](const QualitySummary& a, const QualitySummary& b) {
+    return (a.refused > 0) != (b.refused > 0) ? b.refused > 0 : a.nrmse < b.nrmse;
+  });
+  return sums;
+}
+
+}  // namespace clpv

@@ -1,0 +1,222 @@
+// A scene that rays can be shot through: Embree in its robust mode, with alpha masks and the colours of what
+// is hit.
+#include "pathtracer/ray_scene.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "reference/triangle.hpp"
+#include "reference/view.hpp"
+#include "support/error.hpp"
+
+namespace clpv::reference {
+namespace {
+
+// Embree's geometries: masked triangles alone pay for the filter.
+constexpr unsigned kOpaque = 0, kMasked = 1;
+
+template <std::size_t size>
+bool finite(const float (&values)[size]) {
+  return std::all_of(std::begin(values), std::end(values), [](float v) { return std::isfinite(v); });
+}
+
+void check_vertices(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
+    const Vertex& v = scene.vertices[i];
+    if (!finite(v.position) || !finite(v.normal) || !finite(v.colour)) {
+      throw Error(ExitCode::bad_input, "{}: vertex {}: a position, normal or colour that is not finite",
+                  scene.path, i);
+    }
+  }
+}
+
+void check_triangles(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& t = scene.triangles[i];
+    const std::uint32_t vertex = std::max({t.vertex[0], t.vertex[1], t.vertex[2]});
+    if (vertex >= scene.vertices.size() || t.material >= scene.materials.size()) {
+      throw Error(ExitCode::bad_input, "{}: triangle {}: vertex {} of {}, material {} of {}", scene.path, i,
+                  vertex, scene.vertices.size(), t.material, scene.materials.size());
+    }
+  }
+}
+
+struct RtcRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using RtcDevice = std::unique_ptr<std::remove_pointer_t<RTCDevice>, RtcRelease>;
+using RtcScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, RtcRelease>;
+
+void check(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(ExitCode::run_time, "Embree: out of memory");
+  if (error != RTC_ERROR_NONE) throw Error(ExitCode::run_time, "Embree: error {}", static_cast<int>(error));
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+  const Scene* scene = nullptr;
+  std::optional<Materials> materials;
+  std::array<std::vector<std::uint32_t>, 2> triangles;  // of each geometry: indices in scene->triangles
+  float extent = 0;                                     // largest coordinate [m]
+  RtcDevice device;
+  RtcScene rtc;
+
+  std::uint32_t triangle(const RTCHit& hit) const { return triangles[hit.geomID][hit.primID]; }
+  void attach(unsigned id);
+};
+
+namespace {
+
+/// What a ray carries to the filters.
+struct Context {
+  RTCIntersectContext base;
+  const RayScene::Impl* impl;
+};
+
+/// Lets rays pass through the holes of masked materials.
+void filter_mask(const RTCFilterFunctionNArguments* args) {
+  const auto& impl = *static_cast<const RayScene::Impl*>(args->geometryUserPtr);
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  if (impl.materials->hole({impl.triangle(*hit), {hit->u, hit->v}})) args->valid[0] = 0;
+}
+
+/// Lets rays pass through single-sided triangles from behind. Embree's normal is cross(v1 - v0, v2 - v0): it
+/// points to where the triangle is seen counter-clockwise, which is glTF's front.
+void filter_back_faces(const RTCFilterFunctionNArguments* args) {
+  const auto& impl = *reinterpret_cast<const Context*>(args->context)->impl;
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
+  const Triangle& triangle = impl.scene->triangles[impl.triangle(*hit)];
+  if (impl.scene->materials[triangle.material].flags & CLPV_MATERIAL_DOUBLE_SIDED) return;
+  if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z >= 0) args->valid[0] = 0;
+}
+
+RTCRay make_ray(const glm::vec3& origin, const glm::vec3& direction, float nearest, float furthest) {
+  RTCRay ray{};
+  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+  ray.tnear = nearest, ray.tfar = furthest;
+  ray.mask = ~0u;
+  return ray;
+}
+
+}  // namespace
+
+void RayScene::Impl::attach(unsigned id) {
+  const std::vector<std::uint32_t>& indices = triangles[id];
+  if (indices.empty()) return;
+  const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->vertices.data(),
+                             0, sizeof(Vertex), scene->vertices.size());
+  auto* out = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), indices.size()));
+  check(device.get());
+  for (const std::uint32_t i : indices) out = std::copy_n(scene->triangles[i].vertex, 3, out);
+  rtcSetGeometryUserData(geometry, this);
+  if (id == kMasked) {
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_mask);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_mask);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(rtc.get(), geometry, id);
+  rtcReleaseGeometry(geometry);
+  check(device.get());
+}
+
+Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit) {
+  const glm::dvec3 normal(hit.geometric), here = surface_position(view, px, py, hit.distance);
+  const glm::dvec3 ray = surface_position(view, px, py, 1) - surface_position(view, px, py, 0);
+  const auto step = [&](double x, double y) {
+    const glm::dvec3 across = surface_position(view, x, y, hit.distance) - here;  // at the same depth
+    return across - ray * glm::dot(normal, across) / glm::dot(normal, ray);
+  };
+  return {step(px + 1.0, py), step(px, py + 1.0)};
+}
+
+RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+  if (scene.triangles.empty()) {
+    throw Error(ExitCode::bad_input, "{}: no surface: there is nothing that light could reach", scene.path);
+  }
+  check_vertices(scene);
+  check_triangles(scene);
+  impl_->scene = &scene;
+  impl_->materials.emplace(scene);
+  for (const Vertex& v : scene.vertices) {
+    impl_->extent =
+        std::max({impl_->extent, std::abs(v.position[0]), std::abs(v.position[1]), std::abs(v.position[2])});
+  }
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    const bool masked = scene.materials[scene.triangles[i].material].flags & CLPV_MATERIAL_MASKED;
+    impl_->triangles[masked ? kMasked : kOpaque].push_back(i);
+  }
+  // One thread builds, so that the tree (and which of two coincident triangles is hit) never depends on
+  // scheduling.
+  impl_->device.reset(rtcNewDevice("threads=1,set_affinity=0"));
+  if (!impl_->device) check(nullptr);
+  impl_->rtc.reset(rtcNewScene(impl_->device.get()));
+  rtcSetSceneFlags(impl_->rtc.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneBuildQuality(impl_->rtc.get(), RTC_BUILD_QUALITY_HIGH);
+  impl_->attach(kOpaque);
+  impl_->attach(kMasked);
+  rtcCommitScene(impl_->rtc.get());
+  check(impl_->device.get());
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+const Materials& RayScene::materials() const {
+  return *impl_->materials;
+}
+
+std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
+                                       float furthest, Faces faces) const {
+  Context context{{}, impl_.get()};
+  rtcInitIntersectContext(&context.base);
+  if (faces == Faces::as_seen) context.base.filter = filter_back_faces;
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, nearest, furthest);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->rtc.get(), &context.base, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+  const Scene& scene = *impl_->scene;
+  Hit hit;
+  hit.point = {impl_->triangle(query.hit), {query.hit.u, query.hit.v}};
+  const Triangle& triangle = scene.triangles[hit.point.triangle];
+  hit.distance = query.ray.tfar;
+  hit.position = interpolate(scene, triangle, hit.point.weights, position);
+  hit.geometric = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
+  if (glm::dot(hit.geometric, direction) > 0) hit.geometric = -hit.geometric;
+  hit.normal = interpolate(scene, triangle, hit.point.weights, normal);
+  const float length = glm::length(hit.normal);
+  hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // vertices that disagree may cancel out
+  if (glm::dot(hit.normal, hit.geometric) < 0) hit.normal = -hit.normal;
+  return hit;
+}
+
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = make_ray(origin, direction, 0, furthest);
+  rtcOccluded1(impl_->rtc.get(), &context, &ray);
+  return ray.tfar < 0;
+}
+
+glm::vec3 RayScene::leave(const Hit& hit) const {
+  // Embree's robust test is exact to some ulp of the triangle's coordinates; these are tens of ulp.
+  constexpr float kOfPosition = 1e-5f, kOfExtent = 1e-6f;
+  const glm::vec3 size = glm::abs(hit.position);
+  const float offset = kOfPosition * std::max({size.x, size.y, size.z}) + kOfExtent * impl_->extent;
+  return hit.position + offset * hit.geometric;
+}
+
+}  // namespace clpv::reference

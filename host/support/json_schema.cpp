@@ -1,0 +1,247 @@
+#include "support/json_schema.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "support/error.hpp"
+#include "support/refuse.hpp"
+
+namespace clpv {
+
+using nlohmann::json;
+
+namespace rule {
+Rule object(std::string place) {
+  return {std::move(place), Shape::object};
+}
+Rule list(std::string place, std::size_t least, std::size_t most) {
+  return {std::move(place), Shape::list, static_cast<double>(least), static_cast<double>(most)};
+}
+Rule text(std::string place, std::vector<std::string> words) {
+  Rule made{std::move(place), Shape::text};
+  made.words = std::move(words);
+  return made;
+}
+Rule flag(std::string place) {
+  return {std::move(place), Shape::flag};
+}
+Rule integer(std::string place, double least, double most) {
+  return {std::move(place), Shape::integer, least, most};
+}
+Rule choice(std::string place, std::vector<std::int64_t> choices) {
+  Rule made{std::move(place), Shape::integer};
+  made.choices = std::move(choices);
+  return made;
+}
+Rule number(std::string place, double least, double most) {
+  return {std::move(place), Shape::number, least, most};
+}
+Rule vector(std::string place, std::size_t size, double least, double most) {
+  return {std::move(place), Shape::vector, least, most, size};
+}
+Rule index(std::string place, std::string into) {
+  Rule made{std::move(place), Shape::index};
+  made.into = std::move(into);
+  return made;
+}
+}  // namespace rule
+
+namespace {
+
+std::string found_value(const json& value) {
+  constexpr std::size_t kShown = 60;
+  if (value.is_array()) return fmt::format("an array of {}", value.size());
+  if (value.is_object()) return "an object";
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() > kShown ? text.substr(0, kShown) + "..." : text;
+}
+
+std::size_t list_size(const json& document, const std::string& place) {
+  const json::json_pointer pointer(place);
+  return document.contains(pointer) && document.at(pointer).is_array() ? document.at(pointer).size() : 0;
+}
+
+std::string allowed_values(const Rule& rule, std::size_t into_size) {
+  switch (rule.shape) {
+    case Shape::object:
+      return "an object";
+    case Shape::list:
+      return fmt::format("an array of {} to {}", rule.least, rule.most);
+    case Shape::text:
+      return rule.words.empty() ? std::string("a string")
+                                : fmt::format("one of {}", fmt::join(rule.words, ", "));
+    case Shape::flag:
+      return "true or false";
+    case Shape::integer:
+      return rule.choices.empty() ? fmt::format("an integer from {} to {}", rule.least, rule.most)
+                                  : fmt::format("one of {}", fmt::join(rule.choices, ", "));
+    case Shape::number:
+      return fmt::format("a number from {} to {}", rule.least, rule.most);
+    case Shape::vector:
+      return fmt::format("an array of {} numbers from {} to {}", rule.size, rule.least, rule.most);
+    case Shape::index:
+      return into_size == 0 ? fmt::format("none, since {} is empty", rule.into)
+                            : fmt::format("an index into {}, 0 to {}", rule.into, into_size - 1);
+  }
+  return {};
+}
+
+bool in_range(const Rule& rule, const json& value) {
+  return value.is_number() && value.get<double>() >= rule.least && value.get<double>() <= rule.most;
+}
+
+bool obeys(const Rule& rule, const json& value, std::size_t into_size) {
+  const auto one_of = [](const auto& values, const auto& wanted) {
+    return values.empty() || std::find(values.begin(), values.end(), wanted) != values.end();
+  };
+  switch (rule.shape) {
+    case Shape::object:
+      return value.is_object();
+    case Shape::list:
+      return value.is_array() && value.size() >= rule.least && value.size() <= rule.most;
+    case Shape::text:
+      return value.is_string() && one_of(rule.words, value.get_ref<const std::string&>());
+    case Shape::flag:
+      return value.is_boolean();
+    case Shape::integer:
+      if (!value.is_number_integer()) return false;
+      return rule.choices.empty() ? in_range(rule, value) : one_of(rule.choices, value.get<std::int64_t>());
+    case Shape::number:
+      return in_range(rule, value);
+    case Shape::vector:
+      return value.is_array() && value.size() == rule.size &&
+             std::all_of(value.begin(), value.end(), [&](const json& each) { return in_range(rule, each); });
+    case Shape::index:
+      return value.is_number_unsigned() && value.get<std::uint64_t>() < into_size;
+  }
+  return false;
+}
+
+std::vector<std::string> segments_of(const std::string& place) {
+  std::vector<std::string> segments;
+  for (std::size_t start = 1; start <= place.size();) {
+    const std::size_t end = std::min(place.find('/', start), place.size());
+    segments.push_back(place.substr(start, end - start));
+    start = end + 1;
+  }
+  return segments;
+}
+
+/// Follows one rule's place down the document and checks whatever stands there.
+class Checker {
+ public:
+  Checker(const json& document, const Rule& rule, const std::string& file)
+      : document_(document),
+        rule_(rule),
+        file_(file),
+        segments_(segments_of(rule.place)),
+        into_size_(rule.shape == Shape::index ? list_size(document, rule.into) : 0) {}
+
+  void run() { follow(document_, 0); }
+
+ private:
+  void follow(const json& value, std::size_t level) {
+    if (level == segments_.size()) return check(value);
+    const std::string& segment = segments_[level];
+    if (segment == "*" && value.is_array()) {
+      for (std::size_t i = 0; i < value.size(); ++i) step(value[i], level, {nullptr, i});
+    } else if (segment == "*" && value.is_object()) {
+      for (const auto& [key, member] : value.items()) step(member, level, {&key, 0});
+    } else if (value.is_object()) {
+      if (const auto member = value.find(segment); member != value.end()) {
+        step(*member, level, {&segment, 0});
+      } else if (rule_.required && level + 1 == segments_.size()) {
+        refuse(file_, pointer_to(place(), segment), "nothing", allowed_values(rule_, into_size_));
+      }
+    }
+  }
+
+  /// One step down: a key, or an index where there is none. Spelt out only in a refusal; documents are large.
+  struct Step {
+    const std::string* key;
+    std::size_t index;
+  };
+
+  void step(const json& value, std::size_t level, Step taken) {
+    steps_.push_back(taken);
+    follow(value, level + 1);
+    steps_.pop_back();
+  }
+
+  std::string place() const {
+    std::string out;
+    for (const Step& taken : steps_)
+      out = pointer_to(out, taken.key ? *taken.key : std::to_string(taken.index));
+    return out;
+  }
+
+  void check(const json& value) const {
+    if (obeys(rule_, value, into_size_)) return;
+    std::string found = found_value(value);
+    if (rule_.shape == Shape::vector && value.is_array() && value.size() == rule_.size) {
+      const auto wrong =
+          std::find_if_not(value.begin(), value.end(), [&](const json& v) { return in_range(rule_, v); });
+      found += " with " + found_value(*wrong);
+    }
+    refuse(file_, place(), found, allowed_values(rule_, into_size_));
+  }
+
+  const json& document_;
+  const Rule& rule_;
+  const std::string& file_;
+  std::vector<std::string> segments_;
+  std::size_t into_size_;  ///< of the list that an index points into
+  std::vector<Step> steps_;
+};
+
+/// `pattern` is the rule place that led to `value`, `place` its pointer.
+void check_keys(const json& value, const std::string& pattern, const std::string& place,
+                std::span<const Rule> rules, const std::string& file) {
+  if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      check_keys(value[i], pattern + "/*", place + "/" + std::to_string(i), rules, file);
+    }
+  }
+  if (!value.is_object()) return;
+  std::set<std::string> allowed;
+  for (const Rule& rule : rules) {
+    const std::size_t slash = rule.place.rfind('/');
+    if (rule.place.substr(0, slash) == pattern) allowed.insert(rule.place.substr(slash + 1));
+  }
+  for (const auto& [key, member] : value.items()) {
+    if (!allowed.contains(key)) {
+      refuse(file, pointer_to(place, key.substr(0, 60)), "an unknown key",
+             fmt::format("{}", fmt::join(allowed, ", ")));
+    }
+    check_keys(member, pattern + "/" + key, pointer_to(place, key), rules, file);
+  }
+}
+
+}  // namespace
+
+void check_rules(const json& document, std::span<const Rule> rules, const std::string& file) {
+  for (const Rule& rule : rules) Checker(document, rule, file).run();
+}
+
+void check_no_other_keys(const json& document, std::span<const Rule> rules, const std::string& file) {
+  check_keys(document, "", "", rules, file);
+}
+
+std::string pointer_to(const std::string& parent, const std::string& key) {
+  std::string out = parent + "/";
+  for (const char c : key) {
+    if (c == '~') {
+      out += "~0";
+    } else if (c == '/') {
+      out += "~1";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace clpv
