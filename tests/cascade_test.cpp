@@ -1,9 +1,15 @@
 // Cascades: nested round the camera, on whole cells.
 #include "pipeline/cascade.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv {
 namespace {
@@ -40,6 +46,75 @@ TEST(Cascade, MovesByWholeCellsOnly) {
   EXPECT_EQ(at(0.1f), at(0.9f));
   EXPECT_EQ(at(1.1f), at(0.9f) + 1);
   EXPECT_EQ(at(-0.1f), at(0.1f) - 1);
+}
+
+/// A floor of that edge [m], and a camera in its middle.
+Scene floor_of(float edge) {
+  Scene scene;
+  const float half = edge / 2;
+  test::add_quad(scene, {-half, 0, -half}, {0, 0, edge}, {edge, 0, 0}, test::add_material(scene));
+  scene.lower = {-half, 0, -half}, scene.upper = {half, 0, half};
+  scene.cameras.emplace_back();
+  return scene;
+}
+
+TEST(Cascade, TheUsualSizeIsLeftWhereItSuits) {
+  for (const float edge : {10.0f, 20.0f, 37.0f})
+    EXPECT_EQ(fitting_cascade_size(floor_of(edge), 3, 12.5), 12.5) << edge;
+  EXPECT_EQ(fitting_cascade_size(Scene{}, 3, 12.5), 12.5) << "nothing to hold";
+}
+
+TEST(Cascade, TheCoarsestIsMadeToHoldWhatIsSeen) {
+  for (const float edge : {0.01f, 1.0f, 5.0f, 45.0f, 700.0f}) {
+    const double size = fitting_cascade_size(floor_of(edge), 3, 12.5);
+    EXPECT_NEAR(4 * size, edge * 32 / 24, 1e-4 * edge) << edge;
+    EXPECT_EQ(fitting_cascade_size(floor_of(edge), 1, 4 * 12.5), 4 * size) << "one cascade";
+  }
+}
+
+TEST(Cascade, ItIsKnownWhetherCascadesMeetTheScene) {
+  const Scene scene = floor_of(10);
+  EXPECT_TRUE(cascades_meet(scene, {0, 1, 0}, 3, 1, 32));
+  EXPECT_TRUE(cascades_meet(scene, {0, 1.9f, 0}, 3, 1, 32));
+  EXPECT_FALSE(cascades_meet(scene, {0, 2.3f, 0}, 3, 1, 32)) << "the coarsest ends 2 m from the eye";
+  EXPECT_FALSE(cascades_meet(Scene{}, {0, 0, 0}, 3, 1, 32));
+}
+
+/// A bare model: a floor 700 m across, without camera or light.
+class WideModel : public ::testing::Test {
+ protected:
+  WideModel() {
+    test::GltfBuilder model;
+    const int position = model.accessor<float>("VEC3", {-350, 0, -350, -350, 0, 350, 350, 0, -350});
+    model.mesh({{"POSITION", position}});
+    path_ = model.write(folder_).string();
+  }
+  test::Outcome render(const std::string& more) const {
+    return test::run(CLPV_PROGRAM " render " + path_ +
+                     " --width 12 --height 9 --grid 8 --rsm-size 64 --shadow-size 16 " + "-o " +
+                     (folder_ / "a.exr").string() + " --frames 1 --stats " + stats() + " " + more);
+  }
+  std::string stats() const { return (folder_ / "stats.json").string(); }
+
+  test::TemporaryFolder folder_;
+  std::string path_;
+};
+
+TEST_F(WideModel, IsLitIndirectly) {
+  const test::Outcome outcome = render("");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("cascades of"));
+  EXPECT_THAT(outcome.err, ::testing::Not(::testing::HasSubstr("nothing of the scene")));
+  double injected = 0;
+  for (const auto& cascade : nlohmann::json::parse(test::read_file(stats()))["energy"])
+    injected += cascade["injected"][0].get<double>();
+  EXPECT_GT(injected, 0);
+}
+
+TEST_F(WideModel, CascadesThatDoNotReachItAreWarnedOf) {
+  const test::Outcome outcome = render("--cascade-size 12.5");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("nothing of the scene is in the cascades, which end 25 m"));
 }
 
 }  // namespace

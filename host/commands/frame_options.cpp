@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "pipeline/cascade.hpp"
+#include "scene/load.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -61,6 +63,8 @@ RenderOptions resolve_options(const GivenOptions& given, const Scene& scene) {
   for (const auto& [name, value] : given) {
     if (name != "preset") set_option(options, name, value);
   }
+  if (is_bare_model(scene) && !given.contains("cascade-size"))
+    options.cascade_size = fitting_cascade_size(scene, options.cascades, options.cascade_size);
   if (!options.centres.empty()) options.basis = make_basis(options)->name();
   return options;
 }

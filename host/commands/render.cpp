@@ -1,6 +1,7 @@
 // clpv render: a scene, lit by cascaded light propagation volumes, into an image.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include "commands/frame_options.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
+#include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
 #include "scene/load.hpp"
@@ -100,6 +102,22 @@ void dump_volume(Session& session, const Options& options, const CascadeVolumes&
   write_volume_vti(stem.string() + ".vti", values, volumes.grid, shape.coefficients);
 }
 
+/// What was chosen in place of the user, and what will come of it.
+void tell_of_cascades(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+  const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
+  if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
+    spdlog::info("cascades of {:.4g} to {:.4g} m round camera '{}'", options.cascade_size, coarsest,
+                 camera.name);
+  }
+  if (!cascades_meet(scene, camera.eye, options.cascades, options.cascade_size, options.grid)) {
+    spdlog::warn(
+        "nothing of the scene is in the cascades, which end {:.4g} m from camera '{}': no indirect light; a "
+        "larger "
+        "--cascade-size or more --cascades reach farther",
+        coarsest / 2, camera.name);
+  }
+}
+
 void run(const Options& options, const Shared& shared) {
   const std::vector<Show> views = parse_views(options.views);
   named<ToneMap>("--tonemap", options.tonemap);
@@ -110,6 +128,7 @@ void run(const Options& options, const Shared& shared) {
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const Camera& camera = scene.camera(options.camera);
   RenderOptions resolved = resolve_options(options.frame, scene);
+  tell_of_cascades(scene, camera, resolved);
   progress.advance();
 
   stats.begin_startup();

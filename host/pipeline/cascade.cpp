@@ -1,8 +1,27 @@
 #include "pipeline/cascade.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace clpv {
+namespace {
+
+// The coarsest cascade fades out over its three outer cells, and its middle is up to a cell from the eye: of the usual 32
+// cells a side, 24 hold the scene in full light.
+constexpr double kRoom = 32.0 / 24;
+constexpr double kFarTooLarge = 4;  // times the edge that just holds the scene: a quarter of its cells across
+
+/// How far the bounding box reaches from the eye of any camera, along any axis [m].
+double reach_of(const Scene& scene) {
+  double reach = 0;
+  for (const Camera& camera : scene.cameras) {
+    const glm::vec3 away = glm::max(glm::abs(scene.lower - camera.eye), glm::abs(scene.upper - camera.eye));
+    reach = std::max<double>({reach, away.x, away.y, away.z});
+  }
+  return reach;
+}
+
+}  // namespace
 
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells) {
   std::vector<ClpvGrid> grids;
@@ -18,6 +37,26 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
     grids.push_back(grid);
   }
   return grids;
+}
+
+double fitting_cascade_size(const Scene& scene, int count, double size) {
+  const double just = std::ldexp(2 * reach_of(scene) * kRoom, 1 - count);
+  return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
+}
+
+bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double size, int cells) {
+  const ClpvGrid grid = cascade_grids(eye, count, size, cells).back();
+  const glm::vec3 lower(grid.origin[0], grid.origin[1], grid.origin[2]);
+  const glm::vec3 upper = lower + grid.cell * static_cast<float>(cells);
+  const auto corner = [&](unsigned vertex) {
+    const auto& p = scene.vertices[vertex].position;
+    return glm::vec3(p[0], p[1], p[2]);
+  };
+  return std::ranges::any_of(scene.triangles, [&](const Triangle& t) {
+    const glm::vec3 a = corner(t.vertex[0]), b = corner(t.vertex[1]), c = corner(t.vertex[2]);
+    return glm::all(glm::lessThan(glm::min(a, glm::min(b, c)), upper)) &&
+           glm::all(glm::greaterThan(glm::max(a, glm::max(b, c)), lower));
+  });
 }
 
 }  // namespace clpv

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/shared/grid.h"
+#include "scene/scene.hpp"
 
 namespace clpv {
 
@@ -14,5 +15,12 @@ static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
 /// in its middle. Origins are whole multiples of the cell, so that a camera that moves inside a cell moves no
 /// grid, and light does not swim (Kaplanyan & Dachsbacher 2010, section 5).
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
+
+/// The finest edge [m] that suits `scene`: `size`, where the coarsest of `count` cascades then holds the scene's bounding
+/// box as seen from each of its cameras and is not far too large for it; else the edge with which it just holds the box.
+double fitting_cascade_size(const Scene& scene, int count, double size);
+
+/// Whether some triangle may lie in the coarsest of such cascades about `eye`: none does, and there is no indirect light.
+bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double size, int cells);
 
 }  // namespace clpv

@@ -139,4 +139,9 @@ Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) 
   return scene;
 }
 
+bool is_bare_model(const Scene& scene) {
+  const std::string extension = extension_of(scene.path);
+  return extension == ".gltf" || extension == ".glb";
+}
+
 }  // namespace clpv

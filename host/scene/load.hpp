@@ -16,4 +16,7 @@ struct LoadOptions {
 /// Throws Error(bad_input) that names file, place (JSON pointer), value found and value allowed.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
+/// Whether the scene is a model without a scene file, which says nothing of cascades.
+bool is_bare_model(const Scene& scene);
+
 }  // namespace clpv
