@@ -269,7 +269,7 @@ TEST_F(BadGltfTest, CamerasAndLightsOutOfRange) {
   EXPECT_THAT(refused(), AllOf(HasSubstr("/extensions/KHR_lights_punctual/lights/0"), HasSubstr("no spot")));
   model.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "area"}}};
   EXPECT_THAT(refused(), AllOf(HasSubstr("lights/0/type"), HasSubstr("\"area\""),
-                               HasSubstr("directional, point, spot")));
+                               HasSubstr("directional, spot, point")));
 }
 
 }  // namespace
