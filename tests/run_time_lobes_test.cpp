@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/table_kernel.hpp"
+#include "codegen/cell_macros.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/propagate.hpp"
 #include "support/error.hpp"
