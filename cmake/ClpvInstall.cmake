@@ -1,13 +1,13 @@
 # bin/clpv and the Python package that draws for it, the library, its headers and a CMake package: find_package(clpv),
 # link clpv::clpv.
 include(CMakePackageConfigHelpers)
-install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(CLPV_BUILD_PROGRAM)
+  install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(DIRECTORY tools/clpv_draw DESTINATION ${CMAKE_INSTALL_DATADIR}/clpv
         FILES_MATCHING PATTERN "*.py" PATTERN "*.html" PATTERN __pycache__ EXCLUDE)
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY host/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clpv FILES_MATCHING PATTERN "*.hpp"
-        PATTERN commands EXCLUDE)
-install(DIRECTORY kernels/shared DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clpv/kernels FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY include/clpv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
 configure_package_config_file(cmake/clpvConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)

@@ -2,17 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "options/render_options.hpp"
-#include "scene/scene.hpp"
+#include "pipeline/given_options.hpp"
 
 namespace clpv {
-
-/// What a user gave of them, by long name.
-using GivenOptions = std::map<std::string, std::string>;
 
 /// Adds one option of text each; `given` must outlive the parse.
 void add_frame_options(CLI::App& command, GivenOptions& given);
@@ -23,8 +19,5 @@ void add_some_frame_options(CLI::App& command, RenderOptions& options, const std
 
 /// As set_option; what it throws names the option as the command line does.
 void set_given(RenderOptions& options, const std::string& name, const std::string& value);
-
-/// The preset given, else the defaults; then what the scene wishes, then the other options given. Throws Error(usage) for a bad value.
-RenderOptions resolve_options(const GivenOptions& given, const Scene& scene);
 
 }  // namespace clpv

@@ -1,37 +1,12 @@
-// An image in memory: named float channels, layers by name, and what a file says about itself.
+// Images, which are part of the library's door, taken apart and put together by layers.
 #pragma once
 
-#include <cstddef>
-#include <map>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "clpv/image.hpp"
+
 namespace clpv {
-
-/// What the numbers mean: proportional to light, or sRGB-encoded for a display (0 to 1).
-enum class Encoding { linear, srgb };
-
-/// Row 0 is the top row; channels interleaved: pixels[(y * width + x) * channels.size() + c].
-/// Layers as OpenEXR has them: channel "indirect.R" is R of layer "indirect"; one without a dot belongs to
-/// the layer named "". Alpha ("A") is 1 where there is a surface and 0 in the background.
-struct Image {
-  int width = 0, height = 0;
-  std::vector<std::string> channels;
-  std::vector<float> pixels;
-  std::map<std::string, std::string> metadata;  ///< every option that made the image, by its name
-  Encoding encoding = Encoding::linear;
-
-  std::size_t pixel_count() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  }
-  float& at(int x, int y, std::size_t channel) {
-    return pixels[(static_cast<std::size_t>(y) * width + x) * channels.size() + channel];
-  }
-  float at(int x, int y, std::size_t channel) const { return const_cast<Image*>(this)->at(x, y, channel); }
-  std::optional<std::size_t> channel(std::string_view name) const;  ///< its index
-};
 
 /// An image of zeros.
 Image make_image(int width, int height, std::vector<std::string> channels);

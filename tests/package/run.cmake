@@ -1,5 +1,6 @@
-# cmake -DBUILD=build -DCONSUMER=tests/package -DWORK=folder -DGENERATOR=g -P run.cmake
-# Installs clpv into a folder of its own, builds a consumer against that alone and runs both programs.
+# cmake -DBUILD=build -DSOURCE=project -DWORK=folder -DGENERATOR=g -P run.cmake
+# Installs clpv into a folder of its own, builds examples/ against that alone and runs both programs; then configures the
+# library without the program, which asks for nothing of the program's.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -9,13 +10,26 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/consumer)
+run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
 run(${WORK}/prefix/bin/clpv devices)
+# What is installed names nothing of the house: one folder of headers, which include each other and the standard library's.
+file(GLOB_RECURSE headers RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
+foreach(header IN LISTS headers)
+  file(STRINGS ${WORK}/prefix/include/${header} private REGEX "#include \"" )
+  list(FILTER private EXCLUDE REGEX "\"clpv/")
+  if(private OR NOT header MATCHES "^clpv/[a-z]+\\.hpp$")
+    message(FATAL_ERROR "${header}: installed, but private: ${private}")
+  endif()
+endforeach()
 # The package that draws came along, and the program takes that one.
 file(WRITE ${WORK}/prefix/share/clpv/clpv_draw/__main__.py "raise SystemExit('installed')")
 execute_process(COMMAND ${WORK}/prefix/bin/clpv basis sh2 --figures ${WORK}/figures ERROR_VARIABLE said)
 if(NOT EXISTS ${WORK}/prefix/share/clpv/clpv_draw/page.html OR NOT said MATCHES "installed")
   message(FATAL_ERROR "the installed program does not use its own clpv_draw: ${said}")
 endif()
+# The library alone.
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library -G ${GENERATOR} -DCLPV_BUILD_PROGRAM=OFF
+    -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON
+    -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON)

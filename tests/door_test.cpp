@@ -1,0 +1,98 @@
+// The library's door: what a program of somebody else's sees.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "clpv/renderer.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
+
+Options small() {
+  return Options()
+      .set("basis", "sh2")
+      .set("width", "48")
+      .set("height", "27")
+      .set("grid", "16")
+      .set("rsm-size", "64");
+}
+
+double mean(const Image& image, std::size_t channel) {
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) sum += image.at(x, y, channel);
+  }
+  return sum / static_cast<double>(image.pixel_count());
+}
+
+TEST(Door, RendersCornell) {
+  Renderer made(SceneFile(kCornell), small());
+  Renderer renderer = std::move(made);
+  const Image full = renderer.render(), direct = renderer.render(View::direct),
+              indirect = renderer.render(View::indirect);
+  ASSERT_EQ(full.pixels.size(), 48u * 27 * 4);
+  EXPECT_GT(mean(indirect, 1), 0);
+  EXPECT_NEAR(mean(full, 1), mean(direct, 1) + mean(indirect, 1), 1e-5 * mean(full, 1));
+  EXPECT_EQ(full.metadata.at("basis"), "sh2");
+  EXPECT_EQ(full.pixels, renderer.render().pixels) << "frames of one renderer are the same";
+}
+
+TEST(Door, ImagesAreSavedByTheirExtension) {
+  const test::TemporaryFolder folder;
+  Image image{2, 1, {"R", "G", "B", "A"}, {1, 0, 0, 1, 0, 1, 0, 1}, {}, Encoding::linear};
+  for (const char* name : {"image.exr", "image.png"}) {
+    save_image(folder.path() / name, image);
+    EXPECT_GT(std::filesystem::file_size(folder.path() / name), 0u);
+  }
+  EXPECT_THROW(save_image(folder.path() / "image.tga", image), Error);
+}
+
+TEST(Door, ScenesTellTheirCameras) {
+  const SceneFile scene(kCornell);
+  EXPECT_THAT(scene.cameras(), ::testing::Contains("front"));
+  Renderer renderer(scene, small());
+  EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
+}
+
+TEST(Door, OptionsAreTheProgramsAndBadOnesAreRefused) {
+  const auto all = Options::all();
+  EXPECT_TRUE(std::ranges::any_of(all, [](const OptionDescription& o) { return o.name == "basis"; }));
+  try {
+    Options().set("layout", "planes");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_THAT(error.what(), HasSubstr("planes"));
+    EXPECT_THAT(error.what(), HasSubstr("soa"));
+  }
+  EXPECT_THROW(Options().set("no-such-option", "1"), Error);
+}
+
+TEST(Door, FailuresHaveTheirKind) {
+  try {
+    SceneFile("/nowhere/scene.json");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+  }
+  try {
+    Renderer(SceneFile(kCornell), small(), "no device of this name");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::device);
+  }
+}
+
+TEST(Door, ListsTheDeviceThatTestsRunOn) {
+  EXPECT_TRUE(
+      std::ranges::any_of(all_devices(), [](const DeviceDescription& d) { return d.missing.empty(); }));
+}
+
+}  // namespace
+}  // namespace clpv
