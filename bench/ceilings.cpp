@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "checks/comparison.hpp"
 #include "device/kernel.hpp"
 #include "support/error.hpp"
 
@@ -66,14 +67,10 @@ Case ceiling_case(const std::string& what, std::function<Job()> make) {
 }
 
 Deviation exactly(const std::vector<float>& found, double wanted) {
-  Deviation deviation{0, 0, {}};
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const double error = std::abs(found[i] - wanted) / wanted;
-    if (error <= deviation.worst) continue;
-    deviation.worst = error;
-    deviation.place = fmt::format("value {}: {}, expected {}", i, found[i], wanted);
-  }
-  return deviation;
+  reference::WorstError worst;
+  for (std::size_t i = 0; i < found.size(); ++i) worst.take(std::abs(found[i] - wanted) / wanted, i);
+  if (worst.value == 0) return {0, 0, {}};
+  return {worst.value, 0, fmt::format("value {}: {}, expected {}", worst.at, found[worst.at], wanted)};
 }
 
 Job fma_job(Session& session, int width) {

@@ -7,6 +7,7 @@
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
 #include "checks/check.hpp"
+#include "checks/comparison.hpp"
 #include "pipeline/gather.hpp"
 #include "reference/gather.hpp"
 
@@ -73,18 +74,15 @@ std::vector<double> twin_of(const Gathering& p, Inputs& inputs, const SurfaceIma
 }
 
 Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& twin, double tolerance) {
-  Deviation deviation{0, tolerance, {}};
-  double largest = 0;
-  for (const double value : twin) largest = std::max(largest, std::abs(value));
-  for (std::size_t i = 0; i < twin.size(); ++i) {
-    const std::size_t pixel = i / 3 * kCheckedPixels;
-    const double found = device[pixel].s[i % 3], error = std::abs(found - twin[i]) / largest;
-    if (error <= deviation.worst) continue;
-    deviation.worst = error;
-    deviation.place = fmt::format("pixel {} channel {}: {:.7g}, twin {:.7g}", pixel, i % 3, found, twin[i]);
-    if (std::isnan(error)) break;
-  }
-  return deviation;
+  const auto found = [&](std::size_t i) {
+    return static_cast<double>(device[i / 3 * kCheckedPixels].s[i % 3]);
+  };
+  const auto wanted = [&](std::size_t i) { return twin[i]; };
+  const reference::WorstError worst = reference::worst_difference(twin.size(), found, wanted);
+  if (worst.value == 0) return {0, tolerance, {}};
+  return {worst.value, tolerance,
+          fmt::format("pixel {} channel {}: {:.7g}, twin {:.7g}", worst.at / 3 * kCheckedPixels, worst.at % 3,
+                      found(worst.at), wanted(worst.at))};
 }
 
 }  // namespace

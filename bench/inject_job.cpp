@@ -6,6 +6,7 @@
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
 #include "checks/check.hpp"
+#include "checks/comparison.hpp"
 #include "pipeline/inject.hpp"
 #include "reference/inject.hpp"
 
@@ -63,10 +64,9 @@ void compare(const Basis& basis, const std::vector<float>& device, const double*
              const char* what, Deviation& deviation) {
   const auto samples = static_cast<std::size_t>(n) * n * n, size = static_cast<std::size_t>(basis.size());
   double largest = 0;
-  std::vector<std::pair<double, std::size_t>> errors;  // worst of each direction
+  reference::WorstError worst;
   for (const glm::dvec3& w : directions()) {
     const std::vector<double> b = basis.evaluate(w);
-    std::pair<double, std::size_t> worst{0, 0};
     for (std::size_t at = 0; at < device.size() / size; ++at) {
       double found = 0, wanted = 0;
       for (std::size_t i = 0; i < size; ++i) {
@@ -75,19 +75,16 @@ void compare(const Basis& basis, const std::vector<float>& device, const double*
         wanted += b[i] * twin[index];
       }
       largest = std::max(largest, std::abs(wanted));
-      const double error = std::abs(found - wanted);
-      if (!(error <= worst.first)) worst = {error, at};
+      worst.take(std::abs(found - wanted), at);
     }
-    errors.push_back(worst);
   }
-  for (const auto& [error, at] : errors) {
-    if (error / largest <= deviation.worst) continue;
-    deviation.worst = error / largest;
-    const std::size_t cell = at % samples, side = static_cast<std::size_t>(n);
-    deviation.place =
-        fmt::format("{}, sample {},{},{} channel {}: off by {:.3g} of the largest value", what, cell % side,
-                    cell / side % side, cell / side / side, at / samples, error / largest);
-  }
+  const double error = worst.value / largest;
+  if (worst.value == 0 || error <= deviation.worst || std::isnan(deviation.worst)) return;
+  deviation.worst = error;
+  const std::size_t cell = worst.at % samples, side = static_cast<std::size_t>(n);
+  deviation.place =
+      fmt::format("{}, sample {},{},{} channel {}: off by {:.3g} of the largest value", what, cell % side,
+                  cell / side % side, cell / side / side, worst.at / samples, error);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
 #include "checks/check.hpp"
+#include "checks/comparison.hpp"
 #include "pipeline/propagate.hpp"
 #include "pipeline/tuning.hpp"
 #include "reference/propagate.hpp"
@@ -133,19 +134,8 @@ Variant tuned(const Device& device, Variant v) {
 
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
                           double tolerance) {
-  Deviation deviation{0, tolerance, {}};
-  double largest = 0;
-  for (const double value : twin) largest = std::max(largest, std::abs(value));
-  for (std::size_t at = 0; at < twin.size(); ++at) {
-    const double error = std::abs(device[at] - twin[at]) / largest;
-    if (error <= deviation.worst) continue;  // a NaN is not, and stays the worst
-    deviation.worst = error;
-    const auto side = static_cast<std::size_t>(n);
-    deviation.place = fmt::format("cell {},{},{} plane {}: {:.7g}, twin {:.7g}", at % side, at / side % side,
-                                  at / side / side % side, at / side / side / side, device[at], twin[at]);
-    if (std::isnan(error)) break;
-  }
-  return deviation;
+  const reference::Comparison apart = reference::compare_volumes(device, twin, n);
+  return {apart.worst, tolerance, apart.place};
 }
 
 Job propagate_job(Bench& bench, const Variant& variant) {

@@ -208,8 +208,15 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {}, e), Error);
 }
 
-TEST(Gather, KernelsAgreeWithTheirTwin) {
-  expect_passed(reference::check_gather(test_session()));
+struct GatherKernels : test::CheckOfBasis {};
+TEST_P(GatherKernels, AgreeWithTheTwin) {
+  expect_passed(reference::check_gather(test_session(), scope()));
+}
+INSTANTIATE_TEST_SUITE_P(Names, GatherKernels, ::testing::ValuesIn(basis_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST(Gather, KernelsOfOtherFormatsAgreeWithTheTwin) {
+  expect_passed(reference::check_gather(test_session(), test::beyond_bases()));
 }
 
 }  // namespace

@@ -377,8 +377,15 @@ TEST(Inject, VolumesOfAnotherShapeAreRefused) {
   EXPECT_THROW(injector.inject_geometry(surface, kCells, corners), Error);
 }
 
-TEST(Inject, KernelsAgreeWithTheTwin) {
-  expect_passed(reference::check_inject(test_session()), basis_names().size() + 1);
+struct InjectKernels : test::CheckOfBasis {};
+TEST_P(InjectKernels, AgreeWithTheTwin) {
+  expect_passed(reference::check_inject(test_session(), scope()));
+}
+INSTANTIATE_TEST_SUITE_P(Names, InjectKernels, ::testing::ValuesIn(basis_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST(Inject, KernelsOfOtherFormatsAgreeWithTheTwin) {
+  expect_passed(reference::check_inject(test_session(), test::beyond_bases()));
 }
 
 }  // namespace

@@ -61,9 +61,15 @@ std::vector<double> device_energies(const Basis& basis, const Transport& transpo
   return energies;
 }
 
-TEST(Propagate, KernelsAgreeWithTheTwin) {
-  // Three bases in full, each other basis with two transports.
-  expect_passed(reference::check_propagate(test_session()), 38);
+struct PropagateKernels : test::CheckOfBasis {};
+TEST_P(PropagateKernels, AgreeWithTheTwin) {
+  expect_passed(reference::check_propagate(test_session(), scope()));
+}
+INSTANTIATE_TEST_SUITE_P(Names, PropagateKernels, ::testing::ValuesIn(basis_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST(Propagate, KernelsOfOtherFormatsAgreeWithTheTwin) {
+  expect_passed(reference::check_propagate(test_session(), test::beyond_bases()));
 }
 
 TEST(Propagate, EmptyFieldStaysExactlyZero) {

@@ -2,20 +2,20 @@
 
 namespace clpv::reference {
 
-CheckResults check(Stage stage, Session& session, bool thorough) {
+CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
   switch (stage) {
     case Stage::sizes:
       return check_sizes(session);
     case Stage::rasterize:
       return check_rasterize(session);
     case Stage::inject:
-      return check_inject(session, thorough);
+      return check_inject(session, scope);
     case Stage::propagate:
-      return check_propagate(session, thorough);
+      return check_propagate(session, scope);
     case Stage::carry_late:
       return check_carry_late(session);
     case Stage::gather:
-      return check_gather(session, thorough);
+      return check_gather(session, scope);
     case Stage::shade:
       return check_shade(session);
   }

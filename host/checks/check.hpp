@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "basis/basis.hpp"
 #include "device/session.hpp"
 #include "options/stages.hpp"
 #include "volume/volume_format.hpp"
@@ -29,17 +30,23 @@ std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape&
 /// tolerance(stage), or that of half storage.
 double tolerance_in(std::string_view stage, const VolumeFormat& format);
 
-/// A stage's. `thorough`: every combination of basis and options, where there are more than it compares at once; minutes,
-/// for the kernels there are to build.
-CheckResults check(Stage stage, Session& session, bool thorough = false);
+/// What a check goes through; parts of it where tests want each to be short.
+struct CheckScope {
+  bool thorough = false;  ///< every combination of basis and options: minutes, for kernels to build
+  std::vector<std::string> bases = basis_names();
+  bool beyond_bases = true;  ///< what does not vary with the basis as well: formats, areas
+};
 
-// One a stage, in reference/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device.
+/// A stage's. The scope is for those that vary with the basis: inject, propagate, gather.
+CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
+
+// One a stage, in checks/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device, but for building kernels.
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
-CheckResults check_inject(Session& session, bool thorough = false);
-CheckResults check_propagate(Session& session, bool thorough = false);
+CheckResults check_inject(Session& session, const CheckScope& scope = {});
+CheckResults check_propagate(Session& session, const CheckScope& scope = {});
 CheckResults check_carry_late(Session& session);
-CheckResults check_gather(Session& session, bool thorough = false);
+CheckResults check_gather(Session& session, const CheckScope& scope = {});
 CheckResults check_shade(Session& session);
 
 }  // namespace clpv::reference

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "checks/check.hpp"
+#include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/carry_late.hpp"
 #include "pipeline/cascade.hpp"
@@ -41,24 +42,9 @@ CheckResult check_one(Session& session, const VolumeFormat& format, int lanes, i
   sum.write(session, {twin.values.begin(), twin.values.end()});
   LateCarrier(session, shape, format, lanes).carry(light, grids[1], sum, grids[0]);
   carry_late(coarser, grids[1], twin, grids[0]);
-  const std::vector<float> found = sum.read(session);
-  CheckResult result{"carry-late",
-                     fmt::format("{}/{} lanes/starts {}", format_name(format), lanes, odd),
-                     0,
-                     tolerance_in("carry-late", format),
-                     {}};
-  double largest = 0;
-  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
-  for (std::size_t at = 0; at < found.size(); ++at) {
-    const double error = std::abs(found[at] - twin.values[at]) / largest;
-    if (error <= result.worst) continue;  // a NaN is not, and stays the worst
-    result.worst = error;
-    result.place =
-        fmt::format("cell {},{},{} plane {}: {:.7g}, twin {:.7g}", at % kGrid, at / kGrid % kGrid,
-                    at / kGrid / kGrid % kGrid, at / kGrid / kGrid / kGrid, found[at], twin.values[at]);
-    if (std::isnan(error)) break;
-  }
-  return result;
+  const Comparison apart = compare_volumes(sum.read(session), twin.values, kGrid);
+  return {"carry-late", fmt::format("{}/{} lanes/starts {}", format_name(format), lanes, odd), apart.worst,
+          tolerance_in("carry-late", format), apart.place};
 }
 
 }  // namespace

@@ -103,9 +103,9 @@ void check_formats(Session& session, CheckResults& results) {
 
 }  // namespace
 
-CheckResults check_gather(Session& session, bool thorough) {
+CheckResults check_gather(Session& session, const CheckScope& scope) {
   CheckResults results;
-  for (const std::string& name : basis_names()) {
+  for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     // One transport that gathers radiant intensity, one that gathers through its own matrix.
     results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"plain"}));
@@ -115,11 +115,11 @@ CheckResults check_gather(Session& session, bool thorough) {
     const LobeOptions functions{.table_functions = true};
     results.push_back(
         check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"table", 0, functions}));
-    if (!session.device().images || (!thorough && basis->size() > 4)) continue;
+    if (!session.device().images || (!scope.thorough && basis->size() > 4)) continue;
     results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis),
                                 {"table image", 0, functions, TableStorage::image}));
   }
-  check_formats(session, results);
+  if (scope.beyond_bases) check_formats(session, results);
   return results;
 }
 

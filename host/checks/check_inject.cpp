@@ -9,6 +9,7 @@
 
 #include "checks/check.hpp"
 #include "checks/check_surfaces.hpp"
+#include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"
 #include "reference/inject.hpp"
@@ -100,7 +101,8 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
   const auto size = static_cast<std::size_t>(twin.coefficients);
   const bool areas = twin.channels == 1 && !blocks_by_lobes(options.blocking);
-  double largest = 0, worst = 0;
+  double largest = 0;
+  WorstError worst;
   for (const glm::dvec3& w : directions()) {
     const std::vector<double> b =
         areas ? blocking_weights(options.blocking, basis, options.lobes, w) : basis.evaluate(w);
@@ -112,15 +114,13 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
         wanted += b[i] * twin.values[(channel * size + i) * cells + cell];
       }
       largest = std::max(largest, std::abs(wanted));
-      const double error = std::abs(found - wanted);
-      if (error <= worst || std::isnan(worst)) continue;  // a NaN error is not, and stays the worst
-      worst = error;
+      if (!worst.take(std::abs(found - wanted), cell)) continue;
       const auto n = static_cast<std::size_t>(twin.n);
       result.place = fmt::format("cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, twin {:.7g}",
                                  cell % n, cell / n % n, cell / n / n, channel, w.x, w.y, w.z, found, wanted);
     }
   }
-  result.worst = worst / largest;
+  result.worst = worst.value / largest;
   return result;
 }
 
@@ -198,14 +198,14 @@ void check_formats(Session& session, CheckResults& results) {
 
 }  // namespace
 
-CheckResults check_inject(Session& session, bool thorough) {
+CheckResults check_inject(Session& session, const CheckScope& scope) {
   CheckResults results;
-  for (const std::string& name : basis_names()) {
+  for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     const InjectOptions plain{.grid = kGrid};
     results.push_back(check_light(session, *basis, plain, true, RsmFormat::float32));
     results.push_back(check_geometry(session, *basis, plain, true, RsmFormat::float32));
-    check_rotated(session, *basis, thorough, results);
+    check_rotated(session, *basis, scope.thorough, results);
     // What hardly depends on the basis, for the small ones: compiling takes most of the time.
     if (basis->size() > 4) continue;
     const InjectOptions trilinear{.grid = kGrid, .trilinear = true, .unit_flux_lobes = true};
@@ -214,6 +214,7 @@ CheckResults check_inject(Session& session, bool thorough) {
     results.push_back(check_light(session, *basis, plain, false, RsmFormat::paper));
     results.push_back(check_geometry(session, *basis, one_sided, false, RsmFormat::paper));
   }
+  if (!scope.beyond_bases) return results;
   for (const bool orthographic : {true, false}) {
     const InjectOptions areas{.grid = kGrid, .blocking = Blocking::areas};  // whatever the basis
     for (const int stride : {1, 2, 3}) {

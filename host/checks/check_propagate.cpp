@@ -8,6 +8,7 @@
 #include <string>
 
 #include "checks/check.hpp"
+#include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/propagate.hpp"
 #include "reference/propagate.hpp"
@@ -65,23 +66,6 @@ std::vector<float> to_float(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
 
-CheckResult compare(const std::vector<float>& device, const Volume& twin, double allowed,
-                    const std::string& variant) {
-  CheckResult result{"propagate", variant, 0, allowed, {}};
-  double largest = 0;
-  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
-  for (std::size_t at = 0; at < twin.values.size(); ++at) {
-    const double error = std::abs(device[at] - twin.values[at]) / largest;
-    if (error <= result.worst) continue;  // a NaN is not, and stays the worst
-    result.worst = error;
-    const auto n = static_cast<std::size_t>(twin.n);
-    result.place = fmt::format("cell {},{},{} plane {}: {:.7g}, twin {:.7g}", at % n, at / n % n,
-                               at / n / n % n, at / n / n / n, device[at], twin.values[at]);
-    if (std::isnan(error)) break;
-  }
-  return result;
-}
-
 CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
                       const PropagateOptions& options, bool blockers) {
   std::mt19937 random(7);
@@ -96,10 +80,10 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   Propagator propagator(session, basis, transport, options);
   propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
   const Propagation twin = propagate(transport, light, blockers ? &geometry : nullptr, kSteps);
-  return compare(
-      accumulated.read(session), twin.accumulated,
-      options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
-                                            : tolerance_in("propagate", options.format),
+  const Comparison apart = compare_volumes(accumulated.read(session), twin.accumulated.values, n);
+  const double allowed = options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
+                                                               : tolerance_in("propagate", options.format);
+  const std::string variant =
       fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(transport.kind), name_of(options.state),
                   !blockers                               ? "free"
                   : transport.blocking == Blocking::areas ? "areas"
@@ -108,7 +92,8 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
                   options.lobe_time == LobeTime::host     ? ""
                   : options.table == TableStorage::buffer ? "/kernel"
                                                           : "/kernel image") +
-          (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format))));
+      (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
+  return {"propagate", variant, apart.worst, allowed, apart.place};
 }
 
 /// `full`: every transport in both states, with and without blockers.
@@ -168,24 +153,25 @@ void check_formats(Session& session, CheckResults& results) {
 
 }  // namespace
 
-CheckResults check_propagate(Session& session, bool thorough) {
+CheckResults check_propagate(Session& session, const CheckScope& scope) {
   // One basis with mirrors and orthogonal, one with mirrors alone, one with neither in full; of the others each basis and
   // each transport, not each pair: building kernels is what takes the time.
   const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
   CheckResults results;
-  for (const std::string& name : basis_names()) {
+  for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
-    const bool full = thorough || in_full.count(name) > 0;
+    const bool full = scope.thorough || in_full.count(name) > 0;
     check_constants(session, *basis, {}, full, results);
     // In full for the cheapest that has a table; else without and with one, and where it errs most.
     const std::set<std::string> lobes = {"sh2", "srbf4", "srbf8v2", "srbf14"};
-    if (thorough || lobes.count(name) > 0)
-      check_run_time_lobes(session, *basis, thorough || name == "srbf4", results);
-    if (!basis->centres().empty() && thorough) {
+    if (scope.thorough || lobes.count(name) > 0)
+      check_run_time_lobes(session, *basis, scope.thorough || name == "srbf4", results);
+    if (!basis->centres().empty() && scope.thorough) {
       check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
     }
   }
-  check_areas(session, thorough, results);
+  if (!scope.beyond_bases) return results;
+  check_areas(session, scope.thorough, results);
   check_formats(session, results);
   return results;
 }

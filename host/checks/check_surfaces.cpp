@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 
 namespace clpv::reference {
@@ -56,22 +57,14 @@ bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm:
 
 CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& twin,
                            unsigned width, std::string_view stage, const std::string& variant) {
-  CheckResult result{std::string(stage), variant, 0, tolerance(stage), {}};
-  double largest = 0;
-  for (const glm::dvec4& value : twin) {
-    for (int channel = 0; channel < 4; ++channel) largest = std::max(largest, std::abs(value[channel]));
-  }
-  for (std::size_t at = 0; at < 4 * twin.size(); ++at) {
-    const std::size_t pixel = at / 4;
-    const int channel = static_cast<int>(at % 4);
-    const double found = device[pixel].s[channel], wanted = twin[pixel][channel];
-    const double error = std::abs(found - wanted) / largest;
-    if (error <= result.worst) continue;  // a NaN is not, and stays the worst
-    result.worst = error;
-    result.place = fmt::format("pixel {},{} channel {}: {:.7g}, twin {:.7g}", pixel % width, pixel / width,
-                               channel, found, wanted);
-    if (std::isnan(error)) break;
-  }
+  const auto found = [&](std::size_t i) { return static_cast<double>(device[i / 4].s[i % 4]); };
+  const auto wanted = [&](std::size_t i) { return twin[i / 4][static_cast<int>(i % 4)]; };
+  const WorstError worst = worst_difference(4 * twin.size(), found, wanted);
+  CheckResult result{std::string(stage), variant, worst.value, tolerance(stage), {}};
+  if (worst.value == 0) return result;
+  const std::size_t pixel = worst.at / 4;
+  result.place = fmt::format("pixel {},{} channel {}: {:.7g}, twin {:.7g}", pixel % width, pixel / width,
+                             worst.at % 4, found(worst.at), wanted(worst.at));
   return result;
 }
 

@@ -69,7 +69,7 @@ void run(const Options& options, const Shared& shared) {
   for (const Stage stage : values_of<Stage>()) {
     progress.advance();
     if (!options.only.empty() && std::ranges::count(options.only, stage) == 0) continue;
-    const reference::CheckResults results = reference::check(stage, session, options.thorough);
+    const reference::CheckResults results = reference::check(stage, session, {.thorough = options.thorough});
     if (results.empty())
       throw Error(ExitCode::validation, "stage {} was not compared at all", name_of(stage));
     if (!options.json) print(name_of(stage), results);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "door/scene_contents.hpp"
+#include "image/image.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/given_options.hpp"
 #include "support/log.hpp"

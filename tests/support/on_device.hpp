@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "checks/check.hpp"
 #include "device/session.hpp"
 
@@ -23,5 +25,16 @@ inline void expect_passed(const reference::CheckResults& results, std::size_t le
                                  << ", allowed " << result.allowed << "; " << result.place;
   }
 }
+
+/// What is left of a check once each basis has had a test of its own.
+inline reference::CheckScope beyond_bases() {
+  return {.bases = {}};
+}
+
+/// A test a basis, so that each is short: TEST_P(Name, ...) of a check's part.
+class CheckOfBasis : public ::testing::TestWithParam<std::string> {
+ protected:
+  static reference::CheckScope scope() { return {.bases = {GetParam()}, .beyond_bases = false}; }
+};
 
 }  // namespace clpv::test
