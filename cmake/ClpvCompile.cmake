@@ -1,3 +1,5 @@
+# How every target is compiled.
+
 # Headers of others that many units include and that take long to parse, precompiled. Not json.hpp: what including it
 # instantiates is instantiated in every unit all the same, which takes longer than parsing it where it is needed.
 option(CLPV_PRECOMPILE "Precompile the headers that most units share" ON)
@@ -9,4 +11,16 @@ function(clpv_precompile target)
       <string_view> <tuple> <utility> <vector>
       <CL/opencl.hpp> <fmt/format.h> <glm/glm.hpp> <nlohmann/json_fwd.hpp> ${ARGN})
   endif()
+endfunction()
+
+# Warnings; a switch over an enumeration that leaves a value out is an error everywhere.
+option(CLPV_WERROR "Treat warnings as errors" OFF)
+
+function(clpv_warn target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Werror=switch $<$<BOOL:${CLPV_WERROR}>:-Werror>)
+endfunction()
+
+# For what runs once and computes little: the command line, the tests. The twins and the path tracer are the library's.
+function(clpv_compile_quickly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
