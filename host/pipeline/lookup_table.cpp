@@ -5,21 +5,21 @@
 namespace clpv {
 namespace {
 
-std::optional<ZonalTable> table_of(const Basis& basis, const LobeOptions& options, TableUse use) {
+std::optional<std::vector<float>> table_of(const Basis& basis, const LobeOptions& options, TableUse use) {
   if (basis.centres().empty()) return std::nullopt;
   if (use == TableUse::lobes) {
     if (options.kind != LobeKind::rotate) return std::nullopt;
-    return gram_table(basis, options.table_size);
+    return gram_tables(basis, options.table_size).values();
   }
   if (!options.table_functions) return std::nullopt;
-  return function_table(basis, options.table_size);
+  return function_tables(basis, options.table_size).values();
 }
 
-void require_image(const Device& device, int entries) {
+void require_image(const Device& device, std::size_t entries) {
   if (!device.images)
     throw Error(ExitCode::device, "table image: {} has no images; allowed: buffer", device.name);
   const std::size_t most = device.handle.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
-  if (static_cast<std::size_t>(entries) > most) {
+  if (entries > most) {
     throw Error(ExitCode::device, "table image: {} entries; an image of a buffer on {} holds {}", entries,
                 device.name, most);
   }
@@ -33,9 +33,9 @@ LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions
   if (!values_) return;
   if (storage == TableStorage::image) require_image(session.device(), values_->size());
   if (storage == TableStorage::image) {
-    image_ = session.table_image(values_->values(), "look-up table");
+    image_ = session.table_image(*values_, "look-up table");
   } else {
-    buffer_ = session.upload(values_->values(), "look-up table");
+    buffer_ = session.upload(*values_, "look-up table");
   }
 }
 

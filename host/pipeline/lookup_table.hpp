@@ -34,7 +34,7 @@ class LookupTable {
   void add_to(Kernel& kernel) const;
 
  private:
-  std::optional<ZonalTable> values_;
+  std::optional<std::vector<float>> values_;  ///< tables one after the other
   TableStorage storage_;
   Buffer buffer_;
   cl::Image1DBuffer image_;
