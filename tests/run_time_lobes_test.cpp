@@ -111,14 +111,18 @@ TEST_P(RunTimeLobesOf, GiveTheLightOfConstantOnes) {
                                                    std::vector<double>{0.2, 0.3, 0.3, 0.25});
   for (const LobeKind kind : {LobeKind::exact, LobeKind::rotate}) {
     for (const TransportKind transported : {TransportKind::sampled, TransportKind::exact}) {
-      const Transport transport = make_transport(transported, *basis, {.kind = kind});
-      const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid});
-      const std::vector<float> made =
-          accumulated(*basis, transport, {.grid = kGrid, .lobe_time = LobeTime::kernel});
-      double largest = 0;
-      for (const float value : constant) largest = std::max(largest, std::abs(static_cast<double>(value)));
-      for (std::size_t i = 0; i < constant.size(); ++i)
-        ASSERT_NEAR(made[i], constant[i], 1e-5 * largest) << name_of(transported) << " " << i;
+      for (const bool table : {false, true}) {
+        const Transport transport =
+            make_transport(transported, *basis, {.kind = kind, .table_functions = table});
+        const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid});
+        const std::vector<float> made =
+            accumulated(*basis, transport, {.grid = kGrid, .lobe_time = LobeTime::kernel});
+        double largest = 0;
+        for (const float value : constant) largest = std::max(largest, std::abs(static_cast<double>(value)));
+        for (std::size_t i = 0; i < constant.size(); ++i)
+          ASSERT_NEAR(made[i], constant[i], 1e-5 * largest)
+              << name_of(transported) << " " << table << " " << i;
+      }
     }
   }
 }

@@ -7,6 +7,13 @@
 
 namespace clpv {
 
+/// How texts call the table that they take: as the macros CLPV_AND_TABLE and CLPV_PASS_TABLE of
+/// pipeline/lookup_table.hpp have it, or for a second table beside it CLPV_AND_FUNCTIONS and CLPV_PASS_FUNCTIONS.
+struct TableName {
+  std::string macro = "TABLE", argument = "table";
+};
+inline const TableName kFunctionsTable{"FUNCTIONS", "functions"};
+
 /// Both texts need a basis with centres, and the macros of pipeline/lookup_table.hpp before them. Tables of
 /// `table_size` entries, one after the other, are read as ZonalTables are.
 ///
@@ -14,6 +21,6 @@ namespace clpv {
 ///                                                         the unit direction; the tables are gram_tables()'
 std::string rotated_integrals_source(const Basis& basis, int table_size);
 ///   Coefficients clpv_table_basis(x, y, z, table)         b_i of a unit direction; the tables are function_tables()'
-std::string table_basis_source(const Basis& basis, int table_size);
+std::string table_basis_source(const Basis& basis, int table_size, const TableName& name = {});
 
 }  // namespace clpv

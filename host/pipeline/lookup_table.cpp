@@ -39,17 +39,16 @@ LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions
   }
 }
 
-std::string LookupTable::no_macros() {
-  return "#define CLPV_AND_TABLE\n#define CLPV_PASS_TABLE\n";
+std::string LookupTable::no_macros(const TableName& name) {
+  return fmt::format("#define CLPV_AND_{0}\n#define CLPV_PASS_{0}\n", name.macro);
 }
 
-std::string LookupTable::macros() const {
-  if (!values_) return no_macros();
+std::string LookupTable::macros(const TableName& name) const {
+  if (!values_) return no_macros(name);
   const bool image = storage_ == TableStorage::image;
   return fmt::format(
-      "#define CLPV_AND_TABLE , {} table\n#define CLPV_PASS_TABLE , table\n"
-      "#define CLPV_TABLE_READ(table, i) {}\n",
-      image ? "__read_only image1d_buffer_t" : "__global const float*",
+      "#define CLPV_AND_{0} , {1} {2}\n#define CLPV_PASS_{0} , {2}\n#define CLPV_TABLE_READ(table, i) {3}\n",
+      name.macro, image ? "__read_only image1d_buffer_t" : "__global const float*", name.argument,
       image ? "read_imagef(table, i).x" : "(table)[i]");
 }
 
