@@ -13,32 +13,40 @@
 namespace clpv::bench {
 namespace {
 
+/// What is timed: either volume, or both.
+struct Parts {
+  bool light, geometry;
+};
+
 struct Injection {
   std::unique_ptr<Basis> basis;
-  Volume light;
-  std::unique_ptr<Volume> geometry;
+  std::unique_ptr<Volume> light, geometry;
   Injector injector;
 
-  Injection(Session& session, const RenderOptions& o)
-      : basis(make_basis(o)),
-        light(session, {o.grid, basis->size(), 3}, "bench: injected light", o.format()),
-        injector(session, *basis, inject_options(o, false)) {
-    if (o.occlusion)
+  Injection(Session& session, const RenderOptions& o, const Parts& parts)
+      : basis(make_basis(o)), injector(session, *basis, inject_options(o, false)) {
+    if (parts.light)
+      light = std::make_unique<Volume>(session, VolumeShape{o.grid, basis->size(), 3},
+                                       "bench: injected light", o.format());
+    if (parts.geometry)
       geometry =
           std::make_unique<Volume>(session, VolumeShape{o.grid + 1, blocking_size(o.blocking, *basis), 1},
                                    "bench: geometry volume", o.format());
   }
 };
 
-/// Both volumes, one after the other.
+/// Of the volumes there are, light before geometry.
 std::vector<double> twin_of(const Injection& injection, const Inputs::Seen& seen,
                             const InjectOptions& options) {
   const int grid = static_cast<int>(seen.grid.n), n = injection.basis->size();
-  reference::Volume light(grid, n, 3);
-  reference::inject_light(seen.rsm_image, seen.grid, *injection.basis, options, light);
-  std::vector<double> values = std::move(light.values);
+  std::vector<double> values;
+  if (injection.light) {
+    reference::Volume light(grid, n, 3);
+    reference::inject_light(seen.rsm_image, seen.grid, *injection.basis, options, light);
+    values = std::move(light.values);
+  }
   if (!injection.geometry) return values;
-  reference::Volume geometry(grid + 1, n, 1);
+  reference::Volume geometry(grid + 1, blocking_size(options.blocking, *injection.basis), 1);
   reference::inject_geometry(seen.rsm_image, seen.grid, *injection.basis, options, geometry);
   reference::inject_geometry(seen.camera_image, seen.grid, *injection.basis, options, geometry);
   values.insert(values.end(), geometry.values.begin(), geometry.values.end());
@@ -87,53 +95,81 @@ void compare(const Basis& basis, const std::vector<float>& device, const double*
                   cell / side % side, cell / side / side, worst.at / samples, error);
 }
 
-}  // namespace
+void run(Injection& p, const Inputs::Seen& seen) {
+  if (p.light) p.injector.inject_light(seen.rsm, seen.grid, *p.light);
+  if (!p.geometry) return;
+  p.injector.inject_geometry(seen.rsm, seen.grid, *p.geometry);
+  p.injector.inject_geometry(seen.camera, seen.grid, *p.geometry);
+}
 
-Job inject_job(Bench& bench, const Variant& variant) {
-  Session& session = bench.session;
-  const auto p = std::make_shared<Injection>(session, variant.options);
-  const Inputs::Seen& seen = bench.inputs().seen(variant.cascade.value_or(0));
-  Job job;
-  job.reset = [p, &session] {
-    p->light.clear(session);
-    if (p->geometry) p->geometry->clear(session);
-  };
-  job.run = [p, &seen] {
-    p->injector.inject_light(seen.rsm, seen.grid, p->light);
-    if (!p->geometry) return;
-    p->injector.inject_geometry(seen.rsm, seen.grid, *p->geometry);
-    p->injector.inject_geometry(seen.camera, seen.grid, *p->geometry);
-  };
-  job.verify = [p, &bench, &seen, variant] {
-    const RenderOptions& o = variant.options;
-    const std::string key = fmt::format("inject {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o),
-                                        o.occlusion, o.grid, variant.cascade.value_or(0));
-    const auto twin = bench.twin(key, [&] { return twin_of(*p, seen, inject_options(o, false)); });
-    Deviation deviation{
-        0,
-        reference::tolerance_in(
-            o.lobe == LobeKind::exact || o.storage == Storage::float16 ? "inject" : "inject-rotated",
-            o.format()),
-        {}};
-    const std::vector<float> light = p->light.read(bench.session);
-    compare(*p->basis, light, twin->data(), o.grid, "light", deviation);
-    if (p->geometry)
-      compare(*p->basis, p->geometry->read(bench.session), twin->data() + light.size(), o.grid + 1,
-              "geometry", deviation);
-    return deviation;
-  };
-  // A texel's depth, normal and colour once; volumes are zeroed outside, and cells that gain are read and written.
+Deviation verify(const Injection& p, Bench& bench, const Inputs::Seen& seen, const Variant& variant) {
+  const RenderOptions& o = variant.options;
+  const std::string key =
+      fmt::format("inject {} {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o), p.light != nullptr,
+                  p.geometry != nullptr, o.grid, variant.cascade.value_or(0));
+  const auto twin = bench.twin(key, [&] { return twin_of(p, seen, inject_options(o, false)); });
+  const bool plain = o.lobe == LobeKind::exact || o.storage == Storage::float16;
+  Deviation deviation{0, reference::tolerance_in(plain ? "inject" : "inject-rotated", o.format()), {}};
+  std::size_t before = 0;
+  if (p.light) {
+    const std::vector<float> light = p.light->read(bench.session);
+    compare(*p.basis, light, twin->data(), o.grid, "light", deviation);
+    before = light.size();
+  }
+  if (p.geometry)
+    compare(*p.basis, p.geometry->read(bench.session), twin->data() + before, o.grid + 1, "geometry",
+            deviation);
+  return deviation;
+}
+
+/// A texel's depth and normal once, and its colour where it is a light; volumes are zeroed outside.
+Cost cost_of(const Injection& p, const Inputs::Seen& seen) {
   const auto texels = [](const Surface& surface) {
     return static_cast<double>(surface.view.width) * surface.view.height;
   };
-  constexpr double kTexelBytes = sizeof(float) + 2 * sizeof(cl_float4);
-  job.cost.bytes = texels(seen.rsm) * kTexelBytes;
-  job.cost.working_set = job.cost.bytes + static_cast<double>(p->light.bytes());
-  if (p->geometry) {
-    job.cost.bytes += (texels(seen.rsm) + texels(seen.camera)) * (kTexelBytes - sizeof(cl_float4));
-    job.cost.working_set = job.cost.bytes + static_cast<double>(p->light.bytes() + p->geometry->bytes());
+  const auto normal_or_colour = [](const Surface& surface) {
+    return surface.format == RsmFormat::paper ? sizeof(cl_uint) : sizeof(cl_float4);
+  };
+  const auto seen_bytes = [&](const Surface& surface, int fields) {
+    return texels(surface) * static_cast<double>(sizeof(float) + fields * normal_or_colour(surface));
+  };
+  Cost cost;
+  if (p.light) cost.bytes += seen_bytes(seen.rsm, 2);
+  if (p.geometry) cost.bytes += seen_bytes(seen.rsm, 1) + seen_bytes(seen.camera, 1);
+  cost.working_set = cost.bytes;
+  for (const Volume* volume : {p.light.get(), p.geometry.get()}) {
+    if (volume != nullptr) cost.working_set += static_cast<double>(volume->bytes());
   }
+  return cost;
+}
+
+Job job_of(Bench& bench, const Variant& variant, const Parts& parts) {
+  Session& session = bench.session;
+  const auto p = std::make_shared<Injection>(session, variant.options, parts);
+  const Inputs::Seen& seen = bench.inputs().seen(variant.cascade.value_or(0));
+  Job job;
+  job.reset = [p, &session] {
+    if (p->light) p->light->clear(session);
+    if (p->geometry) p->geometry->clear(session);
+  };
+  job.run = [p, &seen] { run(*p, seen); };
+  job.verify = [p, &bench, &seen, variant] { return verify(*p, bench, seen, variant); };
+  job.cost = cost_of(*p, seen);
   return job;
+}
+
+}  // namespace
+
+Job inject_job(Bench& bench, const Variant& variant) {
+  return job_of(bench, variant, {true, variant.options.occlusion});
+}
+
+Job inject_light_job(Bench& bench, const Variant& variant) {
+  return job_of(bench, variant, {true, false});
+}
+
+Job inject_geometry_job(Bench& bench, const Variant& variant) {
+  return job_of(bench, variant, {false, true});
 }
 
 }  // namespace clpv::bench

@@ -46,10 +46,11 @@ Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const
        cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
     Surface rsm =
         make_surface(session, rsm_views(lights.front().data, grid, buffers.bounds, options.rsm_size).front(),
-                     RsmFormat::float32, false);
+                     options.rsm_format, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
     Seen result{grid, {}, {}, without_doubt(read_surface(session, rsm), grid), without_doubt(image, grid)};
-    result.rsm = upload_surface(session, result.rsm_image);
+    result.rsm = upload_surface(session, result.rsm_image, options.rsm_format, rsm.colour_scale);
+    result.rsm_image = read_surface(session, result.rsm);  // to 8 bits again
     result.camera = upload_surface(session, result.camera_image);
     seen_.push_back(std::move(result));
   }

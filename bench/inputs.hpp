@@ -25,7 +25,7 @@ class Inputs {
 
   struct Seen {
     ClpvGrid grid{};
-    Surface rsm, camera;  ///< format float32
+    Surface rsm, camera;  ///< the RSM in the options' format
     SurfaceImage rsm_image, camera_image;
   };
   const Seen& seen(int cascade) const { return seen_.at(static_cast<std::size_t>(cascade)); }

@@ -116,7 +116,8 @@ nlohmann::json to_json(const Row& row, int index) {
                {"ceiling", text_or_null(row.ceiling)},
                {"ceiling_share", row.ceiling_share},
                {"max_rel_error", number_or_null(row.max_rel_error)},
-               {"tolerance", row.tolerance}});
+               {"tolerance", row.tolerance},
+               {"published_ms", number_or_null(row.published_ms)}});
   return json;
 }
 

@@ -61,6 +61,7 @@ struct Row {
   double ceiling_share = 0;
   std::optional<double> max_rel_error;  ///< none: nothing to hold against a twin
   double tolerance = 0;
+  std::optional<double> published_ms;  ///< what the paper gives for it
 
   double gflops() const;
   double gbps() const;

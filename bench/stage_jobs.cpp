@@ -27,7 +27,7 @@ Row make_row(const std::string& suite, std::string_view stage, const Variant& va
 
 Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant,
                 const std::string& more) {
-  return {make_row(suite, name_of(job.stage), variant, more),
+  return {make_row(suite, job.name(), variant, more),
           [&bench, make = job.make, variant] { return make(bench, variant); }};
 }
 

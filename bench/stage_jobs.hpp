@@ -47,19 +47,28 @@ Row make_row(const std::string& suite, std::string_view stage, const Variant& va
 
 /// RSM -> light volume, and with occlusion RSM and G-buffer -> geometry volume; of variant.cascade (default 0).
 Job inject_job(Bench& bench, const Variant& variant);
+/// Either volume alone. The geometry volume's wants occlusion.
+Job inject_light_job(Bench& bench, const Variant& variant);
+Job inject_geometry_job(Bench& bench, const Variant& variant);
 /// Light volume -> accumulated light volume; with occlusion past the geometry volume.
 Job propagate_job(Bench& bench, const Variant& variant);
 /// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the twin.
 Job gather_job(Bench& bench, const Variant& variant);
 inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
 
-/// A stage that works on volumes, and its job.
+/// A stage that works on volumes, or a part of it, and its job.
 struct StageJob {
   Stage stage;
   Job (*make)(Bench& bench, const Variant& variant);
+  Pass part = Pass::whole;
+
+  std::string_view name() const { return part == Pass::whole ? name_of(stage) : name_of(part); }
 };
-inline constexpr StageJob kInject{Stage::inject, inject_job}, kPropagate{Stage::propagate, propagate_job},
-    kGather{Stage::gather, gather_job};
+inline constexpr StageJob kInject{Stage::inject, inject_job},
+    kInjectLight{Stage::inject, inject_light_job, Pass::inject_light},
+    kInjectGeometry{Stage::inject, inject_geometry_job, Pass::inject_geometry},
+    kPropagate{Stage::propagate, propagate_job, Pass::propagate},
+    kGather{Stage::gather, gather_job, Pass::gather};
 inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kGather};
 
 /// RSM of a scene's finest cascade, or its G-buffer.

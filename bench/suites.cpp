@@ -1,6 +1,7 @@
 #include "bench/suites.hpp"
 
 #include "bench/hall.hpp"
+#include "options/presets.hpp"
 
 namespace clpv::bench {
 
@@ -15,6 +16,17 @@ Variant plain_variant(const SuiteOptions& options, const std::string& basis) {
   variant.options = options.settings;
   variant.options.basis = basis;
   return variant;
+}
+
+RenderOptions published_options(const RenderOptions& sizes, const std::string& basis) {
+  RenderOptions options;
+  apply_preset(options, PresetName::paper);
+  options.basis = basis;
+  options.grid = sizes.grid, options.iterations = sizes.iterations;
+  options.cascades = sizes.cascades, options.cascade_size = sizes.cascade_size;
+  options.rsm_size = sizes.rsm_size;
+  options.width = sizes.width, options.height = sizes.height;
+  return options;
 }
 
 std::shared_ptr<const Scene> scene_of(const SuiteOptions& options) {

@@ -31,6 +31,8 @@ struct Suite {
   std::function<std::vector<Group>(Session&, const SuiteOptions&)> groups;
   /// The rows as text; the plain table (report.hpp) where there is none.
   std::function<std::string(const std::vector<Row>&)> table;
+  /// Scene file, from the project's folder, that it works on where none is given; empty: the hall.
+  std::string usual_scene = {};
 };
 
 const std::vector<Suite>& suites();
@@ -46,6 +48,9 @@ Suite baseline_suite();
 
 /// A basis with all else as the options say or by default.
 Variant plain_variant(const SuiteOptions& options, const std::string& basis);
+
+/// The paper's settings and way (`--preset paper`) for a basis, of the sizes and cascades of `sizes`.
+RenderOptions published_options(const RenderOptions& sizes, const std::string& basis);
 
 /// The scene a suite works on: the one given, else the hall.
 std::shared_ptr<const Scene> scene_of(const SuiteOptions& options);

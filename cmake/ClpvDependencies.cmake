@@ -21,6 +21,8 @@ find_package(Threads REQUIRED)
 find_package(embree 3 REQUIRED)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
+find_path(NLOPT_INCLUDE_DIR nlopt.h REQUIRED)
+find_library(NLOPT_LIBRARY nlopt REQUIRED)
 
 function(clpv_link_dependencies target)
   target_compile_definitions(${target} PUBLIC
@@ -29,6 +31,6 @@ function(clpv_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json
            spdlog::spdlog Threads::Threads
-    PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} embree)
-  target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
+    PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} ${NLOPT_LIBRARY} embree)
+  target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR} ${NLOPT_INCLUDE_DIR})
 endfunction()

@@ -64,7 +64,7 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) vo
     , CLPV_VOLUME_IN transmittance
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
-    , __global const float4* normals CLPV_AND_TABLE
+    , __global const float4* normals, __global const float4* ways CLPV_AND_TABLE CLPV_AND_FUNCTIONS
 #endif
 ) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;

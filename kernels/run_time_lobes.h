@@ -1,8 +1,10 @@
 // Propagation with lobes made at run time, as the paper has it: each of the faces of a cell turns (or projects) a lobe to
-// its normal and weighs it by the flux through it.
+// its normal and weighs it by the flux through it. With CLPV_EVALUATE_AT_RUN_TIME that flux, too, comes of the basis
+// functions evaluated along the way through the face.
 //
-// Normals come from memory, so that no compiler does the work beforehand. Where lobes are rotated, the table is an
-// argument, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, and as text what host/codegen/inject_source.hpp lists.
+// Normals and ways come from memory, so that no compiler does the work beforehand. Tables of rotated lobes and of the
+// functions are arguments, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME, and as text
+// clpv_functions_of(way) and what host/codegen/inject_source.hpp lists.
 #ifndef CLPV_RUN_TIME_LOBES_H
 #define CLPV_RUN_TIME_LOBES_H
 
@@ -36,6 +38,26 @@ CLPV_INLINE Target clpv_no_gain(void) {
   return gained;
 }
 
+#if CLPV_EVALUATE_AT_RUN_TIME
+// [W] of light `from` a cell through the face along whose way the functions, times its solid angle, are `at`.
+CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
+  float flux = 0.0f;
+#define CLPV_DO(i) flux = fma(at.c##i, from.c##i, flux);
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return fmax(flux, 0.0f);
+}
+
+// Once for all channels.
+#define CLPV_EVALUATE_FUNCTIONS                     \
+  Coefficients at[CLPV_FACES];                      \
+  for (int face = 0; face < CLPV_FACES; ++face) {   \
+    at[face] = clpv_functions_of(ways[face] CLPV_PASS_FUNCTIONS); \
+  }
+#else
+#define CLPV_EVALUATE_FUNCTIONS
+#endif
+
 // The fluxes that arrive at cell (x, y, z) in `channel`.
 #define CLPV_CHANNEL_FLUXES(CHANNEL)                  \
   {                                                   \
@@ -52,6 +74,7 @@ CLPV_INLINE Target clpv_no_gain(void) {
 // A step of all three channels: a lobe serves them all.
 #define CLPV_STEP_WITH_LOBES                                                        \
   float fluxes[3 * CLPV_FACES];                                                     \
+  CLPV_EVALUATE_FUNCTIONS                                                           \
   CLPV_CHANNEL_FLUXES(0)                                                            \
   CLPV_CHANNEL_FLUXES(1)                                                            \
   CLPV_CHANNEL_FLUXES(2)                                                            \

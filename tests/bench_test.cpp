@@ -7,12 +7,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/ceilings.hpp"
 #include "bench/compare_runs.hpp"
+#include "bench/published.hpp"
 #include "bench/report.hpp"
 #include "bench/statistics.hpp"
 #include "reference/propagate.hpp"
@@ -144,6 +146,63 @@ TEST(BenchCompare, RefusesWhatIsNoReport) {
       Error);
 }
 
+/// The paper's Table 1 as its page has it: small/medium/big of injection, the same of propagation, light buffer.
+struct PublishedLine {
+  const char* basis;
+  bool shadows;
+  const char* cells;
+};
+constexpr PublishedLine kPublishedLines[] = {{"sh2", true, "2.028 2.292 2.339 2.241 2.565 2.275 1.086"},
+                                             {"srbf4", true, "2.090 2.314 2.351 4.139 4.974 4.200 1.214"},
+                                             {"srbf8v2", true, "3.544 4.488 4.299 9.663 10.602 9.386 1.723"},
+                                             {"sh2", false, "2.025 2.294 2.340 1.957 2.125 1.986 1.135"},
+                                             {"srbf4", false, "2.086 2.281 2.344 3.183 3.797 3.177 1.206"},
+                                             {"srbf8v2", false, "3.511 4.460 4.276 7.427 7.794 7.019 1.721"}};
+
+TEST(BenchPublished, HoldsAllCellsOfTheTable) {
+  int cells = 0;
+  for (const PublishedLine& line : kPublishedLines) {
+    std::istringstream text(line.cells);
+    const auto expect = [&](Pass pass, std::optional<int> cascade) {
+      double printed = 0;
+      text >> printed;
+      const auto held = published_ms(pass, line.basis, line.shadows, cascade);
+      ASSERT_TRUE(held.has_value());
+      EXPECT_EQ(*held, printed) << line.basis << ' ' << line.shadows << ' ' << name_of(pass);
+      ++cells;
+    };
+    for (int cascade = 0; cascade < 3; ++cascade) expect(Pass::inject_light, cascade);
+    for (int cascade = 0; cascade < 3; ++cascade) expect(Pass::propagate, cascade);
+    expect(Pass::gather, std::nullopt);
+  }
+  EXPECT_EQ(cells, 42);
+  EXPECT_FALSE(published_ms(Pass::inject_geometry, "sh2", true, 0));
+  EXPECT_FALSE(published_ms(Pass::propagate, "sh2", true, 3));
+  EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
+}
+
+TEST(BenchPublished, SumsAndRatiosAreThoseOfTheTable) {
+  const auto ratio = [](bool shadows) {
+    double sh2 = 0, srbf = 0;
+    for (const PublishedTimes& times : kPublishedTimes) {
+      if (times.shadows != shadows) continue;
+      if (times.basis == "sh2") sh2 = times.sum();
+      if (times.basis == "srbf8v2") srbf = times.sum();
+    }
+    return srbf / sh2;
+  };
+  EXPECT_NEAR(ratio(true), 2.95, .005);
+  EXPECT_NEAR(ratio(false), 2.61, .005);
+  const double cascades[2][3] = {{3.80, 3.67, 3.53}, {4.31, 4.13, 4.13}};
+  for (const bool shadows : {false, true}) {
+    for (int cascade = 0; cascade < 3; ++cascade) {
+      EXPECT_NEAR(*published_ms(Pass::propagate, "srbf8v2", shadows, cascade) /
+                      *published_ms(Pass::propagate, "sh2", shadows, cascade),
+                  cascades[shadows][cascade], .005);
+    }
+  }
+}
+
 /// Every key of docs/benchmarks.md, in its range.
 std::vector<Rule> row_schema() {
   std::vector<Rule> rules = {rule::object(""),
@@ -207,6 +266,26 @@ TEST(BenchProgram, RowsOfScalingSayWhatTheyArePointsOf) {
   const nlohmann::json row = nlohmann::json::parse(out.out)["benchmarks"][0];
   EXPECT_EQ(row["axis"], "iterations");
   EXPECT_EQ(row["value"], 4);
+}
+
+TEST(BenchProgram, Table1StandsBesideThePublishedTimes) {
+  const std::string command = "cd " CLPV_SOURCE_DIR " && " + kProgram +
+                              " bench table1 --repetitions 1 --filter 'inject-.*/sh2/image.*/cascade:0'";
+  const auto table = test::run(command);
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("scene: atrium, camera nave"));
+  EXPECT_THAT(table.out, ::testing::ContainsRegex("injection, small +2\\.028 +[0-9.]+"));
+  EXPECT_THAT(table.out, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
+  const auto json = test::run(command + " --format json");
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const auto document = nlohmann::json::parse(json.out);
+  EXPECT_EQ(document["context"]["scene"], "atrium, camera nave");
+  const auto& rows = document["benchmarks"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["name"], "inject-light/sh2/image/half/rotate-kernel/occlusion/cascade:0");
+  EXPECT_EQ(rows[0]["published_ms"], 2.028);
+  EXPECT_TRUE(rows[1]["published_ms"].is_null());
+  EXPECT_EQ(rows[2]["published_ms"], 2.025);
 }
 
 TEST(BenchProgram, AnAlteredLiteralIsCaught) {

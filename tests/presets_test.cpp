@@ -34,6 +34,7 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["lobe-time"], "kernel");
   EXPECT_EQ(json["evaluate"], "table");
   EXPECT_EQ(json["table-size"], 256);
+  EXPECT_EQ(json["table"], "image");
   EXPECT_EQ(json["transport"], "sampled");
   EXPECT_EQ(json["state"], "coefficients");
   EXPECT_EQ(json["layout"], "image");

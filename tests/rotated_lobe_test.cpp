@@ -168,8 +168,8 @@ TEST(ZonalTable, IsReadByFloor) {
 
 TEST(ZonalTable, HoldsTheBasisFunctions) {
   const auto basis = make_basis("srbf8v2");
-  const ZonalTable fine = function_table(*basis, 1 << 18);
-  EXPECT_NEAR(gram_table(*basis, 256)(1), basis->gram()(0, 0), 1e-12);
+  const ZonalTables fine = function_tables(*basis, 1 << 18);
+  EXPECT_NEAR(gram_tables(*basis, 256)(0, 1), basis->gram()(0, 0), 1e-12);
   for (const glm::dvec3& w : test::spread_axes(20)) {
     EXPECT_THAT(evaluate(*basis, fine, w), Pointwise(DoubleNear(1e-4), basis->evaluate(w)));
   }

@@ -31,7 +31,7 @@ std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, Table
                      "__kernel void look_up(__global const float4* directions, __global float* found"
                      " CLPV_AND_TABLE) {\n"
                      "  const float4 d = directions[get_global_id(0)];\n"
-                     "  found[get_global_id(0)] = clpv_table_basis(d.x, d.y, d.z CLPV_PASS_TABLE).c0;\n}\n";
+                     "  found[get_global_id(0)] = clpv_table_basis(d.x, d.y, d.z CLPV_PASS_TABLE).c1;\n}\n";
   Kernel kernel(test_session(), source, "look_up");
   const Buffer given = test_session().upload(directions, "directions");
   const Buffer found = test_session().buffer(directions.size() * sizeof(float), "found");
@@ -41,9 +41,10 @@ std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, Table
 }
 
 TEST(LookupTable, HoldsTheFunctionOnTheDevice) {
-  const auto basis = make_basis("srbf6");  // the first centre is +x
+  // The second centre, whose table stands behind the first one's, is +x.
+  const auto basis = make_basis_from_centres("two", {{0, 1, 0}, {1, 0, 0}}, std::vector<double>{0.2, 0.3});
   const LobeOptions lobes{.table_size = 64, .table_functions = true};
-  const ZonalTable table = function_table(*basis, lobes.table_size);
+  const ZonalTables tables = function_tables(*basis, lobes.table_size);
   std::vector<cl_float4> directions{{{1, 0, 0, 0}}, {{-1, 0, 0, 0}}};
   for (int i = 0; i < 62; ++i) {
     const double t = -1 + 2 * (i + 0.5) / 63;  // between entries
@@ -51,7 +52,7 @@ TEST(LookupTable, HoldsTheFunctionOnTheDevice) {
   }
   const std::vector<float> buffer = looked_up(*basis, lobes, TableStorage::buffer, directions);
   for (std::size_t i = 0; i < directions.size(); ++i)
-    EXPECT_EQ(buffer[i], static_cast<float>(table(directions[i].s[0]))) << i;
+    EXPECT_EQ(buffer[i], static_cast<float>(tables(1, directions[i].s[0]))) << i;
   if (!test_session().device().images) GTEST_SKIP() << "no images on this device";
   EXPECT_EQ(looked_up(*basis, lobes, TableStorage::image, directions), buffer);
 }
@@ -100,21 +101,28 @@ std::vector<float> accumulated(const Basis& basis, const Transport& transport,
 }
 
 class RunTimeLobesOf : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Names, RunTimeLobesOf, ::testing::Values("sh2", "srbf4", "srbf8v2"),
+INSTANTIATE_TEST_SUITE_P(Names, RunTimeLobesOf, ::testing::Values("sh2", "srbf4", "srbf8v2", "uneven"),
                          [](const auto& info) { return info.param; });
 
 TEST_P(RunTimeLobesOf, GiveTheLightOfConstantOnes) {
-  const auto basis = make_basis(GetParam());
+  const auto basis = GetParam() != "uneven"
+                         ? make_basis(GetParam())
+                         : make_basis_from_centres("uneven", make_basis("srbf4")->centres(),
+                                                   std::vector<double>{0.2, 0.3, 0.3, 0.25});
   for (const LobeKind kind : {LobeKind::exact, LobeKind::rotate}) {
     for (const TransportKind transported : {TransportKind::sampled, TransportKind::exact}) {
-      const Transport transport = make_transport(transported, *basis, {.kind = kind});
-      const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid});
-      const std::vector<float> made =
-          accumulated(*basis, transport, {.grid = kGrid, .lobe_time = LobeTime::kernel});
-      double largest = 0;
-      for (const float value : constant) largest = std::max(largest, std::abs(static_cast<double>(value)));
-      for (std::size_t i = 0; i < constant.size(); ++i)
-        ASSERT_NEAR(made[i], constant[i], 1e-5 * largest) << name_of(transported) << " " << i;
+      for (const bool table : {false, true}) {
+        const Transport transport =
+            make_transport(transported, *basis, {.kind = kind, .table_functions = table});
+        const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid});
+        const std::vector<float> made =
+            accumulated(*basis, transport, {.grid = kGrid, .lobe_time = LobeTime::kernel});
+        double largest = 0;
+        for (const float value : constant) largest = std::max(largest, std::abs(static_cast<double>(value)));
+        for (std::size_t i = 0; i < constant.size(); ++i)
+          ASSERT_NEAR(made[i], constant[i], 1e-5 * largest)
+              << name_of(transported) << " " << table << " " << i;
+      }
     }
   }
 }

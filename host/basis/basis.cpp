@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "basis/direction_bins.hpp"
 #include "basis/spherical_harmonics.hpp"
 #include "basis/srbf.hpp"
@@ -28,11 +31,23 @@ void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
     throw Error(ExitCode::usage,
                 "{} with lambda {}: the Gram matrix has condition number {:.3g}, at most {:.0e} is allowed; "
                 "take a larger lambda",
-                name_, lambda_, condition_, kLargestCondition);
+                name_, lambda_text(), condition_, kLargestCondition);
   }
   gram_inverse_ = inverse(gram);
   gram_ = std::move(gram);
   integrals_ = std::move(integrals);
+}
+
+double Basis::lambda() const {
+  const bool one =
+      !lambdas_.empty() && std::ranges::adjacent_find(lambdas_, std::not_equal_to()) == lambdas_.end();
+  return one ? lambdas_.front() : 0;
+}
+
+std::string Basis::lambda_text() const {
+  if (lambda() != 0 || lambdas_.empty()) return fmt::format("{}", lambda());
+  const auto [least, most] = std::ranges::minmax(lambdas_);
+  return fmt::format("{:.3g} to {:.3g}", least, most);
 }
 
 std::vector<double> Basis::evaluate(const glm::dvec3& w) const {
@@ -64,7 +79,7 @@ std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
     if (name == fmt::format("sh{}", bands)) return std::make_unique<SphericalHarmonics>(bands);
   }
   for (const SrbfSet& set : srbf_sets()) {
-    if (name == set.name) return std::make_unique<Srbf>(name, set.centres, lambda);
+    if (name == set.name) return make_basis_from_centres(name, set.centres, lambda);
   }
   for (const int side : kBinSides) {
     if (name == fmt::format("bins{}", 6 * side * side)) return std::make_unique<DirectionBins>(side);
@@ -74,7 +89,13 @@ std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
 
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres, double lambda) {
-  return std::make_unique<Srbf>(name, centres, lambda);
+  return make_basis_from_centres(name, centres, std::vector<double>(centres.size(), lambda));
+}
+
+std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
+                                               const std::vector<glm::dvec3>& centres,
+                                               const std::vector<double>& lambdas) {
+  return std::make_unique<Srbf>(name, centres, lambdas);
 }
 
 std::vector<std::string> basis_names() {

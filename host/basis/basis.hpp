@@ -18,8 +18,11 @@ class Basis {
   virtual ~Basis() = default;
 
   const std::string& name() const { return name_; }
-  int size() const { return size_; }         ///< N
-  double lambda() const { return lambda_; }  ///< SRBF bandwidth in (0, 1); 0: the basis has none
+  int size() const { return size_; }  ///< N
+  double lambda() const;              ///< the bandwidth all centres share; 0: the basis has none, or several
+  /// SRBF bandwidths in (0, 1), one a centre; empty: the basis has none.
+  const std::vector<double>& lambdas() const { return lambdas_; }
+  std::string lambda_text() const;  ///< "0.25", "0.1 to 0.4"
   const std::vector<glm::dvec3>& centres() const {
     return centres_;
   }  ///< SRBF centres; empty: the basis has none
@@ -60,7 +63,7 @@ class Basis {
 
   std::string name_;
   int size_ = 0;
-  double lambda_ = 0;
+  std::vector<double> lambdas_;
   std::vector<glm::dvec3> centres_;
   Matrix gram_, gram_inverse_;
   double condition_ = 1;
@@ -76,14 +79,21 @@ inline constexpr double kLargestCondition = 1e7;  ///< float coefficients lose t
 std::unique_ptr<Basis> make_basis(const std::string& name, double lambda = kDefaultLambda);
 std::vector<std::string> basis_names();
 
-/// An SRBF set of a user's own: 1 to 64 unit centres, no two alike. Throws like make_basis.
+inline constexpr std::size_t kMostCentres = 64;       ///< kernels are written out, function by function
+inline constexpr double kLeastCentreDistance = 1e-3;  ///< nearer ones make the Gram matrix singular anyway
+
+/// An SRBF set of a user's own: 1 to kMostCentres unit centres, no two nearer than kLeastCentreDistance, with one lambda,
+/// or with one for each centre. Throws like make_basis, and for what is wrong with the centres.
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres,
                                                double lambda = kDefaultLambda);
+std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
+                                               const std::vector<glm::dvec3>& centres,
+                                               const std::vector<double>& lambdas);
 
-/// The same from a JSON file {"name": "mine", "centres": [[x, y, z], ...]}: 1 to 64 directions of any length, 1e-3
-/// radians apart at least; the file's stem where it has no name. Throws Error(bad_input) with the JSON pointer of what
-/// is wrong, and Error(usage) like make_basis.
+/// The same from a JSON file {"name": "mine", "lambda": 0.3, "centres": [[x, y, z], ...]}, directions of any length.
+/// Without a name it is called by the file's stem; `lambda`, which may be a list with one for each centre, replaces the
+/// argument. Throws Error(bad_input) with the JSON pointer of what is wrong, and Error(usage) like make_basis.
 std::unique_ptr<Basis> load_basis(const std::string& path, double lambda = kDefaultLambda);
 
 }  // namespace clpv

@@ -13,9 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostCentres = 64;
 constexpr std::uintmax_t kMostBytes = 1 << 20;
-constexpr double kLeastAngle = 1e-3;  // radians between centres; nearer ones make A singular anyway
 
 json read_json(const std::string& path) {
   std::error_code failed;
@@ -68,15 +66,46 @@ std::vector<glm::dvec3> centres_of(const json& value, const std::string& path) {
   for (const json& entry : value) {
     const glm::dvec3 centre = unit_vector(entry, path, centres.size());
     for (std::size_t j = 0; j < centres.size(); ++j) {
-      if (glm::length(centres[j] - centre) < kLeastAngle) {
+      if (glm::length(centres[j] - centre) < kLeastCentreDistance) {
         throw Error(ExitCode::bad_input,
                     "{}: /centres/{} is the direction of /centres/{}; allowed: {} radians apart", path,
-                    centres.size(), j, kLeastAngle);
+                    centres.size(), j, kLeastCentreDistance);
       }
     }
     centres.push_back(centre);
   }
   return centres;
+}
+
+double lambda_of(const json& value, const std::string& path, const std::string& place) {
+  const double lambda = value.is_number() ? value.get<double>() : 0;
+  if (lambda > 0 && lambda < 1) return lambda;
+  throw Error(ExitCode::bad_input, "{}: {} is {}; allowed: a number between 0 and 1, both excluded", path,
+              place, quoted(value));
+}
+
+// One for each of so many centres.
+std::vector<double> lambdas_of(const json& value, const std::string& path, std::size_t count) {
+  if (!value.is_array()) return std::vector<double>(count, lambda_of(value, path, "/lambda"));
+  if (value.size() != count) {
+    throw Error(ExitCode::bad_input,
+                "{}: /lambda is {}; allowed: a number, or {} numbers, one for each centre", path,
+                quoted(value), count);
+  }
+  std::vector<double> lambdas;
+  for (const json& entry : value)
+    lambdas.push_back(lambda_of(entry, path, fmt::format("/lambda/{}", lambdas.size())));
+  return lambdas;
+}
+
+std::string name_of(const json& file, const std::string& path) {
+  if (!file.contains("name")) return std::filesystem::path(path).stem().string();
+  const json& given = file["name"];
+  if (!given.is_string() || given.get_ref<const std::string&>().empty()) {
+    throw Error(ExitCode::bad_input, "{}: /name is {}; allowed: a text that is not empty", path,
+                quoted(given));
+  }
+  return given.get<std::string>();
 }
 
 }  // namespace
@@ -87,22 +116,21 @@ std::unique_ptr<Basis> load_basis(const std::string& path, double lambda) {
     throw Error(ExitCode::bad_input, "{}: holds {}; allowed: an object", path, quoted(file));
   }
   for (const auto& [key, value] : file.items()) {
-    if (key != "name" && key != "centres") {
-      throw Error(ExitCode::bad_input, "{}: unknown key {}; allowed: \"name\", \"centres\"", path,
+    if (key != "name" && key != "lambda" && key != "centres") {
+      throw Error(ExitCode::bad_input, "{}: unknown key {}; allowed: \"name\", \"lambda\", \"centres\"", path,
                   quoted(json(key)));
     }
   }
   if (!file.contains("centres")) throw Error(ExitCode::bad_input, "{}: /centres is missing", path);
-  std::string name = std::filesystem::path(path).stem().string();
-  if (file.contains("name")) {
-    const json& given = file["name"];
-    if (!given.is_string() || given.get_ref<const std::string&>().empty()) {
-      throw Error(ExitCode::bad_input, "{}: /name is {}; allowed: a text that is not empty", path,
-                  quoted(given));
-    }
-    name = given.get<std::string>();
+  const std::string name = name_of(file, path);
+  const std::vector<glm::dvec3> centres = centres_of(file["centres"], path);
+  if (!file.contains("lambda")) return make_basis_from_centres(name, centres, lambda);
+  const std::vector<double> lambdas = lambdas_of(file["lambda"], path, centres.size());
+  try {
+    return make_basis_from_centres(name, centres, lambdas);
+  } catch (const Error& error) {
+    throw Error(ExitCode::bad_input, "{}: {}", path, error.what());
   }
-  return make_basis_from_centres(name, centres_of(file["centres"], path), lambda);
 }
 
 }  // namespace clpv

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "basis/lobe_aims.hpp"
+
 namespace clpv {
 namespace {
 
@@ -67,12 +69,7 @@ LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const gl
 
 double mean_relative_l2(const Basis& basis, const Lobes& lobes) {
   double sum = 0;
-  for (int i = 0; i < kMeanAxes; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kMeanAxes, radius = std::sqrt(1 - z * z);
-    const double azimuth = kPi * (3 - std::sqrt(5.0)) * i;
-    const glm::dvec3 d(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
-    sum += relative_l2(basis, lobes(d), d);
-  }
+  for (const glm::dvec3& d : even_directions(kMeanAxes)) sum += relative_l2(basis, lobes(d), d);
   return sum / kMeanAxes;
 }
 

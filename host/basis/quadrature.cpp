@@ -100,7 +100,7 @@ class Refinement {
     }
     if (left == 0)
       throw Error(ExitCode::run_time, "{} with lambda {} is too peaked to integrate", basis_.name(),
-                  basis_.lambda());
+                  basis_.lambda_text());
     for (std::size_t i = 0; i < children.size(); ++i) refine(children[i], finer[i], left - 1);
   }
 

@@ -11,9 +11,32 @@ namespace clpv {
 namespace {
 
 constexpr int kLargestTable = 1 << 20;
+constexpr std::size_t kMostEntries = std::size_t{1} << 24;  // of all tables: 64 MiB on a device
 
-double gram_function(const Basis& basis, double t) {
-  return 4 * std::numbers::pi * abel_poisson(t, basis.lambda() * basis.lambda());
+double gram_function(double t, double product) {
+  return 4 * std::numbers::pi * abel_poisson(t, product);
+}
+
+Parameters each_once(const std::vector<double>& all) {
+  Parameters parameters;
+  for (const double value : all) {
+    const auto found = std::ranges::find(parameters.values, value);
+    parameters.of.push_back(static_cast<std::size_t>(found - parameters.values.begin()));
+    if (found == parameters.values.end()) parameters.values.push_back(value);
+  }
+  return parameters;
+}
+
+ZonalTables tables_of(const Parameters& parameters, int size,
+                      double (*function)(double t, double parameter)) {
+  if (static_cast<std::size_t>(std::max(0, size)) * parameters.values.size() > kMostEntries) {
+    throw Error(ExitCode::usage, "table size is {}: {} tables of it have more than {} entries", size,
+                parameters.values.size(), kMostEntries);
+  }
+  ZonalTables tables{{}, parameters.of};
+  for (const double value : parameters.values)
+    tables.each.emplace_back(size, [&](double t) { return function(t, value); });
+  return tables;
 }
 
 }  // namespace
@@ -37,24 +60,45 @@ double ZonalTable::to_step(double t) const {
   return std::abs(place(t) - std::round(place(t)));
 }
 
-ZonalTable gram_table(const Basis& basis, int size) {
-  return {size, [&](double t) { return gram_function(basis, t); }};
+Parameters gram_parameters(const Basis& basis) {
+  std::vector<double> products;
+  for (const double a : basis.lambdas()) {
+    for (const double b : basis.lambdas()) products.push_back(a * b);
+  }
+  return each_once(products);
 }
 
-ZonalTable function_table(const Basis& basis, int size) {
-  return {size, [&](double t) { return abel_poisson(t, basis.lambda()); }};
+Parameters function_parameters(const Basis& basis) {
+  return each_once(basis.lambdas());
 }
 
-std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const glm::dvec3& w) {
+std::vector<float> ZonalTables::values() const {
+  std::vector<float> all;
+  for (const ZonalTable& table : each) {
+    const std::vector<float> values = table.values();
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return all;
+}
+
+ZonalTables gram_tables(const Basis& basis, int size) {
+  return tables_of(gram_parameters(basis), size, gram_function);
+}
+
+ZonalTables function_tables(const Basis& basis, int size) {
+  return tables_of(function_parameters(basis), size, abel_poisson);
+}
+
+std::vector<double> evaluate(const Basis& basis, const ZonalTables& tables, const glm::dvec3& w) {
   if (basis.centres().empty()) return basis.evaluate(w);
   std::vector<double> b;
-  for (const glm::dvec3& centre : basis.centres()) b.push_back(table(glm::dot(centre, w)));
+  for (const glm::dvec3& centre : basis.centres()) b.push_back(tables(b.size(), glm::dot(centre, w)));
   return b;
 }
 
 std::vector<double> evaluate(const Basis& basis, const LobeOptions& options, const glm::dvec3& w) {
   if (!options.table_functions || basis.centres().empty()) return basis.evaluate(w);
-  return evaluate(basis, function_table(basis, options.table_size), w);
+  return evaluate(basis, function_tables(basis, options.table_size), w);
 }
 
 glm::dmat3 rotation_to(const glm::dvec3& axis) {
@@ -71,12 +115,12 @@ Lobes::Lobes(const Basis& basis, const LobeOptions& options)
     : basis_(basis),
       rotate_(options.kind == LobeKind::rotate && !basis.centres().empty()),
       upwards_(basis.clamped_cosine({0, 0, 1})) {
-  if (!rotate_) return;
-  if (options.table_size == 0) {
-    gram_ = [&basis](double t) { return gram_function(basis, t); };
-  } else {
-    gram_ = gram_table(basis, options.table_size);
-  }
+  if (rotate_ && options.table_size != 0) tables_ = gram_tables(basis, options.table_size);
+}
+
+double Lobes::gram(std::size_t i, std::size_t j, double t) const {
+  if (tables_) return (*tables_)(i * basis_.lambdas().size() + j, t);
+  return gram_function(t, basis_.lambdas()[i] * basis_.lambdas()[j]);
 }
 
 std::vector<double> Lobes::operator()(const glm::dvec3& axis) const {
@@ -87,7 +131,7 @@ std::vector<double> Lobes::operator()(const glm::dvec3& axis) const {
   for (std::size_t j = 0; j < centres.size(); ++j) {
     const glm::dvec3 moved = rotation * centres[j];
     for (std::size_t i = 0; i < centres.size(); ++i)
-      turned[i] += gram_(glm::dot(centres[i], moved)) * upwards_[j];
+      turned[i] += gram(i, j, glm::dot(centres[i], moved)) * upwards_[j];
   }
   return basis_.gram_inverse() * turned;
 }

@@ -1,10 +1,11 @@
 // The paper's cosine lobes (Appendix 2): the lobe towards +z is projected once and turned to each axis by
-// c~ = A^-1 R c, R_ij = H(xi_i . Rot xi_j), H(t) = 4 pi G(t; lambda^2) read from a table. An option, for
+// c~ = A^-1 R c, R_ij = H_ij(xi_i . Rot xi_j), H_ij(t) = 4 pi G(t; lambda_i lambda_j) read from a table. An option, for
 // comparison: the exact projection (Basis::clamped_cosine) costs less and is nowhere worse.
 #pragma once
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -55,12 +56,30 @@ class ZonalTable {
   std::vector<double> values_;
 };
 
-/// H of an SRBF set, and G, the basis function itself.
-ZonalTable gram_table(const Basis& basis, int size);
-ZonalTable function_table(const Basis& basis, int size);
+/// Parameters of a function of t, each once, and which of them a centre (or a pair of centres) takes.
+struct Parameters {
+  std::vector<double> values;
+  std::vector<std::size_t> of;
+};
+/// H's lambda_i lambda_j, pair (i, j) at i N + j; and G's lambda_i.
+Parameters gram_parameters(const Basis& basis);
+Parameters function_parameters(const Basis& basis);
 
-/// b_i(w) with G from `function_table` (Evaluation::table). A basis without centres has no table: its own evaluate().
-std::vector<double> evaluate(const Basis& basis, const ZonalTable& table, const glm::dvec3& w);
+/// A table for each value of a parameter; of centres that share one lambda it is one table.
+struct ZonalTables {
+  std::vector<ZonalTable> each;
+  std::vector<std::size_t> of;  ///< as Parameters::of
+
+  double operator()(std::size_t which, double t) const { return each[of[which]](t); }
+  std::vector<float> values() const;  ///< one table after the other, for a device
+};
+
+/// H of an SRBF set, and G, the basis function itself. Throw Error(usage) for more than 2^24 entries in all.
+ZonalTables gram_tables(const Basis& basis, int size);
+ZonalTables function_tables(const Basis& basis, int size);
+
+/// b_i(w) with G from function_tables() (Evaluation::table). A basis without centres has no table: its own evaluate().
+std::vector<double> evaluate(const Basis& basis, const ZonalTables& tables, const glm::dvec3& w);
 /// b_i(w) as `options` want them.
 std::vector<double> evaluate(const Basis& basis, const LobeOptions& options, const glm::dvec3& w);
 
@@ -77,10 +96,12 @@ class Lobes {
   std::vector<double> operator()(const glm::dvec3& axis) const;
 
  private:
+  double gram(std::size_t i, std::size_t j, double t) const;
+
   const Basis& basis_;
   bool rotate_;
-  std::function<double(double)> gram_;  ///< H, from the table where there is one
-  std::vector<double> upwards_;         ///< the lobe towards +z
+  std::optional<ZonalTables> tables_;  ///< of H; none: H itself
+  std::vector<double> upwards_;        ///< the lobe towards +z
 };
 
 }  // namespace clpv

@@ -53,6 +53,27 @@ std::vector<glm::dvec3> joined(std::vector<glm::dvec3> a, const std::vector<glm:
   return a;
 }
 
+void require_usable(const std::string& name, const std::vector<glm::dvec3>& centres,
+                    const std::vector<double>& lambdas) {
+  if (centres.empty() || centres.size() > kMostCentres) {
+    throw Error(ExitCode::usage, "{} has {} centres; allowed: 1 to {}", name, centres.size(), kMostCentres);
+  }
+  for (const double lambda : lambdas) {
+    if (!(lambda > 0 && lambda < 1)) {
+      throw Error(ExitCode::usage, "lambda is {}; {} needs one between 0 and 1, both excluded", lambda, name);
+    }
+  }
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double distance = glm::length(centres[i] - centres[j]);
+      if (!(distance >= kLeastCentreDistance)) {
+        throw Error(ExitCode::usage, "{}: centres {} and {} are {:.2g} apart; allowed: {} or more", name, j,
+                    i, distance, kLeastCentreDistance);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 double abel_poisson(double t, double lambda) {
@@ -72,36 +93,37 @@ const std::vector<SrbfSet>& srbf_sets() {
   return sets;
 }
 
-Srbf::Srbf(const std::string& name, const std::vector<glm::dvec3>& centres, double lambda)
-    : cosine_(lambda > 0 && lambda < 1
-                  ? lambda
-                  : throw Error(ExitCode::usage, "lambda is {}; {} needs one between 0 and 1, both excluded",
-                                lambda, name)) {
+Srbf::Srbf(const std::string& name, const std::vector<glm::dvec3>& centres,
+           const std::vector<double>& lambdas) {
+  require_usable(name, centres, lambdas);
   name_ = name;
-  lambda_ = lambda;
+  lambdas_ = lambdas;
   centres_ = centres;
   size_ = static_cast<int>(centres.size());
+  for (const double lambda : lambdas) cosines_.try_emplace(lambda, lambda);
   Matrix gram(size_, size_);
   for (int i = 0; i < size_; ++i) {
     for (int j = 0; j < size_; ++j) {
-      const double t =
-          i == j ? 1 : glm::dot(centres_[static_cast<std::size_t>(i)], centres_[static_cast<std::size_t>(j)]);
-      gram(i, j) = 4 * kPi * abel_poisson(t, lambda * lambda);
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const double t = i == j ? 1 : glm::dot(centres_[a], centres_[b]);
+      gram(i, j) = 4 * kPi * abel_poisson(t, lambdas_[a] * lambdas_[b]);
     }
   }
   set_gram(std::move(gram), std::vector<double>(centres.size(), 4 * kPi));
 }
 
 void Srbf::evaluate(const glm::dvec3& w, std::span<double> b) const {
-  for (std::size_t i = 0; i < centres_.size(); ++i) b[i] = abel_poisson(glm::dot(w, centres_[i]), lambda_);
+  for (std::size_t i = 0; i < centres_.size(); ++i)
+    b[i] = abel_poisson(glm::dot(w, centres_[i]), lambdas_[i]);
 }
 
 void Srbf::cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const {
-  for (std::size_t i = 0; i < centres_.size(); ++i) alpha[i] = cosine_(glm::dot(d, centres_[i]));
+  for (std::size_t i = 0; i < centres_.size(); ++i)
+    alpha[i] = cosines_.at(lambdas_[i])(glm::dot(d, centres_[i]));
 }
 
 std::string Srbf::kernel_source() const {
-  return srbf_kernel_source(*this, cosine_);
+  return srbf_kernel_source(*this, cosines_);
 }
 
 }  // namespace clpv

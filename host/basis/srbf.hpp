@@ -1,8 +1,10 @@
-// Spherical radial basis functions: the Abel-Poisson kernel G at fixed centres.
-// G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2), b_i(w) = G(w . xi_i; lambda), Int b_i dw
-// = 4 pi, A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda^2): the 4 pi belongs there with the plain
+// Spherical radial basis functions: the Abel-Poisson kernel G at fixed centres, each with a bandwidth lambda_i.
+// G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2), b_i(w) = G(w . xi_i; lambda_i), Int b_i dw
+// = 4 pi, A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda_i lambda_j): the 4 pi belongs there with the plain
 // measure dw.
 #pragma once
+
+#include <map>
 
 #include "basis/basis.hpp"
 #include "basis/clamped_cosine.hpp"
@@ -14,8 +16,8 @@ double abel_poisson(double t, double lambda);
 
 class Srbf : public Basis {
  public:
-  /// Unit centres, no two alike. Throws Error(usage) for lambda outside (0, 1) or an ill-conditioned set.
-  Srbf(const std::string& name, const std::vector<glm::dvec3>& centres, double lambda);
+  /// Unit centres and as many lambdas. Throws as make_basis_from_centres does.
+  Srbf(const std::string& name, const std::vector<glm::dvec3>& centres, const std::vector<double>& lambdas);
 
   using Basis::evaluate;
   void evaluate(const glm::dvec3& w, std::span<double> b) const override;
@@ -23,7 +25,7 @@ class Srbf : public Basis {
   std::string kernel_source() const override;
 
  private:
-  CosineOfPoisson cosine_;
+  std::map<double, CosineOfPoisson> cosines_;  ///< by lambda
 };
 
 struct SrbfSet {

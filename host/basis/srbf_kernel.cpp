@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kOfDirection = "(const float x, const float y, const float z) {\n  Coefficients r;\n";
 
-// A centre, and the one opposite to it where the set has it.
+// A centre, and the one opposite to it where the set has it, with the same lambda.
 struct Pair {
   int centre, opposite;  // opposite -1: none
 };
@@ -24,9 +24,9 @@ std::vector<Pair> antipodal_pairs(const Basis& basis) {
     if (taken[static_cast<std::size_t>(i)]) continue;
     Pair pair{i, -1};
     for (int j = i + 1; j < basis.size(); ++j) {
-      const glm::dvec3 sum =
-          basis.centres()[static_cast<std::size_t>(i)] + basis.centres()[static_cast<std::size_t>(j)];
-      if (glm::dot(sum, sum) < 1e-24) pair.opposite = j;
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const glm::dvec3 sum = basis.centres()[a] + basis.centres()[b];
+      if (glm::dot(sum, sum) < 1e-24 && basis.lambdas()[a] == basis.lambdas()[b]) pair.opposite = j;
     }
     if (pair.opposite >= 0) taken[static_cast<std::size_t>(pair.opposite)] = true;
     pairs.push_back(pair);
@@ -42,17 +42,17 @@ std::string height_statement(const Basis& basis, int i) {
 }
 
 std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs) {
-  const double lambda = basis.lambda();
-  const std::string one = float_literal(1 + lambda * lambda), top = float_literal(1 - lambda * lambda);
-  const auto value = [&](int i, int of, double slope) {
+  const auto value = [&](int i, int of, double sign) {
+    const double lambda = basis.lambdas()[static_cast<std::size_t>(i)];
     return fmt::format(
         "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c{0} = {4} * d{0} * d{0} * d{0};\n", i,
-        float_literal(slope), of, one, top);
+        float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
+        float_literal(1 - lambda * lambda));
   };
   std::string text = std::string("static inline Coefficients clpv_basis") + kOfDirection;
   for (const Pair& pair : pairs) {
-    text += height_statement(basis, pair.centre) + value(pair.centre, pair.centre, -2 * lambda);
-    if (pair.opposite >= 0) text += value(pair.opposite, pair.centre, 2 * lambda);
+    text += height_statement(basis, pair.centre) + value(pair.centre, pair.centre, 1);
+    if (pair.opposite >= 0) text += value(pair.opposite, pair.centre, -1);
   }
   return text + "  return r;\n}\n";
 }
@@ -103,25 +103,27 @@ std::string even_part(const std::vector<double>& chebyshev, int i) {
 }
 
 std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
-                            const CosineOfPoisson& cosine) {
-  const std::vector<double> chebyshev = cosine.chebyshev();
-  const std::string slope = float_literal(cosine.slope()), minus = float_literal(-cosine.slope());
+                            const std::map<double, CosineOfPoisson>& cosines) {
+  std::map<double, std::vector<double>> chebyshev;
+  for (const auto& [lambda, cosine] : cosines) chebyshev[lambda] = cosine.chebyshev();
   std::string text = std::string("static inline Coefficients clpv_cosine_integrals") + kOfDirection;
   for (const Pair& pair : pairs) {
     const int i = pair.centre;
-    text += height_statement(basis, i) + even_part(chebyshev, i);
-    text += fmt::format("  r.c{0} = fma({1}, t{0}, even{0});\n", i, slope);
-    if (pair.opposite >= 0)
-      text += fmt::format("  r.c{0} = fma({2}, t{1}, even{1});\n", pair.opposite, i, minus);
+    const double lambda = basis.lambdas()[static_cast<std::size_t>(i)], slope = cosines.at(lambda).slope();
+    text += height_statement(basis, i) + even_part(chebyshev[lambda], i);
+    text += fmt::format("  r.c{0} = fma({1}, t{0}, even{0});\n", i, float_literal(slope));
+    if (pair.opposite >= 0) {
+      text += fmt::format("  r.c{0} = fma({2}, t{1}, even{1});\n", pair.opposite, i, float_literal(-slope));
+    }
   }
   return text + "  return r;\n}\n";
 }
 
 }  // namespace
 
-std::string srbf_kernel_source(const Basis& basis, const CosineOfPoisson& cosine) {
+std::string srbf_kernel_source(const Basis& basis, const std::map<double, CosineOfPoisson>& cosines) {
   const std::vector<Pair> pairs = antipodal_pairs(basis);
-  return evaluate_function(basis, pairs) + cosine_function(basis, pairs, cosine);
+  return evaluate_function(basis, pairs) + cosine_function(basis, pairs, cosines);
 }
 
 }  // namespace clpv

@@ -1,6 +1,7 @@
-// The kernel text of an SRBF set (Basis::kernel_source): antipodal centres share everything but a sign.
+// The kernel text of an SRBF set (Basis::kernel_source): antipodal centres of one lambda share all but a sign.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "basis/basis.hpp"
@@ -8,6 +9,7 @@
 
 namespace clpv {
 
-std::string srbf_kernel_source(const Basis& basis, const CosineOfPoisson& cosine);
+/// `cosines` by lambda.
+std::string srbf_kernel_source(const Basis& basis, const std::map<double, CosineOfPoisson>& cosines);
 
 }  // namespace clpv

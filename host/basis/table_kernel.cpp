@@ -9,11 +9,11 @@
 namespace clpv {
 namespace {
 
-std::string opening(const char* name) {
+std::string opening(const char* function, const TableName& name) {
   return fmt::format(
-      "CLPV_INLINE Coefficients {}(const float x, const float y, const float z CLPV_AND_TABLE) {{\n"
+      "CLPV_INLINE Coefficients {}(const float x, const float y, const float z CLPV_AND_{}) {{\n"
       "  Coefficients r;\n",
-      name);
+      function, name.macro);
 }
 
 /// "centre . (x, y, z)" with the names of those three.
@@ -22,10 +22,12 @@ std::string height(const glm::dvec3& centre, const std::vector<std::string>& nam
   return sum_of_products(factors, names);
 }
 
-/// What the table holds for the height t, an expression.
-std::string entry(const std::string& t, int table_size) {
+/// What the table of that number, one after the other, holds for the height t, an expression.
+std::string entry(const std::string& t, std::size_t table, int table_size, const TableName& name) {
   const double half = (table_size - 1) / 2.0;
-  return fmt::format("CLPV_TABLE_READ(table, clamp((int)fma({}, {}, {}), 0, {}))", t, float_literal(half),
+  const std::size_t first = table * static_cast<std::size_t>(table_size);
+  return fmt::format("CLPV_TABLE_READ({}, {}clamp((int)fma({}, {}, {}), 0, {}))", name.argument,
+                     first == 0 ? "" : fmt::format("{} + ", first), t, float_literal(half),
                      float_literal(half + ZonalTable::kIndexBias), table_size - 1);
 }
 
@@ -41,7 +43,8 @@ constexpr const char* kRotation = R"(  const float square = fma(x, x, y * y);
 
 std::string rotated_integrals_source(const Basis& basis, int table_size) {
   const std::vector<double> upwards = basis.clamped_cosine({0, 0, 1});
-  std::string text = opening("clpv_rotated_integrals") + kRotation;
+  const Parameters products = gram_parameters(basis);
+  std::string text = opening("clpv_rotated_integrals", {}) + kRotation;
   for (int j = 0; j < basis.size(); ++j) {
     const glm::dvec3& c = basis.centres()[static_cast<std::size_t>(j)];
     text += fmt::format("  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n",
@@ -52,8 +55,9 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
     for (int j = 0; j < basis.size(); ++j) {
       const std::string t = height(basis.centres()[static_cast<std::size_t>(i)],
                                    {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
+      const std::size_t table = products.of[static_cast<std::size_t>(i * basis.size() + j)];
       const std::string weight = float_literal(upwards[static_cast<std::size_t>(j)]),
-                        value = entry(t, table_size);
+                        value = entry(t, table, table_size, {});
       text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
                      : fmt::format("  r.c{0} = fma({1}, {2}, r.c{0});\n", i, weight, value);
     }
@@ -61,11 +65,13 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
   return text + "  return r;\n}\n";
 }
 
-std::string table_basis_source(const Basis& basis, int table_size) {
-  std::string text = opening("clpv_table_basis");
+std::string table_basis_source(const Basis& basis, int table_size, const TableName& name) {
+  const Parameters lambdas = function_parameters(basis);
+  std::string text = opening("clpv_table_basis", name);
   for (int i = 0; i < basis.size(); ++i) {
     const std::string t = height(basis.centres()[static_cast<std::size_t>(i)], {"x", "y", "z"});
-    text += fmt::format("  r.c{} = {};\n", i, entry(t, table_size));
+    text += fmt::format("  r.c{} = {};\n", i,
+                        entry(t, lambdas.of[static_cast<std::size_t>(i)], table_size, name));
   }
   return text + "  return r;\n}\n";
 }

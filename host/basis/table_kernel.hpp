@@ -7,13 +7,20 @@
 
 namespace clpv {
 
+/// How texts call the table that they take: as the macros CLPV_AND_TABLE and CLPV_PASS_TABLE of
+/// pipeline/lookup_table.hpp have it, or for a second table beside it CLPV_AND_FUNCTIONS and CLPV_PASS_FUNCTIONS.
+struct TableName {
+  std::string macro = "TABLE", argument = "table";
+};
+inline const TableName kFunctionsTable{"FUNCTIONS", "functions"};
+
 /// Both texts need a basis with centres, and the macros of pipeline/lookup_table.hpp before them. Tables of
-/// `table_size` entries are read as ZonalTable is.
+/// `table_size` entries, one after the other, are read as ZonalTables are.
 ///
 ///   Coefficients clpv_rotated_integrals(x, y, z, table)   R c: integrals times b_i of the lobe towards +z, turned to
-///                                                         the unit direction; the table is gram_table()'s
+///                                                         the unit direction; the tables are gram_tables()'
 std::string rotated_integrals_source(const Basis& basis, int table_size);
-///   Coefficients clpv_table_basis(x, y, z, table)         b_i of a unit direction; the table is function_table()'s
-std::string table_basis_source(const Basis& basis, int table_size);
+///   Coefficients clpv_table_basis(x, y, z, table)         b_i of a unit direction; the tables are function_tables()'
+std::string table_basis_source(const Basis& basis, int table_size, const TableName& name = {});
 
 }  // namespace clpv

@@ -55,12 +55,17 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
     Matrix five(5, rows.columns());
     for (int f = 0; f < 5; ++f)
       std::copy(rows.row(5 * k + f).begin(), rows.row(5 * k + f).end(), five.row(f).begin());
-    const auto fluxes = out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
-                                           mirrors.across(axis_of(travel)));
+    const auto fluxes = form.functions_at_run_time
+                            ? std::vector<std::string>(5)
+                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
+                                                 mirrors.across(axis_of(travel)));
     for (int f = 0; f < 5; ++f) {
       const int way = 5 * k + f;
       const std::string& half = fluxes[static_cast<std::size_t>(f)];
-      std::string flux = out.arrive.name(fmt::format("{0} + fabs({0})", half), {.additions = 1});
+      std::string flux =
+          out.arrive.name(form.functions_at_run_time ? fmt::format("clpv_flux_through(a{}, at[{}])", k, way)
+                                                     : fmt::format("{0} + fabs({0})", half),
+                          {.additions = 1});
       if (form.lobes_at_run_time) {
         if (form.blocking)
           flux = out.arrive.name(fmt::format("{} * t.c{}", flux, way), {.multiplications = 1});

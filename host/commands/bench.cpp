@@ -51,15 +51,24 @@ std::regex parse_filter(const std::string& text) {
   }
 }
 
-nlohmann::json report_of(const Session& session, const bench::Results& results) {
-  return bench::report_json(bench::context_json(session), results.ceilings, results.rows);
+/// "sponza, camera curtains": what was timed.
+std::string subject_of(const bench::SuiteOptions& options) {
+  const auto scene = bench::scene_of(options);
+  return fmt::format("{}, camera {}", scene->name, scene->camera(options.camera).name);
+}
+
+nlohmann::json report_of(const Options& options, const Session& session, const bench::Results& results) {
+  nlohmann::json context = bench::context_json(session);
+  context["scene"] = subject_of(options.bench.suite);
+  return bench::report_json(context, results.ceilings, results.rows);
 }
 
 std::string as_text(const Options& options, const bench::Suite& suite, const Session& session,
                     const bench::Results& results) {
-  if (options.format == "json") return report_of(session, results).dump(2) + "\n";
+  if (options.format == "json") return report_of(options, session, results).dump(2) + "\n";
   if (options.format == "csv") return bench::report_csv(results.rows);
-  return suite.table ? suite.table(results.rows) : bench::report_table(results.rows);
+  return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
+         (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
 }
 
 /// An earlier run's report, read before the work. Null where none is asked for.
@@ -89,6 +98,22 @@ std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   return drawing;
 }
 
+/// The scene that is given, or else the suite's own.
+void take_scene(Options& options, const bench::Suite& suite) {
+  if (options.scene.empty() && !options.model.empty())
+    throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
+  if (options.scene.empty() && suite.usual_scene.empty()) return;
+  if (options.scene.empty() && !std::filesystem::exists(suite.usual_scene)) {
+    spdlog::warn("{} is not here: {} works on the hall in its place", suite.usual_scene, suite.name);
+    return;
+  }
+  const std::string file = options.scene.empty() ? suite.usual_scene : options.scene;
+  const auto scene = std::make_shared<const Scene>(load_scene(file, {options.model}));
+  options.bench.suite.scene = scene;
+  if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
+  if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
+}
+
 /// Tells of the rows that failed. Exit code 5 where an output was wrong.
 void judge(const std::vector<bench::Row>& rows) {
   const auto wrong = std::count_if(rows.begin(), rows.end(),
@@ -108,14 +133,7 @@ void run(Options options, const Shared& shared) {
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = suite_named(options.suite);
-  if (!options.scene.empty()) {
-    const auto scene = std::make_shared<const Scene>(load_scene(options.scene, {options.model}));
-    options.bench.suite.scene = scene;
-    if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
-    if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
-  } else if (!options.model.empty()) {
-    throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
-  }
+  take_scene(options, suite);
   Session session(choose_device(shared.device), ProgramCache::of_user());
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
@@ -127,12 +145,12 @@ void run(Options options, const Shared& shared) {
     write_file(options.out, text);
   }
   if (!before.is_null()) {
-    fmt::print(
-        "{}{}", options.out.empty() ? "\n" : "",
-        bench::comparison_table(bench::compare_runs(before, report_of(session, results), options.compare)));
+    fmt::print("{}{}", options.out.empty() ? "\n" : "",
+               bench::comparison_table(
+                   bench::compare_runs(before, report_of(options, session, results), options.compare)));
   }
   if (plot) {
-    plot->add("bench.json", report_of(session, results));
+    plot->add("bench.json", report_of(options, session, results));
     plot->draw(options.plot);
   }
   session.store_programs();
@@ -148,7 +166,9 @@ void add_bench(CLI::App& app, Shared& shared) {
   std::string suites = "what to time:";
   for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
   command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
-  command->add_option("--scene", options->scene, "scene file or model; default: a hall made on the spot")
+  command
+      ->add_option("--scene", options->scene,
+                   "scene file or model; default: a hall made on the spot, and for table1 scenes/atrium.json")
       ->type_name("SCENE");
   command->add_option("--model", options->model, "replaces the scene file's model")->type_name("PATH");
   command->add_option("--camera", options->bench.suite.camera, "camera by name; default: the scene's first")

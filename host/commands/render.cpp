@@ -7,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
+#include "evaluate/normal_weights.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/cascade.hpp"
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, model, output, camera, tonemap = "aces", stats, dump;
+  std::string scene, model, output, camera, tonemap = "aces", stats, dump, normals;
   int frames = 5;
   std::vector<std::string> views;
   std::optional<float> exposure;
@@ -60,6 +61,7 @@ void check_outputs(const Options& options, const std::vector<Show>& views) {
     if (extension == ".png") check_writable(png_path(options.output, view, views.size() > 1));
   }
   if (!options.stats.empty()) check_writable(options.stats);
+  if (!options.normals.empty()) check_writable(options.normals);
   if (!options.dump.empty()) {
     std::error_code failed;
     fs::create_directories(options.dump, failed);
@@ -165,6 +167,8 @@ void run(const Options& options, const Shared& shared) {
   for (const auto& [name, value] : all.items())
     metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
   write_images(frame, options, views, exposure, metadata);
+  if (!options.normals.empty())
+    write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
   if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, all).dump(2) + "\n");
   progress.advance();
   session.store_programs();
@@ -207,6 +211,10 @@ void add_render(CLI::App& app, Shared& shared) {
       ->add_option("--dump-volume", options->dump,
                    "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]")
       ->type_name("DIR");
+  command
+      ->add_option("--dump-normals", options->normals,
+                   "normals that the lights see, weighted by the flux they send on, for clpv basis --weights")
+      ->type_name("FILE.json");
   command->add_flag("--no-tune", options->no_tune, "leave what clpv tune found aside");
   add_frame_options(*command, options->frame);
   command->callback([options, &shared] { run(*options, shared); });

@@ -78,8 +78,9 @@ std::string quality_key(const reference::Reference& truth, const Device& device,
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
   print.add(to_json(options).dump()).add(name_of(show)).add(frames);
   if (!options.centres.empty()) {
-    for (const glm::dvec3& centre : make_basis(options)->centres())
-      print.add(centre.x).add(centre.y).add(centre.z);
+    const auto basis = make_basis(options);
+    for (const glm::dvec3& centre : basis->centres()) print.add(centre.x).add(centre.y).add(centre.z);
+    for (const double lambda : basis->lambdas()) print.add(lambda);
   }
   for (const auto& [name, embedded] : detail::embedded_kernel_files()) print.add(kernel_file(name));
   return print.hex();

@@ -5,21 +5,21 @@
 namespace clpv {
 namespace {
 
-std::optional<ZonalTable> table_of(const Basis& basis, const LobeOptions& options, TableUse use) {
+std::optional<std::vector<float>> table_of(const Basis& basis, const LobeOptions& options, TableUse use) {
   if (basis.centres().empty()) return std::nullopt;
   if (use == TableUse::lobes) {
     if (options.kind != LobeKind::rotate) return std::nullopt;
-    return gram_table(basis, options.table_size);
+    return gram_tables(basis, options.table_size).values();
   }
   if (!options.table_functions) return std::nullopt;
-  return function_table(basis, options.table_size);
+  return function_tables(basis, options.table_size).values();
 }
 
-void require_image(const Device& device, int entries) {
+void require_image(const Device& device, std::size_t entries) {
   if (!device.images)
     throw Error(ExitCode::device, "table image: {} has no images; allowed: buffer", device.name);
   const std::size_t most = device.handle.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
-  if (static_cast<std::size_t>(entries) > most) {
+  if (entries > most) {
     throw Error(ExitCode::device, "table image: {} entries; an image of a buffer on {} holds {}", entries,
                 device.name, most);
   }
@@ -33,23 +33,22 @@ LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions
   if (!values_) return;
   if (storage == TableStorage::image) require_image(session.device(), values_->size());
   if (storage == TableStorage::image) {
-    image_ = session.table_image(values_->values(), "look-up table");
+    image_ = session.table_image(*values_, "look-up table");
   } else {
-    buffer_ = session.upload(values_->values(), "look-up table");
+    buffer_ = session.upload(*values_, "look-up table");
   }
 }
 
-std::string LookupTable::no_macros() {
-  return "#define CLPV_AND_TABLE\n#define CLPV_PASS_TABLE\n";
+std::string LookupTable::no_macros(const TableName& name) {
+  return fmt::format("#define CLPV_AND_{0}\n#define CLPV_PASS_{0}\n", name.macro);
 }
 
-std::string LookupTable::macros() const {
-  if (!values_) return no_macros();
+std::string LookupTable::macros(const TableName& name) const {
+  if (!values_) return no_macros(name);
   const bool image = storage_ == TableStorage::image;
   return fmt::format(
-      "#define CLPV_AND_TABLE , {} table\n#define CLPV_PASS_TABLE , table\n"
-      "#define CLPV_TABLE_READ(table, i) {}\n",
-      image ? "__read_only image1d_buffer_t" : "__global const float*",
+      "#define CLPV_AND_{0} , {1} {2}\n#define CLPV_PASS_{0} , {2}\n#define CLPV_TABLE_READ(table, i) {3}\n",
+      name.macro, image ? "__read_only image1d_buffer_t" : "__global const float*", name.argument,
       image ? "read_imagef(table, i).x" : "(table)[i]");
 }
 

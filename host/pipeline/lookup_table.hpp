@@ -7,6 +7,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "basis/table_kernel.hpp"
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "options/choices.hpp"
@@ -16,7 +17,8 @@ namespace clpv {
 /// Which table a kernel looks things up in, if any.
 enum class TableUse { lobes, functions };
 
-/// A table, or none, as a kernel's last argument. Kernels take it by the macros that macros() defines:
+/// A table, or none, as a kernel's last argument, or the last but one of two. Kernels take it by the macros that macros()
+/// defines, for other names of tables accordingly:
 ///   CLPV_AND_TABLE               ", TYPE table" at the end of a parameter list, or nothing
 ///   CLPV_PASS_TABLE              ", table" at the end of a call, or nothing
 ///   CLPV_TABLE_READ(table, i)    entry i
@@ -28,13 +30,13 @@ class LookupTable {
               TableUse use);
 
   bool exists() const { return values_.has_value(); }
-  std::string macros() const;
-  static std::string no_macros();  ///< those of none
+  std::string macros(const TableName& name = {}) const;
+  static std::string no_macros(const TableName& name = {});  ///< those of none
   /// The last argument of a kernel that was compiled with macros(), after the others; nothing where there is no table.
   void add_to(Kernel& kernel) const;
 
  private:
-  std::optional<ZonalTable> values_;
+  std::optional<std::vector<float>> values_;  ///< tables one after the other
   TableStorage storage_;
   Buffer buffer_;
   cl::Image1DBuffer image_;

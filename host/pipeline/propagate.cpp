@@ -35,7 +35,8 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
 Propagator::Form Propagator::make_form(bool first, bool blocking) {
   const State from = first ? State::coefficients : options_.state;
   const TransportSource source =
-      transport_source(basis_, transport_, {from, options_.state, blocking, lobes_.has_value()});
+      transport_source(basis_, transport_,
+                       {from, options_.state, blocking, lobes_.has_value(), lobes_ && lobes_->evaluates()});
   const int channels = lobes_ || (blocking && source.arrive.flops() <= kLargestShared) ? 3 : 1;
   ProgramSource program{"propagate.cl", stencil_.literals(), source.text};
   if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();

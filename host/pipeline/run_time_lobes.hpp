@@ -22,18 +22,22 @@ class RunTimeLobes {
                TableStorage storage);
 
   /// Before and after the text of the transport.
-  std::string macros() const { return table_.macros(); }
+  std::string macros() const { return table_.macros() + functions_.macros(kFunctionsTable); }
   const std::string& text() const { return text_; }
   void add_literals(Literals& literals) const;
+  /// Whether basis functions are evaluated in the kernel as well: where light is sampled in the faces' centres. Integrals
+  /// over faces stay constants.
+  bool evaluates() const { return evaluates_; }
   /// The last arguments of a step, after the others.
   void add_to(Kernel& step) const;
 
  private:
-  LookupTable table_;
+  LookupTable table_, functions_;
   std::string text_;
   std::size_t faces_ = 0;
-  bool unit_flux_;
+  bool unit_flux_, evaluates_;
   Buffer normals_;
+  Buffer ways_;  ///< where light goes through each face, and the face's solid angle
 };
 
 }  // namespace clpv

@@ -1,0 +1,41 @@
+// The times that the paper prints in its Table 1, of a Radeon HD 6870.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "options/stages.hpp"
+
+namespace clpv::bench {
+
+/// A row of that table [ms]. Cascades from the smallest, 12.5 m, to the biggest, 50 m.
+struct PublishedTimes {
+  std::string_view basis;
+  bool shadows;  ///< indirect ones
+  std::array<double, 3> injection, propagation;
+  double light_buffer;
+
+  constexpr double sum() const {
+    double sum = light_buffer;
+    for (std::size_t cascade = 0; cascade < injection.size(); ++cascade)
+      sum += injection[cascade] + propagation[cascade];
+    return sum;
+  }
+};
+
+inline constexpr std::array<PublishedTimes, 6> kPublishedTimes{{
+    {"sh2", true, {2.028, 2.292, 2.339}, {2.241, 2.565, 2.275}, 1.086},
+    {"srbf4", true, {2.090, 2.314, 2.351}, {4.139, 4.974, 4.200}, 1.214},
+    {"srbf8v2", true, {3.544, 4.488, 4.299}, {9.663, 10.602, 9.386}, 1.723},
+    {"sh2", false, {2.025, 2.294, 2.340}, {1.957, 2.125, 1.986}, 1.135},
+    {"srbf4", false, {2.086, 2.281, 2.344}, {3.183, 3.797, 3.177}, 1.206},
+    {"srbf8v2", false, {3.511, 4.460, 4.276}, {7.427, 7.794, 7.019}, 1.721},
+}};
+
+/// The cell of a stage: of inject_light and propagate one a cascade, of gather one in all. None of what is not in the
+/// table, the geometry volume's injection among it.
+std::optional<double> published_ms(Pass pass, std::string_view basis, bool shadows,
+                                   std::optional<int> cascade);
+
+}  // namespace clpv::bench

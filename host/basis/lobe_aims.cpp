@@ -1,0 +1,120 @@
+#include "basis/lobe_aims.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "basis/clamped_cosine.hpp"
+#include "basis/transport.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kNorm = 2 * kPi / 3;        // Int max(0, w . d)^2 dw
+constexpr int kEvenDirections = 2000;        // the mean over them is good to three digits
+constexpr std::size_t kMostWeights = 10000;  // what a search still bears
+
+WeightedDirection weighted_direction(const json& entry, const std::string& path, std::size_t index) {
+  const bool four = entry.is_array() && entry.size() == 4 &&
+                    std::ranges::all_of(entry, [](const json& number) { return number.is_number(); });
+  if (four) {
+    const glm::dvec3 v(entry[0].get<double>(), entry[1].get<double>(), entry[2].get<double>());
+    const double weight = entry[3].get<double>(), length = glm::length(v);
+    if (std::isfinite(length) && length > 0 && std::isfinite(weight) && weight > 0)
+      return {v / length, weight};
+  }
+  throw Error(ExitCode::bad_input,
+              "{}: /weights/{} is {}; allowed: [x, y, z, weight], a direction and a weight above 0", path,
+              index, entry.dump(-1, ' ', true, json::error_handler_t::replace).substr(0, 60));
+}
+
+json parsed(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
+  try {
+    return json::parse(in);
+  } catch (const json::exception& error) {
+    throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
+  }
+}
+
+/// |f - max(0, w . d)|^2 / |max(0, w . d)|^2; f is a projection, so that |f|^2 is what is taken off.
+double square_error(const Basis& basis, const glm::dvec3& d) {
+  std::vector<double> alpha(static_cast<std::size_t>(basis.size()));
+  basis.cosine_integrals(d, alpha);
+  const std::vector<double> c = basis.clamped_cosine(d), product = basis.gram() * c;
+  double square = kNorm;
+  for (std::size_t i = 0; i < c.size(); ++i) square += c[i] * (product[i] - 2 * alpha[i]);
+  return std::max(0.0, square) / kNorm;
+}
+
+}  // namespace
+
+LobeAims all_directions() {
+  return {"all directions", {}};
+}
+
+LobeAims propagation_axes() {
+  LobeAims aims{"the six axes", {}};
+  for (const glm::ivec3& axis : kAxes)
+    aims.directions.push_back({glm::dvec3(axis), 1.0 / static_cast<double>(kAxes.size())});
+  return aims;
+}
+
+LobeAims load_aims(const std::string& path) {
+  const json file = parsed(path);
+  const auto found = file.is_object() ? file.find("weights") : file.end();
+  if (found == file.end() || !found->is_array() || found->empty() || found->size() > kMostWeights) {
+    throw Error(ExitCode::bad_input, "{}: /weights: allowed: an array of 1 to {} [x, y, z, weight]", path,
+                kMostWeights);
+  }
+  LobeAims aims{path, {}};
+  double sum = 0;
+  for (const json& entry : *found) {
+    aims.directions.push_back(weighted_direction(entry, path, aims.directions.size()));
+    sum += aims.directions.back().weight;
+  }
+  if (!std::isfinite(sum)) throw Error(ExitCode::bad_input, "{}: /weights add up to {}", path, sum);
+  for (WeightedDirection& direction : aims.directions) direction.weight /= sum;
+  return aims;
+}
+
+std::vector<glm::dvec3> even_directions(int count) {
+  std::vector<glm::dvec3> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, radius = std::sqrt(1 - z * z);
+    const double azimuth = kPi * (3 - std::sqrt(5.0)) * i;
+    directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+  }
+  return directions;
+}
+
+double error_over(const Basis& basis, const LobeAims& aims) {
+  double sum = 0;
+  for (const WeightedDirection& aim : aims.directions) sum += aim.weight * square_error(basis, aim.direction);
+  if (!aims.directions.empty()) return std::sqrt(sum);
+  for (const glm::dvec3& d : even_directions(kEvenDirections))
+    sum += square_error(basis, d) / kEvenDirections;
+  return std::sqrt(sum);
+}
+
+double least_error_of(int functions) {
+  // Each of the 2 l + 1 functions of band l holds A_l^2 / 4 pi of the square; those are less with every band.
+  double left = kNorm;
+  for (int band = 0; functions > 0; ++band) {
+    const double each = std::pow(cosine_band(band), 2) / (4 * kPi);
+    if (each == 0) continue;  // odd bands above the first hold nothing
+    const int taken = std::min(functions, 2 * band + 1);
+    left -= taken * each;
+    functions -= taken;
+  }
+  return std::sqrt(std::max(0.0, left) / kNorm);
+}
+
+}  // namespace clpv

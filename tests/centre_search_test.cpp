@@ -1,0 +1,250 @@
+// The search for centres: its slopes against differences, its bounds, the same result for the same seed, and what users
+// meet; sets with a lambda of each centre's own.
+#include "basis/centre_search.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "basis/rotated_lobe.hpp"
+#include "evaluate/normal_weights.hpp"
+#include "support/error.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/sphere_quadrature.hpp"
+
+namespace clpv {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kProgram = CLPV_PROGRAM;
+
+CentreSet uneven_set() {
+  return {even_directions(6), {.2, .3, .25, .4, .33, .21}};
+}
+
+LobeAims slanted_aims() {
+  return {"slanted", {{glm::normalize(glm::dvec3(1, 2, -3)), .75}, {{0, 1, 0}, .25}}};
+}
+
+std::unique_ptr<Basis> basis_of(const CentreSet& set) {
+  return make_basis_from_centres("set", set.centres, set.lambdas);
+}
+
+TEST(LambdaOfEachCentre, GramMatrixIsThatOfTheFunctions) {
+  const auto basis = basis_of(uneven_set());
+  EXPECT_EQ(basis->lambda(), 0);
+  EXPECT_EQ(basis->lambda_text(), "0.2 to 0.4");
+  for (int i = 0; i < basis->size(); ++i) {
+    for (int j = 0; j < basis->size(); ++j) {
+      const double expected = test::integral(test::sphere({0, 0, 1}, 40), [&](const glm::dvec3& w) {
+        const std::vector<double> b = basis->evaluate(w);
+        return b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
+      });
+      EXPECT_NEAR(basis->gram()(i, j), expected, 1e-9) << i << ' ' << j;
+    }
+  }
+}
+
+TEST(LambdaOfEachCentre, RotatedLobesAreTheLobeTowardsZTurned) {
+  const auto basis = basis_of(uneven_set());
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(-2, 1, -3));
+  const glm::dmat3 back = glm::transpose(rotation_to(axis));
+  const std::vector<double> up = basis->clamped_cosine({0, 0, 1});
+  const std::vector<double> turned = basis->gram() * Lobes(*basis, {LobeKind::rotate, 0})(axis),
+                            looked_up = basis->gram() * Lobes(*basis, {LobeKind::rotate, 1 << 16})(axis);
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    const double expected = test::integral(test::sphere({0, 0, 1}, 40), [&](const glm::dvec3& w) {
+      return basis->evaluate(w)[i] * basis->value(up, back * w);
+    });
+    EXPECT_NEAR(turned[i], expected, 1e-9) << i;
+    EXPECT_NEAR(looked_up[i], expected, 1e-3) << i;
+  }
+  EXPECT_EQ(gram_tables(*basis, 16).each.size(), 21u);
+  EXPECT_EQ(function_tables(*basis, 16).each.size(), 6u);
+  EXPECT_EQ(gram_tables(*make_basis("srbf8v2"), 16).each.size(), 1u);
+}
+
+TEST(LobeAims, LeastErrorsAreThoseOfTheHarmonics) {
+  // Of 4 and of 9 functions none are better than sh2 and sh3, of 8 none than sh2 with four of the next five.
+  for (const auto& [functions, name] : {std::pair{4, "sh2"}, {9, "sh3"}}) {
+    EXPECT_NEAR(least_error_of(functions), error_over(*make_basis(name), all_directions()), 1e-9);
+  }
+  EXPECT_NEAR(least_error_of(8), std::sqrt(1.0 / 8 - 4 * 3.0 / 128), 1e-12);
+  EXPECT_NEAR(least_error_of(0), 1, 1e-12);
+  for (const char* name : {"srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24"}) {
+    const auto basis = make_basis(name);
+    EXPECT_GT(error_over(*basis, all_directions()), least_error_of(basis->size())) << name;
+  }
+}
+
+// error_over() sums over 2000 directions what the objective integrates: an error of some millionths.
+constexpr double kSpiral = 1e-5;
+
+class Objective : public ::testing::TestWithParam<int> {
+ protected:
+  const LobeAims aims_ = GetParam() == 0 ? all_directions() : slanted_aims();
+  const CentreObjective objective_{aims_};
+};
+INSTANTIATE_TEST_SUITE_P(Aims, Objective, ::testing::Values(0, 1));
+
+TEST_P(Objective, IsTheErrorOfTheBasis) {
+  const double error = error_over(*basis_of(uneven_set()), aims_);
+  EXPECT_NEAR(std::sqrt(objective_.square_error(uneven_set()).value), error, kSpiral);
+}
+
+TEST_P(Objective, BoundsTheConditionNumberFromAbove) {
+  const double bound = std::exp(objective_.log_condition(uneven_set()).value),
+               condition = basis_of(uneven_set())->condition();
+  EXPECT_GT(bound, condition);
+  EXPECT_LT(bound, 6 * condition);
+}
+
+TEST_P(Objective, SlopesAreThoseOfDifferences) {
+  constexpr double kStep = 1e-6, kTolerance = 1e-7;
+  const CentreSet set = uneven_set();
+  for (const auto& value : {&CentreObjective::square_error, &CentreObjective::log_condition}) {
+    const SetValue at = (objective_.*value)(set);
+    const auto difference = [&](auto move) {
+      CentreSet more = set, less = set;
+      move(more, kStep), move(less, -kStep);
+      return ((objective_.*value)(more).value - (objective_.*value)(less).value) / (2 * kStep);
+    };
+    for (std::size_t i = 0; i < set.centres.size(); ++i) {
+      const glm::dvec3 across = test::across(set.centres[i]).first;
+      const double by_lambda = difference([&](CentreSet& s, double step) { s.lambdas[i] += step; });
+      const double by_centre = difference(
+          [&](CentreSet& s, double step) { s.centres[i] = glm::normalize(s.centres[i] + step * across); });
+      EXPECT_NEAR(at.by_lambda[i], by_lambda, kTolerance) << i;
+      EXPECT_NEAR(glm::dot(at.by_centre[i], across), by_centre, kTolerance) << i;
+    }
+  }
+}
+
+CentreSearch quick(int centres) {
+  CentreSearch search;
+  search.centres = centres, search.starts = 6;
+  return search;
+}
+
+TEST(SearchCentres, FindsTheSameSetForTheSameSeed) {
+  CentreSearch search = quick(8);
+  search.lambdas = SearchedLambdas::each;
+  const FoundCentres one = search_centres(search), again = search_centres(search);
+  EXPECT_EQ(one.set.centres, again.set.centres);
+  EXPECT_EQ(one.set.lambdas, again.set.lambdas);
+  search.seed = 2;
+  EXPECT_NE(search_centres(search).set.centres, one.set.centres);
+}
+
+TEST(SearchCentres, IsBetterThanTheNamedSetsAndNeverBeatsTheLeastError) {
+  const FoundCentres found = search_centres(quick(8));
+  const auto basis = basis_of(found.set);
+  EXPECT_NEAR(found.error, error_over(*basis, all_directions()), kSpiral);
+  EXPECT_LE(basis->condition(), 2e4 * (1 + 1e-5));
+  EXPECT_GT(found.error, least_error_of(8));
+  EXPECT_LT(found.error, 0.19) << "srbf8v1 and srbf8v2 have .233";
+  CentreSearch axes = quick(6);
+  axes.aims = propagation_axes(), axes.lambdas = SearchedLambdas::none;
+  EXPECT_NEAR(search_centres(axes).error, error_over(*make_basis("srbf6"), axes.aims), 1e-4)
+      << "at lambda .25 no six centres hold the axes better than the axes themselves";
+}
+
+TEST(SearchCentres, SaysWhenNoSetIsWithinTheBounds) {
+  CentreSearch search = quick(20);
+  search.lambdas = SearchedLambdas::none, search.lambda = 0.05;
+  try {
+    search_centres(search);
+    ADD_FAILURE() << "found";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr("none of 6 starts"), HasSubstr("at most 2e+04")));
+  }
+}
+
+TEST(SearchCentres, RefusesWithTheBound) {
+  const auto refused = [](auto change, const char* word) {
+    CentreSearch search = quick(4);
+    change(search);
+    try {
+      search_centres(search);
+      ADD_FAILURE() << "taken: " << word;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::usage);
+      EXPECT_THAT(error.what(), HasSubstr(word));
+    }
+  };
+  refused([](CentreSearch& s) { s.centres = 65; }, "--search 65: allowed: 1 to 64");
+  refused([](CentreSearch& s) { s.centres = 0; }, "--search 0");
+  refused([](CentreSearch& s) { s.lambda = 1; }, "lambda is 1");
+  refused([](CentreSearch& s) { s.most_condition = 1e8; }, "1e+07");
+}
+
+TEST(SearchCentres, WritesAFileThatIsABasis) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "mine.json").string(),
+                    command = kProgram + " basis --search 5 --starts 4 --lambdas each --json -o " + file;
+  const test::Outcome outcome = test::run(command);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json.at("search").at("valid"), 4);
+  const auto basis = load_basis(file);
+  EXPECT_EQ(basis->name(), "mine");
+  EXPECT_EQ(json.at("bases")[0].at("lambdas"), basis->lambdas());
+  EXPECT_NEAR(error_over(*basis, all_directions()), json.at("search").at("error").get<double>(), kSpiral);
+  const std::string first = test::read_file(file);
+  test::run(command);
+  EXPECT_EQ(test::read_file(file), first);
+}
+
+// From a scene's own normals to a set: a floor under a lamp has one normal.
+TEST(SearchCentres, TakesAScenesNormals) {
+  const test::TemporaryFolder folder;
+  const std::string weights = (folder.path() / "normals.json").string();
+  const test::Outcome render = test::run(kProgram +
+                                         " render " CLPV_SOURCE_DIR
+                                         "/scenes/cornell.json --width 16 --height 9 --grid 8 "
+                                         "--rsm-size 32 --dump-normals " +
+                                         weights + " -o " + (folder.path() / "a.exr").string());
+  ASSERT_EQ(render.exit_code, 0) << render.err;
+  const LobeAims aims = load_aims(weights);
+  double upwards = 0, all = 0;
+  for (const WeightedDirection& aim : aims.directions) {
+    all += aim.weight;
+    upwards += aim.direction.y > 0.99 ? aim.weight : 0;
+  }
+  EXPECT_NEAR(all, 1, 1e-12);
+  EXPECT_GT(upwards, 0.2) << "the floor";
+  EXPECT_LT(aims.directions.size(), 97u);
+  const test::Outcome search = test::run(kProgram + " basis --search 4 --starts 2 --weights " + weights);
+  EXPECT_EQ(search.exit_code, 0) << search.err;
+  EXPECT_EQ(test::run(kProgram + " basis --search 4 --over axes --weights " + weights).exit_code, 2);
+  EXPECT_EQ(test::run(kProgram + " basis --seed 4").exit_code, 2);
+}
+
+TEST(LobeAims, OfFilesAreRefusedWithThePlace) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "w.json").string();
+  for (const auto& [text, word] : {std::pair{"{", "not JSON"},
+                                   {"[]", "/weights"},
+                                   {R"({"weights": []})", "1 to 10000"},
+                                   {R"({"weights": [[0, 0, 1, 1], [0, 0, 1]]})", "/weights/1"},
+                                   {R"({"weights": [[0, 0, 0, 1]]})", "/weights/0"},
+                                   {R"({"weights": [[0, 0, 1, -1]]})", "/weights/0"}}) {
+    std::ofstream(path) << text;
+    try {
+      load_aims(path);
+      ADD_FAILURE() << "taken: " << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr(path), HasSubstr(word)));
+    }
+  }
+  EXPECT_THROW(load_aims((folder.path() / "none.json").string()), Error);
+}
+
+}  // namespace
+}  // namespace clpv
