@@ -88,7 +88,7 @@ Cost cost_of(Propagation& p) {
       p.geometry ? transmit_source(*p.basis, p.transport).operations : OperationCount{};
   Cost cost;
   for (int step = 1; step <= o.iterations; ++step) {
-    const bool blocked = p.geometry && step > 1;
+    const bool blocked = p.geometry && p.propagator.reads_transmittance(step);
     if (step == 1 && fluxes) {
       add_step(cost, p, transport_source(*p.basis, p.transport, {State::coefficients, State::fluxes, false}),
                true, 0, 0);

@@ -3,16 +3,12 @@
 // CLPV_GEOMETRY 0, light: a texel's virtual point light is at p + n s/2, half a cell off its surface, so that the surface
 // does not light itself. CLPV_GEOMETRY 1, blocking: its surfel is at p.
 //
-// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_STRIDE (shared/thinned.h), CLPV_SURFACE_PAPER. Nothing here
-// depends on the basis.
+// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis. Blocking is told
+// its stride (shared/thinned.h); light takes every texel, as literals tell the compiler, which then loads them side by side.
 #include "cell_keys.h"
 #include "shared/grid.h"
 #include "shared/thinned.h"
 #include "surface.h"
-
-#ifndef CLPV_STRIDE
-#define CLPV_STRIDE 1u
-#endif
 
 // A cosine floored here bounds the surfel behind a pixel seen edge-on.
 #define CLPV_LEAST_COSINE 0.1f
@@ -29,10 +25,10 @@ static inline int not_zero(const float x, const float y, const float z) {
 }
 
 static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
-                                  const float depth, const float3 normal) {
+                                  const float depth, const float3 normal, const uint stride) {
   const float3 ray = clpv_ray(view, px, py);
   const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
-  return (CLPV_STRIDE * CLPV_STRIDE) * clpv_footprint(view, px, py, depth) /
+  return (stride * stride) * clpv_footprint(view, px, py, depth) /
          (fmax(cosine, CLPV_LEAST_COSINE) * grid.cell * grid.cell);
 }
 
@@ -45,16 +41,23 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 // work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
 __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* restrict depths,
                          __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
-                         const float colour_scale, __global uint* restrict keys, __global float* restrict details) {
-  const uint width = CLPV_TAKEN(view.width, CLPV_STRIDE), height = CLPV_TAKEN(view.height, CLPV_STRIDE);
+                         const float colour_scale, __global uint* restrict keys, __global float* restrict details
+#if CLPV_GEOMETRY
+                         , const uint stride
+#endif
+) {
+#if !CLPV_GEOMETRY
+  const uint stride = 1;
+#endif
+  const uint width = CLPV_TAKEN(view.width, stride), height = CLPV_TAKEN(view.height, stride);
   const uint first = get_global_id(0) * CLPV_STRIP, row = get_global_id(1);
   if (first >= width || row >= height) return;
   const uint last = min(first + CLPV_STRIP, width);
-  const uint py = CLPV_TAKEN_TEXEL(row, CLPV_STRIDE);
+  const uint py = CLPV_TAKEN_TEXEL(row, stride);
   const uint n = CLPV_KEYS(grid.n);
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
-    const uint px = CLPV_TAKEN_TEXEL(column, CLPV_STRIDE), texel = py * view.width + px, i = row * width + column;
+    const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px, i = row * width + column;
     const float depth = depths[texel];
     const float3 normal = clpv_load_normal(normals, texel);
     const float3 position = clpv_position(view, (float)px, (float)py, depth);
@@ -62,7 +65,7 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
           z = (position.z - grid.origin[2]) * per_metre;
     int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
 #if CLPV_GEOMETRY
-    details[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal);
+    details[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
 #else
     x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
     const float3 flux = clpv_load_colour(colours, texel, colour_scale);

@@ -9,36 +9,30 @@
 // add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_STRIDE (shared/thinned.h),
-// CLPV_SURFACE_PAPER; as text
-// what host/codegen/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text what
+// host/codegen/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
 #include "deliver.h"
 #include "shared/thinned.h"
 #include "surface.h"
 
-#ifndef CLPV_STRIDE
-#define CLPV_STRIDE 1u
-#endif
-
 #define CLPV_NO_SEGMENT 0xffffffffu
+
+// Blocking takes every stride-th texel (shared/thinned.h), light every one.
+#if CLPV_GEOMETRY
+#define CLPV_AND_STRIDE , const uint stride
+#define CLPV_PASS_STRIDE , stride
+#else
+#define CLPV_AND_STRIDE
+#define CLPV_PASS_STRIDE
+#endif
 
 // What the taken texels are summed from; `width` of the surface's rows; `details`: see find_cells.cl.
 #define CLPV_TEXELS                                                                                     \
   __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale, \
       __global const float *details, const uint texels, const uint width
 #define CLPV_PASS_TEXELS normals, colours, colour_scale, details, texels, width
-
-// Where the i-th taken texel of a surface of rows of `width` texels is.
-static inline uint taken_index(const uint width, const uint i) {
-#if CLPV_STRIDE == 1
-  return i;
-#else
-  const uint of_row = CLPV_TAKEN(width, CLPV_STRIDE);
-  return CLPV_TAKEN_TEXEL(i / of_row, CLPV_STRIDE) * width + CLPV_TAKEN_TEXEL(i % of_row, CLPV_STRIDE);
-#endif
-}
 
 static inline Sums no_sums(void) {
   Sums sums;
@@ -61,8 +55,14 @@ static inline Sum add_lobe(Sum sum, const Lanes weight, const Coefficients lobe)
 
 #if CLPV_GEOMETRY
 
-static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
-  const float3 n = clpv_load_normal(normals, taken_index(width, texel));
+// Where the i-th taken texel of a surface of rows of `width` texels is.
+static inline uint taken_index(const uint width, const uint i, const uint stride) {
+  const uint of_row = CLPV_TAKEN(width, stride);
+  return CLPV_TAKEN_TEXEL(i / of_row, stride) * width + CLPV_TAKEN_TEXEL(i % of_row, stride);
+}
+
+static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_STRIDE CLPV_AND_TABLE) {
+  const float3 n = clpv_load_normal(normals, taken_index(width, texel, stride));
   sums.k0 = add_lobe(sums.k0, details[texel], clpv_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
@@ -81,10 +81,9 @@ static inline Lanes cell_weights(__global const float* details, const uint texel
 }
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
-  const uint seen = taken_index(width, texel);
-  const float3 n = clpv_load_normal(normals, seen);
+  const float3 n = clpv_load_normal(normals, texel);
   const Coefficients lobe = clpv_lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE);
-  float3 flux = clpv_load_colour(colours, seen, colour_scale);
+  float3 flux = clpv_load_colour(colours, texel, colour_scale);
 #if CLPV_UNIT_FLUX
   flux *= M_PI_F / clpv_flux(lobe);
 #endif
@@ -155,7 +154,7 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
 // in slot 2 block + 1 of its first segment, in slot 2 block of another one. A block starts at most one of either.
 __kernel void sum_segments(__global const uint2* sorted, __global const uint* count, const uint length,
                            const uint blocks, const uint phase, CLPV_TEXELS, CLPV_VOLUME_OUT volume,
-                           __global Lanes* partials, __global uint* firsts CLPV_AND_TABLE) {
+                           __global Lanes* partials, __global uint* firsts CLPV_AND_STRIDE CLPV_AND_TABLE) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   firsts[block] = CLPV_NO_SEGMENT;
@@ -171,7 +170,7 @@ __kernel void sum_segments(__global const uint2* sorted, __global const uint* co
     const bool wanted = phase_of(CLPV_KEYS(CLPV_GRID), key) == phase;
     Sums sums = no_sums();
     for (; at < end && sorted[at].x == key; ++at) {
-      if (wanted) sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS CLPV_PASS_TABLE);
+      if (wanted) sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS CLPV_PASS_STRIDE CLPV_PASS_TABLE);
     }
     const bool ends_cell = at == total || sorted[at].x != key;
     if (wanted && starts_cell && ends_cell) {

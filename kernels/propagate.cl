@@ -1,7 +1,8 @@
 // One step of light from every cell to its neighbours, and the sum of all steps so far.
 //
 // In:  travelling light of the last step (`source` volume; the injected field at first), and with CLPV_BLOCKING the
-//      transmittance of each way into a cell (transmit.cl).
+//      transmittance of each way into a cell (transmit.cl); with CLPV_FIRST_TOO what every way lets through at `least`:
+//      1 in the first step, in which light does not block, else 0.
 // Out: travelling light of this step (`target` volume), accumulated with what came before.
 // Units: radiant intensity [W/sr] per channel; with fluxes travelling, [W] through each of the cell's six faces.
 // The transport itself (CLPV_ARRIVE, clpv_expand; docs/method.md, 'Propagation') is straight-line
@@ -62,6 +63,9 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) vo
     CLPV_VOLUME_IN source, CLPV_VOLUME_OUT target, CLPV_VOLUME_IN sum_so_far, CLPV_VOLUME_OUT sum
 #if CLPV_BLOCKING
     , CLPV_VOLUME_IN transmittance
+#if CLPV_FIRST_TOO
+    , const float least
+#endif
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
     , __global const float4* normals, __global const float4* ways CLPV_AND_TABLE CLPV_AND_FUNCTIONS
@@ -70,7 +74,12 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) vo
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;
   CLPV_RETURN_OUTSIDE(x, y);
 #if CLPV_BLOCKING
-  const Ways t = transmittance_load(transmittance, 0, x, y, z);
+  Ways t = transmittance_load(transmittance, 0, x, y, z);
+#if CLPV_FIRST_TOO
+#define CLPV_DO(i) t.c##i = max(t.c##i, (CLPV_REAL)(least));
+  CLPV_EACH_WAY(CLPV_DO)
+#undef CLPV_DO
+#endif
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
   CLPV_STEP_WITH_LOBES

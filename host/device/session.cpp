@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <utility>
 
 #include "device/cl_error.hpp"
+#include "device/compile_notice.hpp"
 #include "device/kernel.hpp"
 #include "support/log.hpp"
 
@@ -83,7 +85,8 @@ void Session::build(Program& program) {
   program.stored = load(program);
   if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-  build_ms_ += elapsed.count();
+  const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
+  if (!program.stored) tell_of_compiling(device_.name, before_ms, build_ms_);
   spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
                 program.stored ? "from the cache" : "compiled", elapsed.count());
 }
@@ -103,8 +106,10 @@ bool Session::load(Program& program) {
 
 void Session::store_programs() {
   if (!cache_) return;
+  bool told = false;
   for (auto& [key, program] : programs_) {
     if (program->stored || program->built() == nullptr) continue;
+    if (!std::exchange(told, true)) tell_of_keeping(build_ms_);
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries[0].empty()) {
       spdlog::debug("{} gives no compiled programs to keep", device_.name);

@@ -55,13 +55,12 @@ bool Injector::looks_up(Kind kind) const {
   return kind == Kind::light || blocks_by_lobes(options_.blocking);
 }
 
-Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format, int stride) const {
+Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format) const {
   const bool light = kind == Kind::light;
   const Literals both = Literals()
                             .flag("CLPV_GEOMETRY", !light)
                             .flag("CLPV_TRILINEAR", light && options_.trilinear)
-                            .flag("CLPV_SURFACE_PAPER", format == RsmFormat::paper)
-                            .number("CLPV_STRIDE", stride);
+                            .flag("CLPV_SURFACE_PAPER", format == RsmFormat::paper);
   ProgramSource find{"find_cells.cl", both, {}}, sum{"inject.cl", both, {}};
   find.literals.number("CLPV_STRIP", strip_);
   sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
@@ -73,10 +72,10 @@ Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format, int stride
           Kernel(session_, sum, "join_segments")};
 }
 
-Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format, int stride) {
-  const std::tuple key(kind, format, stride);
+Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
+  const std::pair key(kind, format);
   auto found = kernels_.find(key);
-  if (found == kernels_.end()) found = kernels_.emplace(key, make_kernels(kind, format, stride)).first;
+  if (found == kernels_.end()) found = kernels_.emplace(key, make_kernels(kind, format)).first;
   return found->second;
 }
 
@@ -104,12 +103,12 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
                     height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
   if (texels == 0) return;
   reserve(texels);
-  Kernels& kernel = kernels(kind, surface.format, stride);
-  kernel.find_cells
-      .set(surface.view, grid, surface.depth, surface.normal, surface.colour, surface.colour_scale,
-           sorter_.keys(), details_)
-      .launch(cl::NDRange((width + strip_ - 1) / strip_, height),
-              strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
+  Kernels& kernel = kernels(kind, surface.format);
+  kernel.find_cells.set(surface.view, grid, surface.depth, surface.normal, surface.colour,
+                        surface.colour_scale, sorter_.keys(), details_);
+  if (!light) kernel.find_cells.add(step);
+  kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
+                           strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
   sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
 
   const auto length = static_cast<cl_uint>(segment_length(texels)),
@@ -118,6 +117,7 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
     kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, phase, surface.normal,
                             surface.colour, surface.colour_scale, details_, static_cast<cl_uint>(texels),
                             surface.view.width, volume.memory(), partials_, firsts_);
+    if (!light) kernel.sum_segments.add(step);
     if (looks_up(kind)) table_.add_to(kernel.sum_segments);
     kernel.sum_segments.launch(cl::NDRange(blocks), kSegments);
     kernel.join_segments

@@ -3,7 +3,7 @@
 
 #include <CL/opencl.hpp>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
@@ -40,8 +40,8 @@ class Injector {
   struct Kernels {
     Kernel find_cells, sum_segments, join_segments;
   };
-  Kernels make_kernels(Kind kind, RsmFormat format, int stride) const;
-  Kernels& kernels(Kind kind, RsmFormat format, int stride);
+  Kernels make_kernels(Kind kind, RsmFormat format) const;
+  Kernels& kernels(Kind kind, RsmFormat format);
   bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
@@ -54,7 +54,7 @@ class Injector {
   LookupTable table_;
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
-  std::map<std::tuple<Kind, RsmFormat, int>, Kernels> kernels_;  ///< int: the stride
+  std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;
   Accumulator accumulator_;
   Buffer details_, partials_, firsts_;
 };

@@ -37,13 +37,22 @@ Propagator::Form Propagator::make_form(bool first, bool blocking) {
   const TransportSource source =
       transport_source(basis_, transport_,
                        {from, options_.state, blocking, lobes_.has_value(), lobes_ && lobes_->evaluates()});
-  const int channels = lobes_ || (blocking && source.arrive.flops() <= kLargestShared) ? 3 : 1;
+  const bool large = source.arrive.flops() > kLargestShared;
+  const int channels = lobes_ || (blocking && !large) ? 3 : 1;
+  // A second large kernel for the first step alone takes the compiler seconds, and saves next to nothing.
+  const bool first_too = blocking && large && !lobes_ && options_.state == State::coefficients;
   ProgramSource program{"propagate.cl", stencil_.literals(), source.text};
   if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
   if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
-  program.literals.flag("CLPV_BLOCKING", blocking).integer("CLPV_CHANNELS", channels);
+  program.literals.flag("CLPV_BLOCKING", blocking)
+      .flag("CLPV_FIRST_TOO", first_too)
+      .integer("CLPV_CHANNELS", channels);
   if (lobes_) lobes_->add_literals(program.literals);
-  return {source, channels, Kernel(session_, program, "propagate_step"),
+  return {source,
+          blocking,
+          channels,
+          first_too,
+          Kernel(session_, program, "propagate_step"),
           Kernel(session_, program, "propagate_expand")};
 }
 
@@ -60,10 +69,11 @@ void Propagator::transmit(const Volume& geometry) {
   transmitter_->transmit(geometry);
 }
 
-void Propagator::run_step(Form& form, bool blocking, const Volume& source, const Volume& target,
+void Propagator::run_step(Form& form, bool first, const Volume& source, const Volume& target,
                           const Volume& sum_so_far, const Volume& sum) {
   form.step.set(source.memory(), target.memory(), sum_so_far.memory(), sum.memory());
-  if (blocking) form.step.add(transmitter_->transmittance().memory());
+  if (form.blocking) form.step.add(transmitter_->transmittance().memory());
+  if (form.first_too) form.step.add(first ? 1.0f : 0.0f);
   if (lobes_) lobes_->add_to(form.step);
   stencil_.launch(form.step, form.channels == 3 ? 1 : 3);
 }
@@ -98,7 +108,8 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   // Late steps are t > n/2 but the first.
   const int late_steps =
       volumes.late == nullptr ? 0 : std::min((iterations + 1) / 2, std::max(iterations - 1, 0));
-  if (volumes.geometry != nullptr && iterations > 1) transmit(*volumes.geometry);
+  const bool blocks = volumes.geometry != nullptr && iterations > 1;
+  if (blocks) transmit(*volumes.geometry);
   if (options_.state == State::fluxes) sum_->clear(session_);
   if (volumes.late != nullptr) (late_steps > 0 ? sum_of(volumes, true) : *volumes.late).clear(session_);
   if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);
@@ -106,12 +117,11 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   const Volume* source = &volumes.injected;
   Form* last = nullptr;
   for (int step = 1; step <= iterations; ++step) {
-    const bool blocking = volumes.geometry != nullptr && step > 1;
     const Volume& target = *travelling_[static_cast<std::size_t>(step % 2)];
     Volume& sum = sum_of(volumes, step > iterations - late_steps);
-    last = &form(step == 1, blocking);
+    last = &form(step == 1, blocks && reads_transmittance(step));
     const auto run = [&](const Volume& so_far, const Volume& next) {
-      run_step(*last, blocking, *source, target, so_far, next);
+      run_step(*last, step == 1, *source, target, so_far, next);
     };
     // Coefficients add up from the injected field on; fluxes, which it has none of, from zero.
     if (step == 1 && options_.state == State::coefficients) {

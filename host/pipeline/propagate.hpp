@@ -43,20 +43,24 @@ class Propagator {
 
   /// What a later step's kernel executes.
   const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
+  /// Whether a step of something that has blocked reads what the ways let through: the first may have to, in vain.
+  bool reads_transmittance(int step) { return step > 1 || (transmitter_ && form(false, true).first_too); }
   /// Null until something has blocked.
   const Transmitter* transmitter() const { return transmitter_.get(); }
 
  private:
   struct Form {
     TransportSource source;
-    int channels;  ///< a work-item of `step` serves
+    bool blocking;
+    int channels;    ///< a work-item of `step` serves
+    bool first_too;  ///< serves the first step as well, told not to block
     Kernel step, expand;
   };
   Form make_form(bool first, bool blocking);
   Form& form(bool first, bool blocking);
   void transmit(const Volume& geometry);
-  void run_step(Form& form, bool blocking, const Volume& source, const Volume& target,
-                const Volume& sum_so_far, const Volume& sum);
+  void run_step(Form& form, bool first, const Volume& source, const Volume& target, const Volume& sum_so_far,
+                const Volume& sum);
   /// What the early steps, or the late ones, add up in: light, or the fluxes it will come from.
   Volume& sum_of(const PropagateVolumes& volumes, bool late);
   void expand(Form& form, const PropagateVolumes& volumes, bool late);
