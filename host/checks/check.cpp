@@ -10,8 +10,12 @@ CheckResults check(Stage stage, Session& session, bool thorough) {
       return check_rasterize(session);
     case Stage::inject:
       return check_inject(session, thorough);
+    case Stage::block:
+      return check_block(session);
     case Stage::propagate:
       return check_propagate(session, thorough);
+    case Stage::sweep:
+      return check_sweep(session, thorough);
     case Stage::carry_late:
       return check_carry_late(session);
     case Stage::gather:

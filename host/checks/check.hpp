@@ -37,7 +37,9 @@ CheckResults check(Stage stage, Session& session, bool thorough = false);
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
 CheckResults check_inject(Session& session, bool thorough = false);
+CheckResults check_block(Session& session);
 CheckResults check_propagate(Session& session, bool thorough = false);
+CheckResults check_sweep(Session& session, bool thorough = false);
 CheckResults check_carry_late(Session& session);
 CheckResults check_gather(Session& session, bool thorough = false);
 CheckResults check_shade(Session& session);
