@@ -4,16 +4,12 @@
 // resampled trilinearly at the finer cells' centres, zero beyond its grid; a cell of a quarter of the area takes a
 // quarter of the intensity for the same irradiance (docs/method.md, 'Late light').
 //
-// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells. Centre i of the finer grid stands
-// at (i + d - 1/2) / 2 coarser cells from the first coarser centre: always a quarter of a cell off one, so that its two
-// neighbours along an axis weigh 3/4 and 1/4. A work-item is a cell of one channel, or CLPV_LANES cells side by side.
+// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells (finer.h). A work-item is a cell of
+// one channel, or CLPV_LANES cells side by side.
 #include "coefficients.h"
+#include "finer.h"
 #include "volume/light.h"
 #include "volume/whole_groups.h"
-
-// Of the two coarser cells along an axis round finer cell u = i + d: the lower one, and the weight of the upper one.
-#define CLPV_LOWER(u) (((u) - 1) >> 1)
-#define CLPV_UPPER_WEIGHT(u) ((u) & 1 ? 0.25f : 0.75f)
 
 // The four coarser rows round finer cells, from coarser cell x on: their mean in y and z, in finer cells' units.
 CLPV_INLINE Coefficients clpv_row(CLPV_VOLUME_IN coarser, const int channel, const int x, const int uy,
@@ -28,14 +24,7 @@ CLPV_INLINE Coefficients clpv_row(CLPV_VOLUME_IN coarser, const int channel, con
 }
 
 #if CLPV_LANES == 8
-// Finer cells ux to ux + 7 from the eight coarser ones that start with the lower of the first one's two.
-#define CLPV_ODD(v)                                                               \
-  (0.75f * (float8)((v).s0, (v).s1, (v).s1, (v).s2, (v).s2, (v).s3, (v).s3, (v).s4) + \
-   0.25f * (float8)((v).s1, (v).s0, (v).s2, (v).s1, (v).s3, (v).s2, (v).s4, (v).s3))
-#define CLPV_EVEN(v)                                                              \
-  (0.75f * (float8)((v).s1, (v).s1, (v).s2, (v).s2, (v).s3, (v).s3, (v).s4, (v).s4) + \
-   0.25f * (float8)((v).s0, (v).s2, (v).s1, (v).s3, (v).s2, (v).s4, (v).s3, (v).s5))
-
+// Finer cells ux to ux + 7.
 CLPV_INLINE Coefficients clpv_resample(CLPV_VOLUME_IN coarser, const int channel, const int ux, const int uy,
                                        const int uz) {
   const Coefficients row = clpv_row(coarser, channel, CLPV_LOWER(ux), uy, uz);

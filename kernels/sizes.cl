@@ -3,6 +3,7 @@
 #include "shared/grid.h"
 #include "shared/light.h"
 #include "shared/mesh.h"
+#include "shared/sweep.h"
 #include "shared/view.h"
 
 // The constants the host asserts its own sizes with; a size that differs does not compile.
@@ -14,6 +15,9 @@ CLPV_ASSERT_SIZE(ClpvTriangle, CLPV_SIZEOF_TRIANGLE)
 CLPV_ASSERT_SIZE(ClpvMaterial, CLPV_SIZEOF_MATERIAL)
 CLPV_ASSERT_SIZE(ClpvTexture, CLPV_SIZEOF_TEXTURE)
 CLPV_ASSERT_SIZE(ClpvView, CLPV_SIZEOF_VIEW)
+CLPV_ASSERT_SIZE(ClpvSweepBin, CLPV_SIZEOF_SWEEP_BIN)
+CLPV_ASSERT_SIZE(ClpvSweepDirection, CLPV_SIZEOF_SWEEP_DIRECTION)
+CLPV_ASSERT_SIZE(ClpvSweepShell, CLPV_SIZEOF_SWEEP_SHELL)
 
 // `bytes`: one entry a SIZE and OFFSET of CLPV_EACH_SHARED, in its order. One work-item.
 __kernel void sizes(__global uint* bytes) {

@@ -136,6 +136,9 @@ TEST(Options, StagesAreToldWhatWasChosen) {
   EXPECT_EQ(propagate.state, State::fluxes);
   EXPECT_EQ(propagate.lobe_time, LobeTime::kernel);
   EXPECT_EQ(propagate.format, (VolumeFormat{Layout::image, Storage::float16}));
+  options.cascades = 3, options.directions = Directions::of216, options.coarser_directions = Directions::of96;
+  EXPECT_EQ(sweep_options(options).parts, (std::vector<int>{3, 2, 2}));
+  EXPECT_EQ(sweep_options(options).grid, 11);
   const GatherOptions gather = gather_options(options);
   EXPECT_EQ(gather.floor, 0.25);
   EXPECT_TRUE(gather.lobes.table_functions);

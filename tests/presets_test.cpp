@@ -41,6 +41,7 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["storage"], "half");
   EXPECT_EQ(json["rsm-format"], "paper");
   EXPECT_EQ(json["blocking"], "one-sided");
+  EXPECT_EQ(json["blockers"], "seen");
   EXPECT_EQ(json["injection"], "nearest");
   EXPECT_EQ(json["late-light"], false);
   EXPECT_EQ(json["gather-floor"], 0);

@@ -2,6 +2,8 @@
 
 #include "basis/face_transport.hpp"
 #include "basis/operator_transport.hpp"
+#include "basis/sweep.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -25,6 +27,14 @@ void look_up_blockers(Transport& transport, const Basis& basis) {
 
 }  // namespace
 
+std::vector<TransportKind> stepped_transports() {
+  std::vector<TransportKind> stepped;
+  for (const TransportKind kind : values_of<TransportKind>()) {
+    if (kind != TransportKind::sweep) stepped.push_back(kind);
+  }
+  return stepped;
+}
+
 Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptions& lobes,
                          Blocking blocking) {
   Transport transport;
@@ -46,6 +56,10 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
       break;
     case TransportKind::semi_lagrangian:
       transport.scheme = make_semi_lagrangian(basis);
+      transport.gathers_cosine = true;
+      break;
+    case TransportKind::sweep:
+      transport.scheme = sweep_ways();
       transport.gathers_cosine = true;
       break;
   }

@@ -31,7 +31,7 @@ struct FaceTransport {
   Matrix lobes;  ///< N x 6: what 1 W through the face of normal +x -x +y -y +z -z adds to the coefficients
 };
 
-/// Linear operators: `upwind` and `semi-lagrangian`. c'(x) = sum_k (1 - B_k) R_k c(x - offset_k).
+/// Linear operators: `upwind` and `semi-lagrangian`; and, without weights, the ways of `sweep`. c'(x) = sum_k (1 - B_k) R_k c(x - offset_k).
 struct OperatorTransport {
   struct Neighbour {
     glm::ivec3 offset;  ///< how far the light travels, in cells; zero: it stays
@@ -48,6 +48,7 @@ enum class TransportKind {
   exact,            ///< fluxes through faces, integrated over each
   upwind,           ///< an operator of finite volumes
   semi_lagrangian,  ///< an operator that moves light along its own direction
+  sweep,  ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its ways and gather
 };
 
 constexpr std::string_view name_of(TransportKind kind) {
@@ -60,6 +61,8 @@ constexpr std::string_view name_of(TransportKind kind) {
       return "upwind";
     case TransportKind::semi_lagrangian:
       return "semi-lagrangian";
+    case TransportKind::sweep:
+      return "sweep";
   }
   return {};
 }
@@ -78,6 +81,9 @@ struct Transport {
   /// its flux.
   bool unit_flux_lobes = false;
 };
+
+/// Those that move light in steps: all but the sweep.
+std::vector<TransportKind> stepped_transports();
 
 /// Operators have no lobes: `lobes` does not matter to them. `blocking`: what the geometry volume holds.
 Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptions& lobes = {},

@@ -10,8 +10,12 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
       return check_rasterize(session);
     case Stage::inject:
       return check_inject(session, scope);
+    case Stage::block:
+      return check_block(session);
     case Stage::propagate:
       return check_propagate(session, scope);
+    case Stage::sweep:
+      return check_sweep(session, scope);
     case Stage::carry_late:
       return check_carry_late(session);
     case Stage::gather:

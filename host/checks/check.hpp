@@ -44,7 +44,9 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
 CheckResults check_inject(Session& session, const CheckScope& scope = {});
+CheckResults check_block(Session& session);
 CheckResults check_propagate(Session& session, const CheckScope& scope = {});
+CheckResults check_sweep(Session& session, const CheckScope& scope = {});
 CheckResults check_carry_late(Session& session);
 CheckResults check_gather(Session& session, const CheckScope& scope = {});
 CheckResults check_shade(Session& session);

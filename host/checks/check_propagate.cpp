@@ -99,7 +99,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
 /// `full`: every transport in both states, with and without blockers.
 void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
                      CheckResults& results) {
-  for (const TransportKind kind : values_of<TransportKind>()) {
+  for (const TransportKind kind : stepped_transports()) {
     if (!full && kind != TransportKind::sampled && kind != TransportKind::upwind) continue;
     const Transport transport = make_transport(kind, basis, lobes);
     const bool faces = std::holds_alternative<FaceTransport>(transport.scheme);
@@ -134,7 +134,7 @@ void check_areas(Session& session, bool thorough, CheckResults& results) {
   for (const char* name : {"sh2", "bins24"}) {
     if (!thorough && std::string(name) != "sh2") continue;
     const std::unique_ptr<Basis> basis = make_basis(name);
-    for (const TransportKind transport : values_of<TransportKind>()) {
+    for (const TransportKind transport : stepped_transports()) {
       results.push_back(check_one(session, *basis, make_transport(transport, *basis, {}, Blocking::areas),
                                   {.grid = kGrid}, true));
     }

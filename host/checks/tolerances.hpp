@@ -29,6 +29,10 @@ inline constexpr Tolerance kTolerances[] = {
      "as inject; sums of N products with the coefficients of the lobe towards +z, large and of mixed sign "
      "where the "
      "Gram matrix is ill-conditioned; measured 3e-7 (srbf4) to 1.7e-5 (srbf14)"},
+    {"block", 0,
+     "shares of samples outside what rounding can decide (reference/block.hpp); 64ths are exact in any "
+     "format"},
+    {"block-half", 0, "as block"},
     {"propagate", 2e-5,
      "float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14)"},
     {"propagate-run-time-lobes", 2e-4,
@@ -46,6 +50,10 @@ inline constexpr Tolerance kTolerances[] = {
      "a device's image filter may keep 8 bits of a weight, along each of three axes, between neighbours as "
      "far apart as random ones are; PoCL, which filters in float, measured 1e-6"},
     {"gather-filter-half", 2e-2, "as gather-filter: numbers of 11 bits add a tenth of that"},
+    {"sweep", 5e-6, "float32 sums of eight products a cell, over as many cells as light crosses"},
+    {"sweep-half", 4e-3,
+     "numbers of 11 bits: injected light, transmittance, the sums, and what is made of them; light on its "
+     "way is float32"},
     {"carry-late", 5e-6,
      "sums of nine float32 numbers; the twin weighs by where the float32 origins put the centres; measured "
      "2e-7"},

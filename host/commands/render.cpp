@@ -144,7 +144,7 @@ void run(const Options& options, const Shared& shared) {
   spdlog::debug("options: {}", to_json(resolved).dump());
   progress.advance();
   frame.render(camera, [&](const CascadeVolumes& volumes) {
-    if (!options.stats.empty()) stats.add_energy(session, frame.basis(), volumes);
+    if (!options.stats.empty()) stats.add_energy(session, frame, volumes);
     if (!options.dump.empty()) dump_volume(session, options, volumes);
   });
   stats.end_first_frame(session);

@@ -141,7 +141,8 @@ std::string quality_csv(const std::vector<QualityCell>& cells) {
 }
 
 std::string quality_table(const std::vector<QualityCell>& cells) {
-  constexpr const char* kKinds[] = {"rasterize", "inject", "propagate", "carry-late", "gather", "shade"};
+  constexpr const char* kKinds[] = {"rasterize",  "inject", "block", "propagate",
+                                    "carry-late", "gather", "shade"};
   std::vector<std::pair<std::string, std::string>> views;  // scene, camera
   for (const QualityCell& cell : cells) {
     if (std::pair view{cell.scene, cell.camera}; std::ranges::count(views, view) == 0) views.push_back(view);

@@ -112,6 +112,44 @@ constexpr std::string_view name_of(TableStorage storage) {
   return {};
 }
 
+/// What blocks light on its way.
+enum class Blockers {
+  scene,  ///< the scene's triangles, whoever sees them
+  seen,   ///< the surfels that lights' maps and the camera see
+};
+
+constexpr std::string_view name_of(Blockers blockers) {
+  switch (blockers) {
+    case Blockers::scene:
+      return "scene";
+    case Blockers::seen:
+      return "seen";
+  }
+  return {};
+}
+
+/// Directions that light is swept along: 24 bins in so many parts (basis/sweep.hpp).
+enum class Directions { of24, of96, of216, of384 };
+
+constexpr std::string_view name_of(Directions directions) {
+  switch (directions) {
+    case Directions::of24:
+      return "24";
+    case Directions::of96:
+      return "96";
+    case Directions::of216:
+      return "216";
+    case Directions::of384:
+      return "384";
+  }
+  return {};
+}
+
+/// Parts of a bin along each of its edges.
+constexpr int parts_of(Directions directions) {
+  return 1 + static_cast<int>(directions);
+}
+
 /// A virtual point light goes to the cell it is in, or is spread over the eight round it.
 enum class Injection { nearest, trilinear };
 

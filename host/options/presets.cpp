@@ -15,7 +15,8 @@ const std::vector<std::pair<std::string, std::string>>& paper_options() {
       {"basis", "srbf8v2"},     {"lambda", "0.25"},        {"lobe", "rotate"},
       {"lobe-time", "kernel"},  {"evaluate", "table"},     {"table-size", "256"},
       {"table", "image"},       {"transport", "sampled"},  {"state", "coefficients"},
-      {"rsm-format", "paper"},  {"blocking", "one-sided"}, {"blocker-stride", "1"},
+      {"rsm-format", "paper"},  {"blockers", "seen"},      {"blocking", "one-sided"},
+      {"blocker-stride", "1"},
       {"injection", "nearest"}, {"gather-offset", "0.5"},  {"gather-floor", "0"},
       {"late-light", "off"},    {"layout", "image"},       {"storage", "half"},
   };

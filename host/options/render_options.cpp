@@ -61,11 +61,13 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("table-size", o.table_size, "entries of those tables", Range{2, kMostEntries});
   visit("table", o.table, "what kernels read those tables as: a buffer, or a 1-D image of it", Named{});
   visit("transport", o.transport, "how light moves from cell to cell", Named{});
-  visit("state", o.state, "what travels: the basis's coefficients, or six fluxes a cell", Named{});
+  visit("directions", o.directions, "that light is swept along in the finest cascade", Named{});
+  visit("coarser-directions", o.coarser_directions, "the same in all other cascades", Named{});
+  visit("state", o.state, "what travels in steps: the basis's coefficients, or six fluxes a cell", Named{});
   visit("layout", o.layout,
         "how volumes lie in memory: 3-D images, or buffers by cell, by coefficient, by blocks", Named{});
   visit("storage", o.storage, "numbers of the volumes; all arithmetic is float", Named{});
-  visit("iterations", o.iterations, "propagation steps a cascade", Range{0, kMostSteps});
+  visit("iterations", o.iterations, "propagation steps a cascade; a sweep takes none", Range{0, kMostSteps});
   visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMostCells});
   visit("cascades", o.cascades, "cascades, each twice the size of the one before", Range{1, kMostCascades});
   visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: the scene's, else 12.5",
@@ -75,6 +77,8 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("shadow-size", o.shadow_size, "texels along each side of a direct light's shadow map",
         Range{1, kMostTexels});
   visit("occlusion", o.occlusion, "indirect shadows: the geometry volume blocks light", OnOff{});
+  visit("blockers", o.blockers,
+        "what blocks light: the scene's triangles, or what lights and the camera see of it", Named{});
   visit("blocking", o.blocking,
         "how surfaces block light: by their area across each axis, or by lobes, from both sides or what "
         "meets their lit one",
@@ -85,8 +89,8 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
   visit("gather-floor", o.gather_floor, "least irradiance, as a share of its mean over all normals",
         Range{0, 1});
-  visit("late-light", o.late_light, "carry what later steps brought in coarser cascades down to finer ones",
-        OnOff{});
+  visit("late-light", o.late_light,
+        "carry what later steps brought in coarser cascades down to finer ones; a sweep has none", OnOff{});
   visit("width", o.width, "image width [pixels]", Range{1, kMostPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMostPixels});
 }

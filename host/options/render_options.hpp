@@ -28,6 +28,8 @@ struct RenderOptions {
   TableStorage table = TableStorage::buffer;
   Evaluation evaluate = Evaluation::exact;
   TransportKind transport = TransportKind::semi_lagrangian;
+  Directions directions = Directions::of96;
+  Directions coarser_directions = Directions::of24;
   State state = State::coefficients;
   Layout layout = Layout::soa;
   Storage storage = Storage::float16;
@@ -39,6 +41,7 @@ struct RenderOptions {
   RsmFormat rsm_format = RsmFormat::float32;
   int shadow_size = 1024;
   bool occlusion = true;
+  Blockers blockers = Blockers::seen;
   Blocking blocking = Blocking::areas;
   int blocker_stride = 3;
   Injection injection = Injection::nearest;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
@@ -45,6 +46,21 @@ struct PropagateOptions {
   StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes, local}; }
 };
 
+/// How the work of a sweep is dealt out; light is the same but for rounding.
+enum class SweepForm {
+  suited,  ///< to the device
+  bins,    ///< a work-item a bin: CPUs
+  planes,  ///< a launch a plane: devices of many thousand work-items
+};
+
+struct SweepOptions {
+  int grid = 32;             ///< cells along each axis
+  std::vector<int> parts;    ///< of each bin (sweep_bins), one a cascade, finest first
+  bool blocking = true;      ///< geometry volumes block
+  VolumeFormat format = {};  ///< of all volumes; its storage is that of what the sweep keeps for itself
+  SweepForm form = SweepForm::suited;
+};
+
 struct GatherOptions {
   int grid = 32;               ///< cells along each axis of every cascade
   double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
@@ -59,6 +75,7 @@ struct GatherOptions {
 /// `unit_flux_lobes`: Transport's.
 InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes);
 PropagateOptions propagate_options(const RenderOptions& options);
+SweepOptions sweep_options(const RenderOptions& options);
 GatherOptions gather_options(const RenderOptions& options);
 
 }  // namespace clpv

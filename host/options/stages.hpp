@@ -8,7 +8,7 @@ namespace clpv {
 
 /// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
 /// that both sides share, is none of a frame's: it is checked before all others.
-enum class Stage { sizes, rasterize, inject, propagate, carry_late, gather, shade };
+enum class Stage { sizes, rasterize, inject, block, propagate, sweep, carry_late, gather, shade };
 
 constexpr std::string_view name_of(Stage stage) {
   switch (stage) {
@@ -18,8 +18,12 @@ constexpr std::string_view name_of(Stage stage) {
       return "rasterize";
     case Stage::inject:
       return "inject";
+    case Stage::block:
+      return "block";
     case Stage::propagate:
       return "propagate";
+    case Stage::sweep:
+      return "sweep";
     case Stage::carry_late:
       return "carry-late";
     case Stage::gather:
@@ -36,9 +40,10 @@ enum class Pass {
   rasterize_camera,
   rasterize_shadow,  ///< a light
   rasterize_rsm,     ///< a cascade and light
-  inject_light,      ///< a cascade, as are the next three
+  inject_light,      ///< a cascade, as are the next four
   inject_geometry,
-  propagate,
+  block,
+  propagate,  ///< in steps, or by a sweep
   carry_late,
   gather,
   shade,
@@ -57,6 +62,8 @@ constexpr std::string_view name_of(Pass pass) {
       return "inject-light";
     case Pass::inject_geometry:
       return "inject-geometry";
+    case Pass::block:
+      return "block";
     case Pass::propagate:
       return "propagate";
     case Pass::carry_late:

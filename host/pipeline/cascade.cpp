@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/error.hpp"
+
 namespace clpv {
 namespace {
 
@@ -10,6 +12,8 @@ namespace {
 // cells a side, 24 hold the scene in full light.
 constexpr double kRoom = 32.0 / 24;
 constexpr double kFarTooLarge = 4;  // times the edge that just holds the scene: a quarter of its cells across
+
+constexpr double kAligned = 1e-2;  // [finer cells]: rounding of origins in float32, some hundred cells away
 
 /// How far the bounding box reaches from the eye of any camera, along any axis [m].
 double reach_of(const Scene& scene) {
@@ -57,6 +61,27 @@ bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double s
     return glm::all(glm::lessThan(glm::min(a, glm::min(b, c)), upper)) &&
            glm::all(glm::greaterThan(glm::max(a, glm::max(b, c)), lower));
   });
+}
+
+std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
+  if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
+    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,
+                coarser.cell);
+  }
+  const int most = static_cast<int>(finer.n) + 1;
+  std::array<int, 3> offset{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = (double{finer.origin[axis]} - coarser.origin[axis]) / finer.cell;
+    const double whole = std::round(cells);
+    if (std::abs(cells - whole) > kAligned || whole < -1 || whole > most) {
+      throw Error(ExitCode::run_time,
+                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
+                  "numbers -1..{} allowed",
+                  axis, cells, most);
+    }
+    offset[axis] = static_cast<int>(whole);
+  }
+  return offset;
 }
 
 }  // namespace clpv

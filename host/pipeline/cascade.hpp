@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <array>
 #include <vector>
 
 #include "kernels/shared/grid.h"
@@ -15,6 +16,10 @@ static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
 /// in its middle. Origins are whole multiples of the cell, so that a camera that moves inside a cell moves no
 /// grid, and light does not swim (Kaplanyan & Dachsbacher 2010, section 5).
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
+
+/// From the coarser grid's least corner to the finer one's, in finer cells. Throws Error(run_time) where these are not half
+/// as wide, or not inside.
+std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer);
 
 /// The finest edge [m] that suits `scene`: `size`, where the coarsest of `count` cascades then holds the scene's bounding
 /// box as seen from each of its cameras and is not far too large for it; else the edge with which it just holds the box.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "basis/sweep.hpp"
 #include "pipeline/light_scale.hpp"
 #include "pipeline/view.hpp"
 #include "support/error.hpp"
@@ -17,6 +18,24 @@ VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis) {
   return {options.grid + 1, blocking_size(options.blocking, basis), 1};
 }
 
+bool sweeps(const RenderOptions& options) {
+  return options.transport == TransportKind::sweep;
+}
+
+std::unique_ptr<Basis> swept_basis(const RenderOptions& options) {
+  return sweeps(options) ? make_basis("bins24") : nullptr;
+}
+
+bool carries_late(const RenderOptions& options) {
+  return options.late_light && options.cascades > 1 && !sweeps(options);
+}
+
+/// Geometry volumes that a frame keeps.
+int geometry_volumes(const RenderOptions& options) {
+  if (!options.occlusion) return 0;
+  return options.blockers == Blockers::scene ? options.cascades : 1;
+}
+
 /// Bytes of the volumes of a frame at this grid.
 double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) {
   RenderOptions tried = options;
@@ -26,6 +45,12 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   };
   const VolumeShape lit = light_shape(tried, basis), blocking = geometry_shape(tried, basis),
                     carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
+  const double masks =
+      options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
+  if (sweeps(options)) {
+    return bytes(lit) + options.cascades * bytes({grid, kSweepBins, 3}) +
+           geometry_volumes(options) * bytes(blocking) + masks + Sweeper::bytes(sweep_options(tried));
+  }
   // What adding takes besides: steps, and what is carried down, add to light; injection adds to its cells.
   const auto spare = [&](const VolumeShape& shape) {
     return static_cast<double>(Accumulator::spare_bytes(options.format(), shape));
@@ -34,8 +59,8 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
     return static_cast<double>(Accumulator::cells_bytes(options.format(), shape));
   };
   return bytes(lit) * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) +
-         3 * bytes(carried) + 2 * bytes(blocking) + 2 * spare(lit) + spare(carried) + cells(lit) +
-         cells(blocking);
+         3 * bytes(carried) + (1 + geometry_volumes(options)) * bytes(blocking) + masks + 2 * spare(lit) +
+         spare(carried) + cells(lit) + cells(blocking);
 }
 
 /// Refuses a grid whose volumes exceed the device, naming the largest that fits.
@@ -62,7 +87,27 @@ PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
   return options;
 }
 
+/// Refuses what a sweep cannot do, and what the scene's triangles cannot.
+void require_compatible(const RenderOptions& options) {
+  if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
+    throw Error(ExitCode::usage,
+                "blocking: found '{}' with blockers 'scene', allowed: areas (or blockers 'seen')",
+                name_of(options.blocking));
+  }
+  if (!sweeps(options)) return;
+  if (options.state != State::coefficients) {
+    throw Error(ExitCode::usage, "state: found '{}' with transport 'sweep', allowed: coefficients",
+                name_of(options.state));
+  }
+  if (options.lobe_time != LobeTime::host) {
+    throw Error(ExitCode::usage,
+                "lobe-time: found '{}' with transport 'sweep', which has no lobes; allowed: host",
+                name_of(options.lobe_time));
+  }
+}
+
 const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis) {
+  require_compatible(options);
   require_supported(session.device(), options.format(), light_shape(options, basis));
   require_memory(session, options, basis);
   return options;
@@ -74,29 +119,37 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
     : session_(session),
       scene_(scene),
       basis_(make_basis(options)),
+      swept_(swept_basis(options)),
       options_(checked(session, options, *basis_)),
       transport_(make_transport(options, *basis_)),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_.unit_flux_lobes)),
-      propagator_(session, *basis_, transport_, tuned(propagate_options(options), tuning)),
-      gatherer_(session, *basis_, transport_, gather_options(options)),
+      gatherer_(session, gathered(), swept_ ? make_transport(TransportKind::sweep, *swept_) : transport_,
+                gather_options(options)),
       shader_(session),
       injected_(session, light_shape(options, *basis_), "injected light", options.format()) {
   for (int c = 0; c < options.cascades; ++c) {
-    accumulated_.push_back(std::make_unique<Volume>(session, light_shape(options, *basis_),
+    accumulated_.push_back(std::make_unique<Volume>(session, light_shape(options, gathered()),
                                                     "accumulated light", options.format()));
     late_.push_back(
-        options.late_light && c > 0
+        carries_late(options) && c > 0
             ? std::make_unique<Volume>(session, light_shape(options, *basis_), "late light", options.format())
             : nullptr);
   }
-  if (options.late_light && options.cascades > 1)
-    late_carrier_.emplace(session, light_shape(options, *basis_), options.format());
-  if (options.occlusion) {
-    geometry_ = std::make_unique<Volume>(session, geometry_shape(options, *basis_), "geometry volume",
-                                         options.format());
+  if (carries_late(options)) late_carrier_.emplace(session, light_shape(options, *basis_), options.format());
+  if (swept_) {
+    sweeper_.emplace(session, *basis_, transport_, sweep_options(options));
+  } else {
+    propagator_.emplace(session, *basis_, transport_, tuned(propagate_options(options), tuning));
   }
+  for (int i = 0; i < geometry_volumes(options); ++i) {
+    geometry_.push_back(std::make_unique<Volume>(session, geometry_shape(options, *basis_), "geometry volume",
+                                                 options.format()));
+  }
+  if (options.occlusion && options.blockers == Blockers::scene)
+    blocker_.emplace(session, buffers_, options.grid, options.format());
+  blocked_.resize(static_cast<std::size_t>(options.cascades));
   const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
@@ -141,7 +194,8 @@ void Frame::rasterize_shadows() {
 
 void Frame::rasterize_rsms(int cascade) {
   for (LitLight& lit : lights_) {
-    if (cascade > 0 && !rsm_follows_cascade(lit.light)) continue;
+    if (cascade < options_.cascades - 1 && !rsm_follows_cascade(lit.light))
+      continue;  // the coarsest is first
     const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
     const auto views =
         rsm_views(lit.light, grids_[static_cast<std::size_t>(cascade)], buffers_.bounds, options_.rsm_size);
@@ -155,33 +209,68 @@ void Frame::rasterize_rsms(int cascade) {
 }
 
 void Frame::inject(int cascade) {
+  const StageScope scope(session_, {Pass::inject_light, cascade});
+  injected_.clear(session_);
+  for (const LitLight& lit : lights_) {
+    for (const Surface& rsm : lit.rsms)
+      injector_.inject_light(rsm, grids_[static_cast<std::size_t>(cascade)], injected_);
+  }
+}
+
+void Frame::inject_geometry(int cascade) {
+  const StageScope scope(session_, {Pass::inject_geometry, cascade});
   const ClpvGrid& grid = grids_[static_cast<std::size_t>(cascade)];
-  {
-    const StageScope scope(session_, {Pass::inject_light, cascade});
-    injected_.clear(session_);
-    for (const LitLight& lit : lights_) {
-      for (const Surface& rsm : lit.rsms) injector_.inject_light(rsm, grid, injected_);
+  Volume& geometry = geometry_of(cascade);
+  geometry.clear(session_);
+  for (const LitLight& lit : lights_) {
+    for (const Surface& rsm : lit.rsms) injector_.inject_geometry(rsm, grid, geometry);
+  }
+  injector_.inject_geometry(*camera_surface_, grid, geometry, options_.blocker_stride);
+}
+
+/// Whether anything had to be done: a scene blocks as before while the grid stands.
+bool Frame::block(int cascade) {
+  const auto c = static_cast<std::size_t>(cascade);
+  const auto same = [](const ClpvGrid& a, const ClpvGrid& b) {
+    return std::equal(a.origin, a.origin + 3, b.origin) && a.cell == b.cell;
+  };
+  if (blocked_[c] && same(*blocked_[c], grids_[c])) return false;
+  const StageScope scope(session_, {Pass::block, cascade});
+  blocker_->block(grids_[c], geometry_of(cascade));
+  blocked_[c] = grids_[c];
+  return true;
+}
+
+void Frame::propagate(int cascade) {
+  const auto c = static_cast<std::size_t>(cascade);
+  const Volume* geometry = nullptr;
+  bool changed = false;
+  if (!geometry_.empty()) {
+    geometry = &geometry_of(cascade);
+    if (blocker_) {
+      changed = block(cascade);
+    } else {
+      inject_geometry(cascade);
+      changed = true;
     }
   }
-  if (!geometry_) return;
-  const StageScope scope(session_, {Pass::inject_geometry, cascade});
-  geometry_->clear(session_);
-  for (const LitLight& lit : lights_) {
-    for (const Surface& rsm : lit.rsms) injector_.inject_geometry(rsm, grid, *geometry_);
+  const StageScope scope(session_, {Pass::propagate, cascade});
+  if (propagator_) {
+    propagator_->propagate({injected_, geometry, *accumulated_[c], late_[c].get()}, options_.iterations);
+    return;
   }
-  injector_.inject_geometry(*camera_surface_, grid, *geometry_, options_.blocker_stride);
+  if (changed) sweeper_->block(c, *geometry);
+  sweeper_->sweep(c, grids_, injected_, *accumulated_[c]);
 }
 
 void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
   rasterize_rsms(cascade);
   inject(cascade);
+  propagate(cascade);
+  if (!observer) return;
   const auto c = static_cast<std::size_t>(cascade);
-  {
-    const StageScope scope(session_, {Pass::propagate, cascade});
-    propagator_.propagate({injected_, geometry_.get(), *accumulated_[c], late_[c].get()},
-                          options_.iterations);
-  }
-  if (observer) observer({cascade, grids_[c], injected_, geometry_.get(), *accumulated_[c], light_scale_});
+  observer({cascade, grids_[c], injected_, geometry_.empty() ? nullptr : &geometry_of(cascade),
+            *accumulated_[c], light_scale_});
 }
 
 void Frame::carry_late_light() {
@@ -201,7 +290,8 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   light_scale_ = light_scale(options_.format(), lights, grids_.back().cell);
   rasterize_camera(camera);
   rasterize_shadows();
-  for (int cascade = 0; cascade < options_.cascades; ++cascade) light_cascade(cascade, observer);
+  // A sweep takes what comes in at a cascade's border from the next coarser one. Steps do in any order.
+  for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
   if (late_carrier_) carry_late_light();
   std::vector<const Volume*> accumulated;
   for (const auto& volume : accumulated_) accumulated.push_back(volume.get());

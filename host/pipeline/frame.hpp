@@ -10,6 +10,7 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "options/render_options.hpp"
+#include "pipeline/block.hpp"
 #include "pipeline/carry_late.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"
@@ -18,12 +19,13 @@
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/shade.hpp"
+#include "pipeline/sweep.hpp"
 #include "pipeline/tuning.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
 
-/// The volumes of one cascade, just after its propagation.
+/// The volumes of one cascade, just after its propagation. What is accumulated is of Frame::gathered().
 struct CascadeVolumes {
   int cascade;
   const ClpvGrid& grid;
@@ -51,7 +53,9 @@ class Frame {
   std::vector<float> read(Show view);
 
   const RenderOptions& options() const { return options_; }
-  const Basis& basis() const { return *basis_; }
+  const Basis& basis() const { return *basis_; }  ///< of injected light
+  /// Of light on its way to surfaces: that of injected light, or what a sweep leaves.
+  const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
   const Transport& transport() const { return transport_; }
 
  private:
@@ -67,17 +71,23 @@ class Frame {
   void light_cascade(int cascade, const CascadeObserver& observer);
   void rasterize_rsms(int cascade);
   void inject(int cascade);
+  void inject_geometry(int cascade);
+  bool block(int cascade);
+  void propagate(int cascade);
+  Volume& geometry_of(int cascade) { return *geometry_[blocker_ ? static_cast<std::size_t>(cascade) : 0]; }
   void carry_late_light();
 
   Session& session_;
   const Scene& scene_;
-  std::unique_ptr<Basis> basis_;
+  std::unique_ptr<Basis> basis_, swept_;  ///< swept_: null without a sweep
   RenderOptions options_;
   Transport transport_;
   SceneBuffers buffers_;
   Rasterizer rasterizer_;
   Injector injector_;
-  Propagator propagator_;
+  std::optional<SceneBlocker> blocker_;   ///< none: what is seen blocks
+  std::optional<Propagator> propagator_;  ///< one of the two
+  std::optional<Sweeper> sweeper_;
   std::optional<LateCarrier> late_carrier_;  ///< none: no late light, or no coarser cascade
   Gatherer gatherer_;
   Shader shader_;
@@ -87,7 +97,10 @@ class Frame {
   std::vector<ClpvGrid> grids_;
   float light_scale_ = 1;  ///< what volumes hold in place of 1 W/sr
   Volume injected_;
-  std::unique_ptr<Volume> geometry_;
+  std::vector<std::unique_ptr<Volume>>
+      geometry_;  ///< none without occlusion; what the scene blocks, a cascade; else one
+  std::vector<std::optional<ClpvGrid>>
+      blocked_;  ///< the grid that a cascade's volume of what the scene blocks is of
   std::vector<std::unique_ptr<Volume>> accumulated_;
   std::vector<std::unique_ptr<Volume>> late_;  ///< a cascade; null for the finest, and without late light
   Buffer irradiance_;                          ///< float4 a pixel, as is image_

@@ -53,13 +53,15 @@ void FrameStats::end_frame(Session& session) {
   stages_.push_back(session.timeline().times());
 }
 
-void FrameStats::add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes) {
-  const auto energy = [&](const Volume& volume) {
+void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes) {
+  const auto energy = [&](const Volume& volume, const Basis& basis) {
     std::array<double, 3> stored = volume_energy(session, basis, volume);
     for (double& watts : stored) watts /= volumes.light_scale;
     return stored;
   };
-  energies_.push_back({volumes.cascade, energy(volumes.injected), energy(volumes.accumulated)});
+  // Finest first, in whatever order they are lit.
+  energies_.insert(energies_.begin(), {volumes.cascade, energy(volumes.injected, frame.basis()),
+                                       energy(volumes.accumulated, frame.gathered())});
 }
 
 nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {

@@ -20,7 +20,7 @@ class FrameStats {
   /// Adds the timeline's stage times; frames of one camera have the same stages. Medians over all frames are told: the
   /// first one after a start still waits for memory and caches.
   void end_frame(Session& session);
-  void add_energy(Session& session, const Basis& basis, const CascadeVolumes& volumes);
+  void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
 
   /// Schema 1: device, options, frames (timed ones), stages, frame_ms, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;

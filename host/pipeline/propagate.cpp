@@ -1,6 +1,10 @@
 #include "pipeline/propagate.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "support/error.hpp"
 
@@ -21,6 +25,12 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
       options_(options),
       stencil_(session.device(), options.stencil()),
       accumulator_(session) {
+  if (transport.kind == TransportKind::sweep) {
+    std::vector<std::string_view> stepped;
+    for (const TransportKind kind : stepped_transports()) stepped.push_back(name_of(kind));
+    throw Error(ExitCode::usage, "transport: found 'sweep', which takes no steps; allowed here: {}",
+                fmt::join(stepped, "|"));
+  }
   if (options.lobe_time == LobeTime::kernel)
     lobes_.emplace(session, basis, transport, options.state, options.table);
   const bool fluxes = options.state == State::fluxes;

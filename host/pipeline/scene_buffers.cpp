@@ -70,12 +70,14 @@ void append(TextureTable& table, const std::vector<Texture>& chain) {
   }
 }
 
+bool is_masked(const Material& material) {
+  return (material.flags & CLPV_MATERIAL_MASKED) != 0;
+}
+
 TextureTable make_table(const Scene& scene) {
   std::vector<bool> masked(scene.textures.size(), false);
   for (const Material& material : scene.materials) {
-    if ((material.flags & CLPV_MATERIAL_MASKED) != 0 && material.texture != CLPV_NO_TEXTURE) {
-      masked[material.texture] = true;
-    }
+    if (is_masked(material) && material.texture != CLPV_NO_TEXTURE) masked[material.texture] = true;
   }
   TextureTable table;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
@@ -140,6 +142,7 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.textured = std::any_of(scene.materials.begin(), scene.materials.end(), is_textured);
   buffers.coloured = is_coloured(scene.vertices);
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
+  buffers.masked = std::any_of(scene.materials.begin(), scene.materials.end(), is_masked);
   buffers.bounds = bounds_of(scene.vertices);
   return buffers;
 }

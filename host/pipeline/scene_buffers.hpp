@@ -18,8 +18,8 @@ struct SceneBuffers {
   Buffer textures;
   Buffer texels;  ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
   unsigned vertex_count = 0, triangle_count = 0;
-  /// What the scene has at all: textures, vertex colours other than 1, materials that emit.
-  bool textured = false, coloured = false, emissive = false;
+  /// What the scene has at all: textures, vertex colours other than 1, materials that emit, materials with holes.
+  bool textured = false, coloured = false, emissive = false, masked = false;
   Bounds bounds;  ///< of all vertices [m]
 };
 

@@ -1,0 +1,130 @@
+#include "basis/sweep.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "basis/direction_bins.hpp"
+#include "basis/quadrature.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr int kSide = 2;  // bins along each edge of a cube's face
+
+struct FaceAxes {
+  int n, u, v;
+  double sign;
+};
+
+FaceAxes axes_of(int bin) {
+  const int face = bin / (kSide * kSide), n = face / 2;
+  return {n, (n + 1) % 3, (n + 2) % 3, face % 2 == 0 ? 1.0 : -1.0};
+}
+
+/// Part (i, j) of a bin: equal angles from the axis to the diagonal, as bins96 cuts bins24.
+SphericalPolygon part(int bin, int parts, int i, int j) {
+  const FaceAxes axes = axes_of(bin);
+  const auto line = [&](int side, int step) {
+    return (side == 0 ? -1 : 1) * std::tan(std::numbers::pi / 4 * step / parts);
+  };
+  const int side_u = bin % kSide, side_v = bin / kSide % kSide;
+  SphericalPolygon polygon;
+  for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+    glm::dvec3 corner;
+    corner[axes.n] = axes.sign;
+    corner[axes.u] = line(side_u, i + a);
+    corner[axes.v] = line(side_v, j + b);
+    polygon.push_back(glm::normalize(corner));
+  }
+  return polygon;
+}
+
+SweepDirection direction_of(const SphericalPolygon& polygon, const SweepBin& bin) {
+  SweepDirection direction{};
+  glm::dvec3 sum(0);
+  for (const QuadratureNode& node : nodes_of(polygon)) {
+    direction.solid_angle += node.weight;
+    sum += node.weight * node.w;
+  }
+  direction.w = glm::normalize(sum);
+  direction.flux = std::abs(direction.w[bin.axis]);
+  const double tu = std::abs(direction.w[bin.u]) / direction.flux,
+               tv = std::abs(direction.w[bin.v]) / direction.flux;
+  direction.taps = {(1 - tu) * (1 - tv), tu * (1 - tv), (1 - tu) * tv, tu * tv};
+  return direction;
+}
+
+}  // namespace
+
+std::vector<SweepBin> sweep_bins(int parts) {
+  std::vector<SweepBin> bins;
+  for (int b = 0; b < kSweepBins; ++b) {
+    const FaceAxes axes = axes_of(b);
+    // Rows of memory run along x where the plane holds x: u is the first of the plane's axes in memory.
+    const int u = axes.n == 0 ? 1 : 0, v = axes.n == 2 ? 1 : 2;
+    SweepBin bin{axes.n, u, v, {}, {}, 0, {}};
+    bin.sign[axes.n] = axes.sign < 0 ? -1 : 1;
+    bin.sign[axes.u] = b % kSide == 0 ? -1 : 1;
+    bin.sign[axes.v] = b / kSide % kSide == 0 ? -1 : 1;
+    for (std::size_t k = 0; k < bin.offset.size(); ++k) {
+      bin.offset[k] = glm::ivec3(0);
+      bin.offset[k][bin.axis] = bin.sign[bin.axis];
+      if (k % 2 == 1) bin.offset[k][u] = bin.sign[u];
+      if (k / 2 == 1) bin.offset[k][v] = bin.sign[v];
+    }
+    for (int j = 0; j < parts; ++j) {
+      for (int i = 0; i < parts; ++i) {
+        bin.directions.push_back(direction_of(part(b, parts, i, j), bin));
+        bin.solid_angle += bin.directions.back().solid_angle;
+      }
+    }
+    bins.push_back(std::move(bin));
+  }
+  return bins;
+}
+
+int coarser_part(int part, int parts, int coarser_parts) {
+  const auto along = [&](int i) { return (2 * i + 1) * coarser_parts / (2 * parts); };
+  return along(part / parts) * coarser_parts + along(part % parts);
+}
+
+Matrix bin_means(const Basis& basis) {
+  const DirectionBins bins(kSide);
+  Matrix sums(kSweepBins, basis.size());
+  std::vector<double> total(kSweepBins, 0.0);
+  // Pieces end where bins do and where the basis jumps.
+  std::vector<glm::dvec3> planes = bins.creases();
+  const std::vector<glm::dvec3> own = basis.creases();
+  planes.insert(planes.end(), own.begin(), own.end());
+  for (const SphericalPolygon& piece : split(octants(), planes)) {
+    for (const QuadratureNode& node : nodes_of(piece)) {
+      const std::vector<double> in = bins.evaluate(node.w), b = basis.evaluate(node.w);
+      for (int bin = 0; bin < kSweepBins; ++bin) {
+        const double weight = node.weight * in[static_cast<std::size_t>(bin)];
+        if (weight == 0) continue;
+        total[static_cast<std::size_t>(bin)] += weight;
+        for (int i = 0; i < basis.size(); ++i) sums(bin, i) += weight * b[static_cast<std::size_t>(i)];
+      }
+    }
+  }
+  constexpr double kNone = 1e-14;  // of a bin that a function does not reach
+  for (int bin = 0; bin < kSweepBins; ++bin) {
+    for (double& mean : sums.row(bin)) {
+      mean /= total[static_cast<std::size_t>(bin)];
+      if (std::abs(mean) < kNone) mean = 0;
+    }
+  }
+  return sums;
+}
+
+OperatorTransport sweep_ways() {
+  OperatorTransport ways;
+  for (int i = 0; i < 27; ++i) {
+    const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (offset != glm::ivec3(0)) ways.neighbours.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
+  }
+  return ways;
+}
+
+}  // namespace clpv

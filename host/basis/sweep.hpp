@@ -1,0 +1,50 @@
+// Directions that light is swept along, once through the grid each (docs/method.md, 'The sweep'). In double; knows no
+// OpenCL.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+
+namespace clpv {
+
+/// Discrete ordinates: the 24 bins of `bins24` in parts^2 parts each, and the mean direction of each part.
+///
+/// Light along w moves from plane to plane across the axis of its largest component. A cell draws from the four cells of
+/// the plane before, 0 or 1 cells aside along each other axis, against w: its taps sum to 1. Each direction's bin has
+/// these offsets in common.
+struct SweepDirection {
+  glm::dvec3 w;        ///< unit
+  double solid_angle;  ///< [sr]
+  double flux;         ///< of w along its axis, in (0, 1]: a plane's distance over the way between planes
+  std::array<double, 4> taps;  ///< of the cells 0, u, v, u and v aside
+};
+
+struct SweepBin {
+  int axis, u, v;                    ///< the largest component's axis; the two that a plane spans
+  glm::ivec3 sign;                   ///< of w along x, y, z
+  std::array<glm::ivec3, 4> offset;  ///< how far light of each tap has come, in cells
+  double solid_angle;                ///< [sr]
+  std::vector<SweepDirection> directions;
+};
+
+inline constexpr int kSweepBins = 24;
+inline constexpr int kMostSweepParts = 4;
+
+/// Bins in the order of `bins24`. `parts`: 1 to kMostSweepParts, for 24, 96, 216 or 384 directions.
+std::vector<SweepBin> sweep_bins(int parts);
+
+/// Which of `coarser_parts`^2 parts of a bin a part of `parts`^2 lies in, or mostly.
+int coarser_part(int part, int parts, int coarser_parts);
+
+/// 24 x N: the mean over each bin of the functions of a basis. What a basis holds is swept as these means, negative ones
+/// too: the energy of any field is kept.
+Matrix bin_means(const Basis& basis);
+
+/// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them: an operator transport without weights.
+OperatorTransport sweep_ways();
+
+}  // namespace clpv

@@ -1,0 +1,129 @@
+// The sweep: kernels against the twin, on small cascades of random light and random blockers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "basis/sweep.hpp"
+#include "checks/check.hpp"
+#include "checks/tolerances.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/sweep.hpp"
+#include "reference/sweep.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr double kEdge = 4;  // of the finest grid [m]
+
+/// Light in a third of the cells, of any sign, as bases with negative lobes leave it.
+Volume random_light(const Basis& basis, int n, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-0.3f, 1);
+  Volume volume(n, basis.size());
+  for (double& value : volume.values) value = uniform(random) > 0.5f ? uniform(random) : 0;
+  return volume;
+}
+
+Volume random_blockers(int numbers, int n, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-0.5f, 1);
+  Volume volume(n + 1, numbers, 1);
+  for (double& value : volume.values) value = std::max(0.0f, uniform(random));
+  return volume;
+}
+
+struct Case {
+  std::string basis;
+  int grid;
+  std::vector<int> parts;
+  bool blocking = true;
+  Blocking blocked_by = Blocking::areas;
+  VolumeFormat format = {};
+  SweepForm form = SweepForm::bins;
+
+  std::string name() const {
+    std::string directions;
+    for (const int p : parts)
+      directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
+    return fmt::format("{}/{}^3/{}{}{}{}/{}", basis, grid, directions, blocking ? "" : "/free",
+                       blocked_by == Blocking::areas ? "" : "/two-sided",
+                       form == SweepForm::planes ? "/planes" : "", format_name(format));
+  }
+};
+
+/// The larger of `result` and the greatest difference of a cascade, over the largest value.
+void compare(const std::vector<float>& found, const Volume& twin, std::size_t cascade, CheckResult& result) {
+  double largest = 0;
+  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
+  const auto n = static_cast<std::size_t>(twin.n);
+  for (std::size_t at = 0; at < found.size(); ++at) {
+    const double error = std::abs(found[at] - twin.values[at]) / largest;
+    if (error <= result.worst || std::isnan(result.worst)) continue;  // a NaN is not, and stays the worst
+    result.worst = error;
+    result.place = fmt::format("cascade {} cell {},{},{} plane {}: {:.7g}, twin {:.7g}", cascade, at % n,
+                               at / n % n, at / n / n % n, at / n / n / n, found[at], twin.values[at]);
+  }
+}
+
+CheckResult check_one(Session& session, const Case& c) {
+  std::mt19937 random(3);
+  const std::unique_ptr<Basis> basis = make_basis(c.basis);
+  const Transport transport = make_transport(TransportKind::sweep, *basis, {}, c.blocked_by);
+  const float cell = static_cast<float>(kEdge / c.grid);
+  const std::vector<ClpvGrid> grids =
+      cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), static_cast<int>(c.parts.size()), kEdge, c.grid);
+  Sweeper sweeper(
+      session, *basis, transport,
+      {.grid = c.grid, .parts = c.parts, .blocking = c.blocking, .format = c.format, .form = c.form});
+  const VolumeShape injected{c.grid, basis->size(), 3}, swept{c.grid, kSweepBins, 3},
+      corners{c.grid + 1, blocking_size(c.blocked_by, *basis), 1};
+  std::vector<Volume> lights, blockers;
+  std::vector<std::vector<float>> found(grids.size());
+  lights.reserve(grids.size()), blockers.reserve(grids.size());
+  std::vector<SweptCascade> cascades(grids.size());
+  for (std::size_t i = grids.size(); i-- > 0;) {
+    lights.push_back(random_light(*basis, c.grid, random));
+    blockers.push_back(random_blockers(corners.coefficients, c.grid, random));
+    cascades[i] = {grids[i], &lights.back(), c.blocking ? &blockers.back() : nullptr, c.parts[i]};
+    clpv::Volume light(session, injected, "check: light", c.format),
+        result(session, swept, "check: swept", c.format),
+        geometry(session, corners, "check: blockers", c.format);
+    light.write(session, {lights.back().values.begin(), lights.back().values.end()});
+    geometry.write(session, {blockers.back().values.begin(), blockers.back().values.end()});
+    if (c.blocking) sweeper.block(i, geometry);
+    sweeper.sweep(i, grids, light, result);
+    found[i] = result.read(session);
+  }
+  CheckResult result{"sweep", c.name(), 0, tolerance_in("sweep", c.format), {}};
+  const std::vector<Volume> twin = sweep(*basis, transport, cascades);
+  for (std::size_t i = 0; i < grids.size(); ++i) compare(found[i], twin[i], i, result);
+  return result;
+}
+
+}  // namespace
+
+CheckResults check_sweep(Session& session, const CheckScope& scope) {
+  std::vector<Case> cases = {
+      {.basis = "bins24", .grid = 9, .parts = {2, 1, 1}},
+      {.basis = "bins24", .grid = 8, .parts = {2, 2}, .form = SweepForm::planes},
+      {.basis = "bins24", .grid = 7, .parts = {1, 1, 2}, .form = SweepForm::planes},
+      {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::two_sided},
+      {.basis = "bins96", .grid = 5, .parts = {3, 2}, .blocking = false},
+      {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},
+  };
+  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}))
+    cases.push_back({.basis = "bins24", .grid = 9, .parts = {1, 1}, .format = format});
+  if (scope.thorough) {
+    for (const std::string& name : basis_names()) {
+      for (const int parts : {1, 2, 3, 4}) cases.push_back({.basis = name, .grid = 6, .parts = {parts, 1}});
+    }
+  }
+  CheckResults results;
+  for (const Case& c : cases) results.push_back(check_one(session, c));
+  return results;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,182 @@
+#include "reference/sweep.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <variant>
+
+#include "basis/sweep.hpp"
+#include "reference/transmit.hpp"
+
+namespace clpv::reference {
+namespace {
+
+/// D of every direction in every cell, one volume of 3 channels a direction: [bin * parts^2 + part].
+using Fields = std::vector<Volume>;
+
+/// Trilinear between cells' centres, zero beyond them.
+double sampled(const Volume& field, int channel, const glm::dvec3& at) {
+  const glm::dvec3 low = glm::floor(at), t = at - low;
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2);
+    double weight = 1;
+    for (int axis = 0; axis < 3; ++axis) weight *= up[axis] == 1 ? t[axis] : 1 - t[axis];
+    const glm::ivec3 cell = glm::ivec3(low) + up;
+    sum += weight * field.value(channel, 0, cell.x, cell.y, cell.z);
+  }
+  return sum;
+}
+
+/// What a cascade's border knows of the coarser one.
+struct Beyond {
+  const SweptCascade* cascade = nullptr;  ///< null: nothing comes in
+  const Fields* fields = nullptr;
+  const std::vector<SweepBin>* bins = nullptr;
+};
+
+class Sweep {
+ public:
+  Sweep(const Basis& basis, const Transport& transport, const SweptCascade& cascade, const Beyond& beyond)
+      : cascade_(cascade),
+        beyond_(beyond),
+        n_(static_cast<int>(cascade.grid.n)),
+        sources_(n_, kSweepBins, 3) {
+    const Matrix means = bin_means(basis);
+    const Volume& from = *cascade.injected;
+    for_each_cell([&](const glm::ivec3& p) {
+      std::vector<double> c(static_cast<std::size_t>(basis.size()));
+      for (int channel = 0; channel < 3; ++channel) {
+        for (int i = 0; i < basis.size(); ++i)
+          c[static_cast<std::size_t>(i)] = from.value(channel, i, p.x, p.y, p.z);
+        const std::vector<double> in = means * std::span<const double>(c);
+        for (int bin = 0; bin < kSweepBins; ++bin)
+          sources_.at(channel, bin, p.x, p.y, p.z) = in[static_cast<std::size_t>(bin)];
+      }
+    });
+    let_through(std::get<OperatorTransport>(transport.scheme));
+  }
+
+  Volume direction(int bin, const SweepBin& of, int part) const {
+    const SweepDirection& d = of.directions[static_cast<std::size_t>(part)];
+    Volume field(n_, 1, 3);
+    for_each_cell([&](const glm::ivec3& along) {
+      glm::ivec3 p;  // upstream ones first
+      const std::array<int, 3> order = {of.axis, of.v, of.u};
+      for (int i = 0; i < 3; ++i) {
+        const int axis = order[static_cast<std::size_t>(i)], step = along[2 - i];
+        p[axis] = of.sign[axis] > 0 ? step : n_ - 1 - step;
+      }
+      for (int channel = 0; channel < 3; ++channel) {
+        double value = sources_.value(channel, bin, p.x, p.y, p.z);
+        for (std::size_t k = 0; k < d.taps.size(); ++k) {
+          const glm::ivec3 q = p - of.offset[k];
+          const double open = open_[way_of(of.offset[k])].value(0, 0, p.x, p.y, p.z);
+          const bool inside = field.inside(q.x, q.y, q.z);
+          const double here = sources_.value(channel, bin, q.x, q.y, q.z);
+          const double carried =
+              inside ? field.value(channel, 0, q.x, q.y, q.z) - here : inflow(channel, bin, part, d, q);
+          value += d.taps[k] * (here + open * carried);
+        }
+        field.at(channel, 0, p.x, p.y, p.z) = value;
+      }
+    });
+    return field;
+  }
+
+ private:
+  template <typename Visit>
+  void for_each_cell(Visit visit) const {
+    for (int z = 0; z < n_; ++z) {
+      for (int y = 0; y < n_; ++y) {
+        for (int x = 0; x < n_; ++x) visit(glm::ivec3(x, y, z));
+      }
+    }
+  }
+
+  static std::size_t way_of(const glm::ivec3& offset) {
+    return static_cast<std::size_t>(offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1));
+  }
+
+  void let_through(const OperatorTransport& ways) {
+    open_.assign(27, Volume(n_, 1, 1));
+    for (const OperatorTransport::Neighbour& way : ways.neighbours) {
+      Volume& open = open_[way_of(way.offset)];
+      for_each_cell([&](const glm::ivec3& p) {
+        open.at(0, 0, p.x, p.y, p.z) = cascade_.geometry == nullptr
+                                           ? 1
+                                           : transmitted(*cascade_.geometry, p, -way.offset, way.blocked_by);
+      });
+    }
+  }
+
+  /// Light of the coarser cascade at a cell outside this grid: the same radiance, D = L s^2 w_m.
+  double inflow(int channel, int bin, int part, const SweepDirection& d, const glm::ivec3& cell) const {
+    if (beyond_.cascade == nullptr) return 0;
+    const ClpvGrid &fine = cascade_.grid, &coarse = beyond_.cascade->grid;
+    glm::dvec3 at;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double centre = fine.origin[axis] + double{fine.cell} * (cell[axis] + 0.5);
+      at[axis] = (centre - coarse.origin[axis]) / coarse.cell - 0.5;
+    }
+    const int parts = beyond_.cascade->parts, from = coarser_part(part, cascade_.parts, parts);
+    const SweepBin& of = (*beyond_.bins)[static_cast<std::size_t>(bin)];
+    const double edge = double{fine.cell} / coarse.cell;
+    return edge * edge * d.flux / of.directions[static_cast<std::size_t>(from)].flux *
+           sampled((*beyond_.fields)[static_cast<std::size_t>(bin * parts * parts + from)], channel, at);
+  }
+
+  SweptCascade cascade_;
+  Beyond beyond_;
+  int n_;
+  Volume sources_;
+  std::vector<Volume> open_;  ///< of each offset, way_of()
+};
+
+/// Fluence of each bin's directions, as radiance times s^2.
+Volume collect(const std::vector<SweepBin>& bins, const Fields& fields) {
+  const int n = fields.front().n;
+  Volume sums(n, kSweepBins, 3);
+  for (int bin = 0; bin < kSweepBins; ++bin) {
+    const SweepBin& of = bins[static_cast<std::size_t>(bin)];
+    const std::size_t parts = of.directions.size();
+    for (std::size_t part = 0; part < parts; ++part) {
+      const SweepDirection& d = of.directions[part];
+      const Volume& field = fields[static_cast<std::size_t>(bin) * parts + part];
+      const double share = d.solid_angle / (d.flux * of.solid_angle);
+      for (int channel = 0; channel < 3; ++channel) {
+        const std::size_t cells = field.values.size() / 3, from = field.index(channel, 0, 0, 0, 0),
+                          to = sums.index(channel, bin, 0, 0, 0);
+        for (std::size_t i = 0; i < cells; ++i) sums.values[to + i] += share * field.values[from + i];
+      }
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
+                          const std::vector<SweptCascade>& cascades) {
+  std::vector<Volume> results(cascades.size());
+  Fields coarser;
+  std::vector<SweepBin> coarser_bins;
+  Beyond beyond;
+  for (std::size_t c = cascades.size(); c-- > 0;) {
+    std::vector<SweepBin> bins = sweep_bins(cascades[c].parts);
+    const Sweep sweep(basis, transport, cascades[c], beyond);
+    Fields fields;
+    for (int bin = 0; bin < kSweepBins; ++bin) {
+      for (int part = 0; part < cascades[c].parts * cascades[c].parts; ++part)
+        fields.push_back(sweep.direction(bin, bins[static_cast<std::size_t>(bin)], part));
+    }
+    results[c] = collect(bins, fields);
+    coarser = std::move(fields);
+    coarser_bins = std::move(bins);
+    beyond = {&cascades[c], &coarser, &coarser_bins};
+  }
+  return results;
+}
+
+}  // namespace clpv::reference

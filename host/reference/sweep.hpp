@@ -1,0 +1,25 @@
+// Stage `sweep` in double: the twin of kernels/sweep.cl and of the kernels round it (docs/method.md, 'The sweep').
+#pragma once
+
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "kernels/shared/grid.h"
+#include "reference/volume.hpp"
+
+namespace clpv::reference {
+
+/// What one cascade's sweep starts from.
+struct SweptCascade {
+  ClpvGrid grid{};
+  const Volume* injected = nullptr;  ///< of the basis [W/sr]
+  const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
+  int parts = 1;                     ///< of its bins (sweep_bins)
+};
+
+/// Light of `bins24`, radiance times s^2, of every cascade: finest first, as `cascades` are. `transport`: TransportKind::sweep.
+std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
+                          const std::vector<SweptCascade>& cascades);
+
+}  // namespace clpv::reference

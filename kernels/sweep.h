@@ -1,0 +1,69 @@
+// How a sweep's numbers lie in memory: volumes of rows, one for each bin or way.
+//
+// A volume has a border of one cell all round. Rows along x lie above each other along y and then z; in a turned volume, of
+// directions whose planes are across x, they are rows along y, above each other along x and then z: planes of every
+// direction then hold whole rows. The border of sources is zero.
+#ifndef CLPV_SWEEP_H
+#define CLPV_SWEEP_H
+
+#include "volume/numbers.h"
+
+#ifndef CLPV_INLINE
+#define CLPV_INLINE static inline __attribute__((always_inline))
+#endif
+#ifndef CLPV_LANES
+#define CLPV_LANES 8
+#endif
+#ifndef CLPV_REAL
+#if CLPV_LANES == 8
+#define CLPV_REAL float8
+#else
+#define CLPV_REAL float
+#endif
+#endif
+
+#define CLPV_SWEEP_FIRST 8  // from the start of a row to its first cell: rows of eight lanes stay aligned
+#define CLPV_SWEEP_PITCH ((CLPV_GRID + 7) / 8 * 8 + CLPV_SWEEP_FIRST)
+#define CLPV_SWEEP_PLANE ((CLPV_GRID + 2) * CLPV_SWEEP_PITCH)
+#define CLPV_SWEEP_VOLUME ((CLPV_GRID + 2) * CLPV_SWEEP_PLANE + CLPV_SWEEP_FIRST)
+#define CLPV_SWEEP_LIVE (CLPV_SWEEP_PLANE + CLPV_SWEEP_FIRST)  // a plane by itself
+
+#if CLPV_LANES == 8
+#define CLPV_SWEEP_LOAD(from, at) CLPV_READ_ROW(from, at)
+#define CLPV_SWEEP_STORE(to, at, value) CLPV_WRITE_ROW(to, at, value)
+#define CLPV_LIVE_LOAD(from, at) vload8(0, (from) + (at))
+#define CLPV_LIVE_STORE(to, at, value) vstore8(value, 0, (to) + (at))
+#else
+#define CLPV_SWEEP_LOAD(from, at) CLPV_READ(from, at)
+#define CLPV_SWEEP_STORE(to, at, value) CLPV_WRITE(to, at, value)
+#define CLPV_LIVE_LOAD(from, at) (from)[at]
+#define CLPV_LIVE_STORE(to, at, value) (to)[at] = value
+#endif
+
+// Of cell (column, row) of slice z.
+CLPV_INLINE int clpv_row_of(const int column, const int row, const int z) {
+  return (z + 1) * CLPV_SWEEP_PLANE + (row + 1) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + column;
+}
+
+// A tile of CLPV_LANES x CLPV_LANES cells, its rows turned into columns.
+typedef struct {
+  CLPV_REAL row[CLPV_LANES];
+} Tile;
+
+#if CLPV_LANES == 8
+#define CLPV_TURNED(s)                                                                                          \
+  ((float8)(a.row[0].s, a.row[1].s, a.row[2].s, a.row[3].s, a.row[4].s, a.row[5].s, a.row[6].s, a.row[7].s))
+CLPV_INLINE Tile clpv_turn(const Tile a) {
+  const Tile t = {{CLPV_TURNED(s0), CLPV_TURNED(s1), CLPV_TURNED(s2), CLPV_TURNED(s3), CLPV_TURNED(s4),
+                   CLPV_TURNED(s5), CLPV_TURNED(s6), CLPV_TURNED(s7)}};
+  return t;
+}
+// Zero beyond the grid's last cell.
+#define CLPV_WITHIN(x, value) \
+  (CLPV_GRID % 8 == 0 ? (value) : select((float8)(0.0f), value, (x) + (int8)(0, 1, 2, 3, 4, 5, 6, 7) < CLPV_GRID))
+#else
+CLPV_INLINE Tile clpv_turn(const Tile a) { return a; }
+#define CLPV_WITHIN(x, value) (value)
+#endif
+
+#endif

@@ -1,0 +1,139 @@
+// Blockers from a scene's triangles, held against shares that are known.
+#include "pipeline/block.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "checks/check.hpp"
+#include "reference/block.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 4;
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // corners at 0..4, their cells half a metre round them
+
+/// Shares [axis][z][y][x], by the kernels; the twin must agree.
+struct Shares {
+  std::vector<float> values;
+  float at(int axis, int x, int y, int z) const {
+    return values[static_cast<std::size_t>(((axis * 5 + z) * 5 + y) * 5 + x)];
+  }
+};
+
+Shares blocked(const Scene& scene) {
+  Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  SceneBlocker(test_session(), buffers, kGrid, {}).block(kCells, geometry);
+  Shares shares{geometry.read(test_session())};
+  const reference::Blocked twin = reference::block(scene, kCells);
+  for (std::size_t i = 0; i < shares.values.size(); ++i) {
+    EXPECT_GE(shares.values[i], twin.least.values[i]) << i;
+    EXPECT_LE(shares.values[i], twin.most.values[i]) << i;
+  }
+  return shares;
+}
+
+float sum(const Shares& shares, int axis) {
+  float total = 0;
+  for (int i = 0; i < 125; ++i) total += shares.values[static_cast<std::size_t>(axis * 125 + i)];
+  return total;
+}
+
+TEST(Block, AWallFillsTheSquaresItStandsAcrossAndNoOthers) {
+  Scene scene;
+  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  const Shares shares = blocked(scene);
+  for (int y = 0; y <= kGrid; ++y) {
+    for (int z = 0; z <= kGrid; ++z) EXPECT_EQ(shares.at(0, 2, y, z), 1) << y << ' ' << z;
+  }
+  EXPECT_EQ(sum(shares, 0), 25) << "one layer of corners alone";
+  EXPECT_EQ(sum(shares, 1), 0);
+  EXPECT_EQ(sum(shares, 2), 0);
+}
+
+TEST(Block, WallsBehindEachOtherAreOneWall) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  for (const float x : {1.6f, 1.9f, 2.3f}) add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
+  EXPECT_EQ(sum(blocked(scene), 0), 25);
+}
+
+TEST(Block, PartOfASquareCountsByItsArea) {
+  Scene scene;
+  add_quad(scene, {1.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, -0.25f},
+           add_material(scene));  // beyond the corner's cell
+  add_quad(scene, {2.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, 0.25f}, 0);
+  const Shares shares = blocked(scene);
+  EXPECT_EQ(shares.at(1, 3, 2, 2), 0.125f);
+  EXPECT_EQ(shares.at(1, 2, 2, 2), 0);
+  EXPECT_EQ(shares.at(1, 2, 2, 1), 0.125f);
+  EXPECT_EQ(sum(shares, 1), 0.25f);
+}
+
+TEST(Block, ASlantedWallBlocksAlongEachAxisItCrosses) {
+  Scene scene;
+  add_quad(scene, {-5, -5, -5}, {20, 20, 0}, {0, 0, 20}, add_material(scene));  // x = y
+  const Shares shares = blocked(scene);
+  for (int i = 0; i <= kGrid; ++i) {
+    EXPECT_EQ(shares.at(0, i, i, 2), 1) << i;
+    EXPECT_EQ(shares.at(1, i, i, 2), 1) << i;
+  }
+  EXPECT_EQ(sum(shares, 2), 0) << "seen edge-on";
+}
+
+TEST(Block, HolesOfMaskedMaterialsLetLightPass) {
+  Scene scene;
+  Texture stripes{.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
+  scene.textures.push_back(stripes);
+  const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
+  scene.materials[material].texture = 0;
+  scene.materials[material].alpha_cutoff = 0.5f;
+  add_quad(scene, {1.5f, 2, 1.5f}, {1, 0, 0}, {0, 0, 1},
+           material);  // opaque from u 0 to 1/2, repeated beyond
+  EXPECT_EQ(sum(blocked(scene), 1), 0.5f);
+  scene.materials[material].flags = 0;
+  EXPECT_EQ(sum(blocked(scene), 1), 1) << "alpha is nothing to what is not masked";
+}
+
+TEST(Block, AwkwardTriangles) {
+  Scene none;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(sum(blocked(none), axis), 0);
+  Scene scene;
+  const unsigned material = add_material(scene);
+  add_triangle(scene, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, material);  // no area
+  add_triangle(scene, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, material);
+  add_triangle(scene, {50, 1, 1}, {60, 1, 1}, {50, 9, 9}, material);  // beside the grid
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(sum(blocked(scene), axis), 0);
+  add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, material);  // the horizon
+  Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
+  SceneBlocker(test_session(), upload_scene(test_session(), scene), kGrid, {}).block(kCells, geometry);
+  EXPECT_EQ(sum({geometry.read(test_session())}, 1), 25);
+}
+
+TEST(Block, TheOrderOfTrianglesDoesNotMatter) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  for (int i = 0; i < 60; ++i) {
+    const glm::vec3 at(i % 5, i / 5 % 4, i / 20);
+    add_triangle(scene, at, at + glm::vec3(0.9f, 0.3f, 0.1f), at + glm::vec3(0.2f, 0.8f, 0.5f), material);
+  }
+  const Shares before = blocked(scene);
+  std::reverse(scene.triangles.begin(), scene.triangles.end());
+  EXPECT_EQ(blocked(scene).values, before.values);
+  EXPECT_GT(sum(before, 2), 1);
+}
+
+TEST(Block, KernelsAgreeWithTheirTwin) {
+  expect_passed(reference::check_block(test_session()), 2);
+}
+
+}  // namespace
+}  // namespace clpv

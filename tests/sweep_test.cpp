@@ -1,0 +1,376 @@
+// The sweep, held against what is known of light in closed form; and the kernels against the twin.
+#include "pipeline/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "basis/sweep.hpp"
+#include "checks/check.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/frame.hpp"
+#include "reference/sweep.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/named_enum.hpp"
+#include "tests/support/on_device.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+using reference::SweptCascade;
+
+constexpr double kExact = 1e-12;
+constexpr double kFloat = 2e-6;  // relative: some dozen roundings of float32
+
+Transport swept_by(const Basis& basis) {
+  return make_transport(TransportKind::sweep, basis, {}, Blocking::areas);
+}
+
+class EachPartition : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Sweep, EachPartition, ::testing::Range(1, kMostSweepParts + 1));
+
+TEST_P(EachPartition, DirectionsAreAQuadratureOfTheSphere) {
+  double whole = 0, isotropic = 0;
+  glm::dvec3 sum(0);
+  for (const SweepBin& bin : sweep_bins(GetParam())) {
+    EXPECT_EQ(bin.directions.size(), static_cast<std::size_t>(GetParam() * GetParam()));
+    double of_bin = 0;
+    for (const SweepDirection& d : bin.directions) {
+      EXPECT_NEAR(glm::length(d.w), 1, kExact);
+      EXPECT_NEAR(d.taps[0] + d.taps[1] + d.taps[2] + d.taps[3], 1, kExact);
+      for (const double tap : d.taps) EXPECT_GE(tap, 0);
+      glm::dvec3 way(0);  // the taps' mean offset is the way from plane to plane
+      for (std::size_t k = 0; k < d.taps.size(); ++k) way += d.taps[k] * glm::dvec3(bin.offset[k]);
+      EXPECT_LT(glm::length(way * d.flux - d.w), kExact);
+      of_bin += d.solid_angle;
+      sum += d.solid_angle * d.w;
+      isotropic += d.solid_angle * d.w.x * d.w.x;
+    }
+    EXPECT_NEAR(of_bin, bin.solid_angle, kExact);
+    EXPECT_NEAR(bin.solid_angle, std::numbers::pi / 6, kExact);
+    whole += of_bin;
+  }
+  EXPECT_NEAR(whole, 4 * std::numbers::pi, kExact);
+  EXPECT_LT(glm::length(sum), kExact);
+  EXPECT_NEAR(isotropic, 4 * std::numbers::pi / 3, kExact);
+}
+
+TEST(Sweep, BinsAreThoseOfTheBasis) {
+  const auto basis = make_basis("bins24");
+  const std::vector<SweepBin> bins = sweep_bins(2);
+  for (int b = 0; b < kSweepBins; ++b) {
+    for (const SweepDirection& d : bins[static_cast<std::size_t>(b)].directions)
+      EXPECT_EQ(basis->evaluate(d.w)[static_cast<std::size_t>(b)], 1) << b;
+  }
+  const Matrix means = bin_means(*basis);
+  for (int i = 0; i < kSweepBins; ++i) {
+    for (int j = 0; j < kSweepBins; ++j) EXPECT_EQ(means(i, j), i == j ? 1 : 0);
+  }
+}
+
+TEST(Sweep, MeansKeepTheEnergyOfEveryBasis) {
+  for (const std::string& name : basis_names()) {
+    const auto basis = make_basis(name);
+    const Matrix means = bin_means(*basis);
+    for (int i = 0; i < basis->size(); ++i) {
+      double sum = 0;
+      for (int b = 0; b < kSweepBins; ++b) sum += std::numbers::pi / 6 * means(b, i);
+      EXPECT_NEAR(sum, basis->integrals()[static_cast<std::size_t>(i)], 1e-9) << name << ' ' << i;
+    }
+  }
+}
+
+TEST(Sweep, CoarserPartsHoldFinerOnes) {
+  EXPECT_EQ(coarser_part(3, 2, 2), 3);
+  for (int part = 0; part < 9; ++part) EXPECT_EQ(coarser_part(part, 3, 1), 0);
+  EXPECT_EQ(coarser_part(0, 4, 2), 0);
+  EXPECT_EQ(coarser_part(3, 4, 2), 1);
+  EXPECT_EQ(coarser_part(15, 4, 2), 3);
+}
+
+ClpvGrid grid_of(int n) {
+  return cascade_grids(glm::vec3(0.5f), 1, n, n).front();  // cells of 1 m
+}
+
+/// Light of one cascade, by the twin: `inject(bin, cell)` is the same in all channels.
+reference::Volume swept(int n, int parts, const std::function<double(int bin, const glm::ivec3&)>& inject,
+                        const reference::Volume* geometry = nullptr) {
+  const auto basis = make_basis("bins24");
+  reference::Volume light(n, kSweepBins);
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) {
+        for (int bin = 0; bin < kSweepBins; ++bin) {
+          for (int channel = 0; channel < 3; ++channel)
+            light.at(channel, bin, x, y, z) = inject(bin, {x, y, z});
+        }
+      }
+    }
+  }
+  const SweptCascade cascade{grid_of(n), &light, geometry, parts};
+  return reference::sweep(*basis, swept_by(*basis), {cascade}).front();
+}
+
+double fluence(const reference::Volume& light, const glm::ivec3& p) {
+  double sum = 0;
+  for (int bin = 0; bin < kSweepBins; ++bin) sum += std::numbers::pi / 6 * light.value(0, bin, p.x, p.y, p.z);
+  return sum;
+}
+
+/// Of a shell of cells `r` from the middle: mean of the fluence over that of an isotropic source of 1 W/sr there, and the
+/// root of its mean square.
+std::pair<double, double> shell(const reference::Volume& light, double r) {
+  const int middle = light.n / 2;
+  double sum = 0, squares = 0;
+  int cells = 0;
+  for (int i = 0; i < light.n * light.n * light.n; ++i) {
+    const glm::ivec3 p(i % light.n, i / light.n % light.n, i / light.n / light.n);
+    const double distance = glm::length(glm::dvec3(p - middle));
+    if (std::abs(distance - r) >= 0.5) continue;
+    const double share = fluence(light, p) * distance * distance;
+    sum += share, squares += share * share, ++cells;
+  }
+  return {sum / cells, std::sqrt(squares / cells)};
+}
+
+TEST(Sweep, APointSourceFallsOffWithTheSquareOfItsDistance) {
+  constexpr int kGrid = 31;
+  const auto point = [](int, const glm::ivec3& p) { return p == glm::ivec3(kGrid / 2) ? 1.0 : 0.0; };
+  double unevenness = 1e9;
+  for (const int parts : {1, 2}) {
+    const reference::Volume light = swept(kGrid, parts, point);
+    for (const double r : {3.0, 6.0, 8.0, 12.0})
+      EXPECT_NEAR(shell(light, r).first, 1, 0.12) << parts << ' ' << r;
+    // Rays between few directions: the more of them, the more even.
+    EXPECT_LT(shell(light, 12).second, 0.9 * unevenness);
+    unevenness = shell(light, 12).second;
+  }
+}
+
+TEST(Sweep, EveryPlaneCarriesAllLightUntilTheBorder) {
+  constexpr int kGrid = 15, kMiddle = kGrid / 2;
+  const auto point = [](int, const glm::ivec3& p) { return p == glm::ivec3(kMiddle) ? 2.0 : 0.0; };
+  const reference::Volume light = swept(kGrid, 1, point);
+  const std::vector<SweepBin> bins = sweep_bins(1);
+  for (int b = 0; b < kSweepBins; ++b) {
+    const SweepBin& bin = bins[static_cast<std::size_t>(b)];
+    for (int plane = 0; plane < kGrid; ++plane) {
+      double power = 0;
+      for (int i = 0; i < kGrid * kGrid; ++i) {
+        glm::ivec3 p;
+        p[bin.axis] = plane, p[bin.u] = i % kGrid, p[bin.v] = i / kGrid;
+        power += light.value(1, b, p.x, p.y, p.z) * bin.directions[0].flux;
+      }
+      const bool downstream = (plane - kMiddle) * bin.sign[bin.axis] >= 0;
+      EXPECT_NEAR(power, downstream ? 2 : 0, kExact) << b << ' ' << plane;
+    }
+  }
+}
+
+// A wall blocks sum_a |k_a| / |k| of what passes it k cells aside: all along its axis, and what it should of the rest.
+TEST(Sweep, AWallLetsThroughWhatItsWaysDo) {
+  constexpr int kGrid = 11, kWall = 6;
+  for (int axis = 0; axis < 3; ++axis) {
+    reference::Volume geometry(kGrid + 1, 3, 1);
+    for (int i = 0; i < (kGrid + 1) * (kGrid + 1); ++i) {
+      glm::ivec3 p;
+      p[axis] = kWall, p[(axis + 1) % 3] = i % (kGrid + 1), p[(axis + 2) % 3] = i / (kGrid + 1);
+      geometry.at(0, axis, p.x, p.y, p.z) = 1;
+    }
+    const glm::ivec3 source = glm::ivec3(5) + (kWall - 3 - 5) * glm::ivec3(axis == 0, axis == 1, axis == 2);
+    const reference::Volume light = swept(
+        kGrid, 1, [&](int, const glm::ivec3& p) { return p == source ? 1.0 : 0.0; }, &geometry);
+    const std::vector<SweepBin> bins = sweep_bins(1);
+    for (int b = 0; b < kSweepBins; ++b) {
+      const SweepBin& bin = bins[static_cast<std::size_t>(b)];
+      if (bin.axis != axis || bin.sign[axis] < 0) continue;
+      double before = 0, behind = 0, open = 0;
+      for (int i = 0; i < kGrid * kGrid; ++i) {
+        glm::ivec3 p;
+        p[bin.u] = i % kGrid, p[bin.v] = i / kGrid;
+        p[axis] = kWall - 1, before += light.value(0, b, p.x, p.y, p.z);
+        p[axis] = kWall, behind += light.value(0, b, p.x, p.y, p.z);
+      }
+      const SweepDirection& d = bin.directions[0];
+      for (std::size_t k = 0; k < d.taps.size(); ++k)
+        open += d.taps[k] * (1 - 1 / glm::length(glm::dvec3(bin.offset[k])));
+      EXPECT_GT(before, 0.5) << axis << ' ' << b;
+      EXPECT_NEAR(behind, open * before, kExact) << axis << ' ' << b;
+    }
+  }
+}
+
+/// What to inject for light that is the same in every cell: each cell makes up for what comes from outside.
+double made_up(int n, int b, const glm::ivec3& p) {
+  static const std::vector<SweepBin> bins = sweep_bins(1);
+  const SweepBin& bin = bins[static_cast<std::size_t>(b)];
+  double outside = 0;
+  for (std::size_t k = 0; k < bin.offset.size(); ++k) {
+    const glm::ivec3 q = p - bin.offset[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (q[axis] >= 0 && q[axis] < n) continue;
+      outside += bin.directions[0].taps[k];
+      break;
+    }
+  }
+  return outside;
+}
+
+TEST(Sweep, UniformLightStaysSoThroughAllCascades) {
+  constexpr int kGrid = 10;
+  const std::vector<SweepBin> bins = sweep_bins(1);
+  const auto basis = make_basis("bins24");
+  const std::vector<int> parts{2, 1, 1};
+  const auto grids = cascade_grids({0.3f, 1.1f, -0.6f}, 3, 5, kGrid);
+  reference::Volume dark(kGrid, kSweepBins), uniform(kGrid, kSweepBins);
+  for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
+    const glm::ivec3 p(i % kGrid, i / kGrid % kGrid, i / kGrid / kGrid);
+    for (int b = 0; b < kSweepBins; ++b) {
+      for (int channel = 0; channel < 3; ++channel)
+        uniform.at(channel, b, p.x, p.y, p.z) = static_cast<float>((1 + channel) * made_up(kGrid, b, p));
+    }
+  }
+  std::vector<SweptCascade> cascades;
+  for (std::size_t c = 0; c < grids.size(); ++c)
+    cascades.push_back({grids[c], c == 2 ? &uniform : &dark, nullptr, parts[c]});
+  const auto twin = reference::sweep(*basis, swept_by(*basis), cascades);
+
+  for (const SweepForm form : {SweepForm::bins, SweepForm::planes}) {
+    Sweeper sweeper(test_session(), *basis, swept_by(*basis),
+                    {.grid = kGrid, .parts = parts, .blocking = false, .form = form});
+    for (std::size_t c = grids.size(); c-- > 0;) {
+      Volume light(test_session(), {kGrid, kSweepBins, 3}, "test: light"),
+          result(test_session(), {kGrid, kSweepBins, 3}, "test: swept");
+      const auto& from = c == 2 ? uniform : dark;
+      light.write(test_session(), {from.values.begin(), from.values.end()});
+      sweeper.sweep(c, grids, light, result);
+      const std::vector<float> found = result.read(test_session());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const std::size_t plane = i / (kGrid * kGrid * kGrid);
+        const double wanted = (1 + static_cast<double>(plane / kSweepBins)) *
+                              std::pow(4.0, static_cast<double>(c) - 2) /
+                              bins[plane % kSweepBins].directions[0].flux;
+        ASSERT_NEAR(twin[c].values[i], wanted, kFloat * wanted) << c << ' ' << i;
+        ASSERT_NEAR(found[i], wanted, 5 * kFloat * wanted) << c << ' ' << i;
+      }
+    }
+  }
+}
+
+TEST(Sweep, LightIsLinearNegativeLightToo) {
+  const auto some = [](int bin, const glm::ivec3& p) { return std::sin(bin + p.x + 3.0 * p.y + 5.0 * p.z); };
+  const reference::Volume one = swept(5, 1, some);
+  const reference::Volume other =
+      swept(5, 1, [&](int bin, const glm::ivec3& p) { return -2 * some(bin, p); });
+  for (std::size_t i = 0; i < one.values.size(); ++i)
+    ASSERT_NEAR(other.values[i], -2 * one.values[i], kExact);
+}
+
+TEST(Sweep, RefusesGridsThatAreNotNested) {
+  const auto basis = make_basis("bins24");
+  Sweeper sweeper(test_session(), *basis, swept_by(*basis), {.grid = 6, .parts = {1, 1}, .blocking = false});
+  Volume light(test_session(), {6, kSweepBins, 3}, "test: light");
+  const auto grids = cascade_grids(glm::vec3(0), 3, 3, 6);
+  EXPECT_THROW(sweeper.sweep(1, {grids[0], grids[2]}, light, light), Error);
+}
+
+/// A small frame of the Cornell box, swept; `change` of its options.
+struct Lit {
+  std::vector<std::vector<float>> volumes;  // of what is accumulated and blocks, a cascade, coarsest first
+  std::vector<int> blocked;                 // cascades whose blockers were made
+  double irradiance = 0;                    // sum over all pixels
+};
+
+class SweptFrame {
+ public:
+  explicit SweptFrame(const std::function<void(RenderOptions&)>& change = {})
+      : scene_(load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/cornell.json")),
+        frame_(test_session(), scene_, options(change)) {}
+
+  Lit render(const Camera& camera) {
+    Lit lit;
+    test_session().timeline().clear();
+    frame_.render(camera, [&](const CascadeVolumes& volumes) {
+      lit.volumes.push_back(volumes.accumulated.read(test_session()));
+      if (volumes.geometry != nullptr) lit.volumes.push_back(volumes.geometry->read(test_session()));
+    });
+    for (const StageTime& time : test_session().timeline().times()) {
+      if (time.mark.pass == Pass::block) lit.blocked.push_back(time.mark.cascade.value());
+    }
+    const std::vector<float> pixels = frame_.read(Show::irradiance);
+    for (std::size_t i = 0; i < pixels.size(); ++i) lit.irradiance += i % 4 == 3 ? 0.0 : double{pixels[i]};
+    return lit;
+  }
+  Camera camera() const { return scene_.camera(""); }
+
+ private:
+  static RenderOptions options(const std::function<void(RenderOptions&)>& change) {
+    RenderOptions options;
+    options.transport = TransportKind::sweep, options.blockers = Blockers::scene;
+    options.directions = Directions::of24;
+    options.width = 48, options.height = 27, options.grid = 16, options.cascade_size = 1.5;
+    options.rsm_size = 64, options.shadow_size = 64;
+    if (change) change(options);
+    return options;
+  }
+  Scene scene_;
+  Frame frame_;
+};
+
+TEST(SweptFrame, LightDoesNotDependOnWhereTheCameraLooks) {
+  SweptFrame frame;
+  Camera camera = frame.camera();
+  const Lit ahead = frame.render(camera);
+  EXPECT_EQ(ahead.blocked, (std::vector<int>{2, 1, 0}));
+  camera.forward = glm::normalize(glm::vec3(1, 0.2f, -0.3f));
+  camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, camera.up), camera.forward));
+  const Lit aside = frame.render(camera);
+  EXPECT_TRUE(aside.blocked.empty()) << "nothing moved that blocks";
+  ASSERT_EQ(ahead.volumes.size(), 6u);
+  for (std::size_t i = 0; i < ahead.volumes.size(); ++i)
+    EXPECT_TRUE(aside.volumes[i] == ahead.volumes[i]) << i;
+  EXPECT_GT(ahead.irradiance, 0);
+
+  camera = frame.camera();
+  camera.eye.x += 1.01f * 1.5f / 16;  // a cell of the finest cascade, and half a one of the next
+  EXPECT_NE(frame.render(camera).blocked.size(), 0u);
+  const Lit back = frame.render(frame.camera());
+  for (std::size_t i = 0; i < ahead.volumes.size(); ++i)
+    EXPECT_TRUE(back.volumes[i] == ahead.volumes[i]) << i;
+}
+
+TEST(SweptFrame, EveryLayoutAndTheBlockersThatAreSeen) {
+  const double wanted = SweptFrame().render(SweptFrame().camera()).irradiance;
+  for (const Layout layout : values_of<Layout>()) {
+    if (unsupported(test_session().device(), {layout, Storage::float32})) continue;
+    SweptFrame frame([&](RenderOptions& o) { o.layout = layout, o.storage = Storage::float32; });
+    EXPECT_NEAR(frame.render(frame.camera()).irradiance, wanted, 2e-3 * wanted) << name_of(layout);
+  }
+  SweptFrame seen([](RenderOptions& o) {
+    o.blockers = Blockers::seen, o.blocking = Blocking::two_sided, o.basis = "sh2";
+  });
+  EXPECT_GT(seen.render(seen.camera()).irradiance, 0.3 * wanted);
+  SweptFrame open([](RenderOptions& o) { o.occlusion = false; });
+  EXPECT_GT(open.render(open.camera()).irradiance, 1.05 * wanted);
+}
+
+TEST(SweptFrame, RefusesWhatDoesNotApply) {
+  EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.state = State::fluxes; }), Error);
+  EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.lobe_time = LobeTime::kernel; }), Error);
+  EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.blocking = Blocking::two_sided; }), Error);
+  const auto basis = make_basis("sh2");
+  EXPECT_THROW(Propagator(test_session(), *basis, swept_by(*basis), {.grid = 4}), Error);
+}
+
+TEST(Sweep, KernelsAgreeWithTheirTwin) {
+  expect_passed(reference::check_sweep(test_session()), 6);
+}
+
+}  // namespace
+}  // namespace clpv
