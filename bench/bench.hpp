@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A suite from its first case to its rows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/ceilings.hpp"
 
 #include <fmt/format.h>

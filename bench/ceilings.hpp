@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What this device can do at most, measured in the same run (kernels/ceilings.cl).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/compare_runs.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two runs of a suite against each other: what changed by more than their spread.
 #pragma once
 

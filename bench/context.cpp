@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/context.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a benchmark ran on and what it was made of.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `gather`, the light buffer, as a job.
 #include <fmt/format.h>
 

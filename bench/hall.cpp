@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/hall.hpp"
 
 #include <algorithm>

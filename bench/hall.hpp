@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene made on the spot, for benchmarks without a file: an open hall with columns, lit by the sun.
 #pragma once
 

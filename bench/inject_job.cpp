@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `inject` as a job.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What stages work on in a benchmark: what a light and a camera see of a scene, and what injection makes of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a benchmark times: work on a device that can be repeated, checked and counted.
 #pragma once
 

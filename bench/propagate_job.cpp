@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `propagate` as a job.
 #include <fmt/format.h>
 

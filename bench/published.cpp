@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/published.hpp"
 
 namespace clpv::bench {

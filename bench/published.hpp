@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The times that the paper prints in its Table 1, of a Radeon HD 6870.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `rasterize` as a job: a reflective shadow map, or the camera's view.
 #include <fmt/format.h>
 

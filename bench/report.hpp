@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A benchmark's results as text: JSON in Google Benchmark's shape, CSV, a plain table.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One row of a benchmark's results: what was timed, and what came of it.
 #pragma once
 

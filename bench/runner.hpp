@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Times cases on Google Benchmark: repetitions in random order among each other, so that what disturbs the machine
 // for a while disturbs all alike.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/stage_jobs.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pipeline's stages as jobs: inject, propagate, gather, each with its cost and its twin.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/statistics.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a series of measurements comes to.
 #pragma once
 

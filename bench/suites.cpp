@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/suites.hpp"
 
 #include "bench/hall.hpp"

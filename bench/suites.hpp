@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The suites of `clpv bench`: which rows each has, and what its table looks like.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds the launch shapes and the layout that propagate fastest on a device.
 #pragma once
 

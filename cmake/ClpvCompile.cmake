@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # How every target is compiled.
 
 # Headers of others that many units include and that take long to parse, precompiled. Not json.hpp: what including it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The libraries clpv stands on, all of them packages of Debian 12.
 find_package(OpenCL REQUIRED)
 find_package(glm REQUIRED)

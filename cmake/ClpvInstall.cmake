@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # bin/clpv and the Python package that draws for it, the library, its headers and a CMake package: find_package(clpv),
 # link clpv::clpv.
 include(CMakePackageConfigHelpers)

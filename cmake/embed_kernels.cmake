@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # cmake -DROOT=kernels -DOUTPUT=file.cpp -P embed_kernels.cmake
 # Bytes, not raw strings: a kernel file stays an ordinary file, of any length and with any characters.
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/*.cl ${ROOT}/*.h)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Renders a scene's indirect light and says how bright it is: render_cornell scenes/cornell.json [IMAGE.exr|.png]
 #include <clpv/renderer.hpp>
 #include <iostream>

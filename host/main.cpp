@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parses, calls a command, turns an error into an exit code; nothing else.
 #include <CL/opencl.hpp>
 #include <iostream>

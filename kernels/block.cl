@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a scene's own triangles block: for each corner of a cascade's light cells and each axis, the share of the square
 // of a cell's edge across that axis that triangles inside the corner's cell cover (docs/method.md, 'Blockers').
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The share of set bits of each corner of the light cells and axis, as a geometry volume of areas.
 //
 // In: masks of block.cl. Out: three numbers a corner in [0, 1], what triangles in its cell cover of a cell's square across

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Late light from a coarser cascade to the next finer one, whose cells are half as wide.
 //
 // In: light of the coarser cascade (`coarser`), and what the finer one has so far. Out: their sum [W/sr]. The coarser light is

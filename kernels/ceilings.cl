@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a device can do at most, to hold the other kernels against: fused multiply-adds, bytes moved, launches.
 //
 // CLPV_WIDTH  floats of a vector

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Keys of the cells that injection sorts texels by (sort_by_cell.cl): made by find_cells.cl, read by inject.cl.
 //
 // CLPV_TRILINEAR 0: cell (x, y, z) of `n` along each axis has the key (z n + y) n + x. Geometry volumes have n + 1

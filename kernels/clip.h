@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Clips a triangle against the near plane and the guard band, and turns points of a view into ClpvProjected.
 //
 // A point is (x, y, w, z): along right and up [m], what its screen position is divided by (perspective: the

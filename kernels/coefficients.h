@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The N coefficients of a cell as a struct of named scalars, and the few operations on it.
 // Named scalars and straight-line code, not arrays and loops: work-items then vectorise on CPU devices.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An image layout's volume to planes in a buffer and back, for stages that change a few cells in place: OpenCL 1.2 has
 // kernels either read an image or write it.
 //

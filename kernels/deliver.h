@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection, last step: how the sum of a cell's texels gets into the volume.
 //
 //   void deliver(volume, key, sums)   adds (light) or merges (geometry)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which triangle each pixel sees, and how far away it is: the depth test of all that rasterize.cl listed over a tile.
 // One work-item a tile. A pixel keeps the least key and, among equal ones, the least triangle, so that the order of
 // the lists does not matter.

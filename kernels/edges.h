@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which pixels a triangle covers, exactly: edge functions in 64-bit integers.
 #ifndef CLPV_EDGES_H
 #define CLPV_EDGES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection, first step: which cell each texel of a surface belongs to (kernels/inject.cl).
 //
 // CLPV_GEOMETRY 0, light: a texel's virtual point light is at p + n s/2, half a cell off its surface, so that the surface

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a coarser cascade's cells to a finer one's, which are half as wide: trilinear at their centres.
 //
 // Along an axis, u is a finer cell counted from the coarser grid's least corner. Its centre stands at (u - 1/2) / 2 coarser

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Gather: the irradiance [W/m^2] that the volumes put on every surface the camera sees.
 //
 //   E(n) = g(n) . M c / s^2,   c the coefficients sampled trilinearly at p + offset s n,

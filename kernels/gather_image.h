@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Gathering from images, by the device's own filter or from texels (volume/image.h).
 //
 // OpenCL 1.2 has no arrays of images in a kernel: the host writes CLPV_EACH_CASCADE(DO), which writes DO(0) DO(1) ... , one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Gathering from records that kernel `pack` made of a cascade's volume: CLPV_PAIRS float8 a cell, each two numbers as
 // (r g b 0)(r g b 0). Kernel `gather` then reads the eight cells round a point as whole vectors, where planes would take
 // 24 scalar reads a number.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection: what a view sees becomes light or blocking in the cells of a volume (docs/method.md, 'Injection').
 //
 // CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W]; its cell gains (P/pi) c(n), c(n) the clamped

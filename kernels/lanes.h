@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Eight pixels side by side, computed at once: a row of a tile. Explicit, since PoCL vectorises none of the work-items
 // of kernels as long as these.
 #ifndef CLPV_LANES_H

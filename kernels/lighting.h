@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a light sends to a point in space, before anything stands in its way (kernels/shared/light.h).
 // The one home of cone, range and distance: direct light, RSMs and their twins must agree on them.
 #ifndef CLPV_LIGHTING_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Packs a cascade's volume for gathering (gather_packed.h): from each cell's coefficients the numbers that irradiance is
 // made of, one record a cell.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One step of light from every cell to its neighbours, and the sum of all steps so far.
 //
 // In:  travelling light of the last step (`source` volume; the injected field at first), and with CLPV_BLOCKING the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a scene's triangles to lists of those over each tile of a view.
 //
 //   project_vertices   every vertex onto the screen, snapped to 1/256 pixel

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What each pixel sees, once draw_tiles.cl knows which triangle that is: depth, normal, and albedo or flux.
 // One work-item a row of a tile, eight pixels. Selections instead of branches: a pixel that sees nothing looks at
 // triangle 0 and forgets it, a material without texture looks at a white texel.

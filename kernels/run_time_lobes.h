@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Propagation with lobes made at run time, as the paper has it: each of the faces of a cell turns (or projects) a lobe to
 // its normal and weighs it by the flux through it. With CLPV_EVALUATE_AT_RUN_TIME that flux, too, comes of the basis
 // functions evaluated along the way through the face.

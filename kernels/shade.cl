@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shade: what the lights put on every surface the camera sees, behind their shadow maps; and the image of it.
 //
 //   radiance = albedo/pi (E_direct + E_indirect) + emission

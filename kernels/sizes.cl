@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tells how the device lays out the structs that it shares with the host: sizes and places, in bytes.
 #include "shared/fields.h"
 #include "shared/grid.h"

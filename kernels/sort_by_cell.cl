@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts the texels of a surface by the cell they fall into, keeping their order within a cell: the deterministic
 // way to let one work-item sum all that a cell receives, with no atomics.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Linear value of each sRGB-encoded byte (IEC 61966-2-1).
 #ifndef CLPV_SRGB_H
 #define CLPV_SRGB_H

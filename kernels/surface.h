@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a view sees, pixel by pixel: depth, normal, colour; and where a pixel's surface is (kernels/shared/view.h).
 // Scalars throughout, float3 only to hand them over: CPU devices then vectorise across work-items.
 // CLPV_SURFACE_PAPER 1: normals and colours as 8-bit normalised integers, the paper's RSM format; 0: as float4.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light swept through a cascade: for each direction once through the grid, upstream to downstream, plane by plane across
 // the axis it is most along (discrete ordinates by short characteristics; docs/method.md, 'The sweep').
 //

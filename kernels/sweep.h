@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a sweep's numbers lie in memory: volumes of rows, one for each bin or way.
 //
 // A volume has a border of one cell all round. Rows along x lie above each other along y and then z; in a turned volume, of

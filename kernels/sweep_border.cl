@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What comes in at a cascade's border, along each direction: the coarser cascade's light in the cells round the grid.
 //
 // In: `kept`, the coarser cascade's shell (sweep.cl). Out: `border`, for each direction and channel three faces of rows

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a sweep leaves, as a light volume of the 24 bins of directions: radiance times s^2 (docs/method.md, 'The sweep').
 //
 // In: `sums`, a volume of rows for each channel and bin (sweep.h), turned ones first. Out: `accumulated`, of any layout.

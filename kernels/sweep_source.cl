@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a sweep starts from: injected light, as means over the 24 bins of directions.
 //
 // In: light volume [W/sr] of any basis and layout. Out: `sources`, a volume of rows for each channel and bin (sweep.h); of

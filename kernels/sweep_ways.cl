@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What blockers let through, for a sweep: the transmittance of each way into a cell, in rows (sweep.h).
 //
 // In: geometry volume, samples at the cells' corners. Out: `ways`, a volume of rows for each way that directions across z

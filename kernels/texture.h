@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Filtered look-ups in the scene's textures (kernels/shared/mesh.h), eight at a time: sRGB decoded before filtering,
 // linear result. No floor() or log2(), which are calls on PoCL.
 #ifndef CLPV_TEXTURE_H

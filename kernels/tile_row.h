@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Eight pixels of a view that a work-item resolves, and the depths behind them.
 #ifndef CLPV_TILE_ROW_H
 #define CLPV_TILE_ROW_H

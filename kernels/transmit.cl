@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What blockers let through on each way into a cell: 1 - B, B the blocking potential in [0, 1].
 //
 // In: geometry volume, samples at the cells' corners. Out: transmittance volume, a number a cell and way.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A triangle of the scene as a view sees it: its plane, and what a pixel's ray hits on it.
 //
 // Of one triangle, or of eight side by side (vec.h). Everything is relative to the eye and built from edges, so that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vectors of three named components. CLPV_REAL, the type of a component, is float, or float8 after lanes.h: then a
 // Vec is eight of them side by side.
 #ifndef CLPV_VEC_H

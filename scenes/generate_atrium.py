@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Writes atrium.glb and atrium.json beside itself: a two-storey colonnade round an open court, hung with curtains.
 
 Python's standard library only; the same bytes every time. `generate_atrium.py [FOLDER]` writes into FOLDER instead.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Writes cornell.glb and cornell.json beside itself: the Cornell box, by its published corners.
 
 Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes into FOLDER instead.

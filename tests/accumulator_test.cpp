@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Adding to volumes of every layout: sums end where they should, and take the memory they say.
 #include "volume/accumulator.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hostile and broken glTF, one a test: node graphs, indices, accessors, buffers, cameras and lights. Each is refused
 // before anything of the size it asks for is allocated.
 #include "tests/support/bad_input.hpp"

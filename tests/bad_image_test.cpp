@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hostile and broken images of a model, one a test.
 #include "tests/support/bad_input.hpp"
 

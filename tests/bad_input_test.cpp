@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hostile and broken files, JSON, URIs and scene files, one a test: each is refused with file, place, value found and value
 // allowed, as exit code 3 (bad_input).
 #include "tests/support/bad_input.hpp"

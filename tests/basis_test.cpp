@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bases against quadrature done here: Gram matrices, integrals of the clamped cosine, errors of its lobe.
 #include "basis/basis.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Benchmarks: statistics, the baseline against the twin, reports, comparison of runs, and what
 // `clpv bench` and `clpv tune` do as a user meets them.
 #include <gmock/gmock.h>

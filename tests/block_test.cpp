@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Blockers from a scene's triangles, held against shares that are known.
 #include "pipeline/block.hpp"
 

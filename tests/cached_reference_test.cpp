@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // References are traced once, and anew when anything they depend on changes or their file is damaged.
 #include "evaluate/cached_reference.hpp"
 

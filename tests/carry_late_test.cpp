@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Late light carried from coarser cascades to finer ones: what it does to irradiance, held against mathematics; and the
 // stage in a frame.
 #include "pipeline/carry_late.hpp"

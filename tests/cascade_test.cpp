@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cascades: nested round the camera, on whole cells.
 #include "pipeline/cascade.hpp"
 

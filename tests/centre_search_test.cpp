@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The search for centres: its slopes against differences, its bounds, the same result for the same seed, and what users
 // meet; sets with a lambda of each centre's own.
 #include "basis/centre_search.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A user's own SRBF set: what load_basis makes of a file, and what it refuses; `clpv basis` on one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

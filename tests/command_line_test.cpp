@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the program says before any command runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

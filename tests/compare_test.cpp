@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Figures of the comparison against hand-made images whose errors are known, and the command around them.
 #include "image/compare.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The one comparison of results with their twins.
 #include "checks/comparison.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is said of a long wait for the compiler: once, and only of a long one.
 #include "device/compile_notice.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Listing and choosing devices, on lists made up here and on this machine's own.
 #include "device/device.hpp"
 

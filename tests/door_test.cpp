@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The library's door: what a program of somebody else's sees.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

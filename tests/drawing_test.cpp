@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is drawn by tools/clpv_draw: `clpv report`, `clpv basis --figures` and `clpv bench --plot`, and what they say where
 // Python or a module is missing. Charts and page themselves: tests/draw.
 #include <gmock/gmock.h>

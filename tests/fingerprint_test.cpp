@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fingerprints: equal content, equal name; any change, another.
 #include "support/fingerprint.hpp"
 

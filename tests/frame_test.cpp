@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole frames: the scenes of this project against what they must show, whatever the numbers inside.
 #include "pipeline/frame.hpp"
 

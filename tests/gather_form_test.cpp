@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What gathering evaluates, against what it stands for: the exact irradiance of a cell's light, and closed forms.
 #include "basis/gather_form.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Gathering against closed forms: uniform and linear fields, seams between cascades, clamp, floor.
 // Every field is gathered by the kernels and by the twin, and both are held against mathematics.
 #include "pipeline/gather.hpp"

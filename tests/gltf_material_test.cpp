@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF materials, textures and texture coordinates, feature by feature.
 #include <glm/gtc/constants.hpp>
 

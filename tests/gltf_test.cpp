@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and looks at what comes
 // out in world space.
 #include <glm/gtc/constants.hpp>

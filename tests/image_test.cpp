@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images in and out: what is written comes back, the same bytes each time, and bad files are refused in
 // words.
 #include <gtest/gtest.h>

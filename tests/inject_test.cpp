@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection against closed forms: where light goes and how much, what walls block, merging, repeatability; and the
 // kernels against their twin.
 #include "pipeline/inject.hpp"

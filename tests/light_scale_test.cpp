@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light as volumes of 16 bits hold it: neither lux nor candle light leaves their range.
 #include "pipeline/light_scale.hpp"
 

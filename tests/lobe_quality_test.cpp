@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What clpv basis tells of a lobe, against quadrature and a finer search; its energies against the tabled ones.
 #include "basis/lobe_quality.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's look-up tables on the device: what kernels read is what is in them, however many came and went before.
 #include "pipeline/lookup_table.hpp"
 

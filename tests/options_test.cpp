@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The options of a frame: each goes from text to a value and back, what is no value is refused with those that are, and
 // every enumeration that stands for a choice has all its names.
 #include <gmock/gmock.h>

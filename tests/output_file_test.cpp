@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Output is whole or not there; volumes written for others' tools say what they should.
 #include "support/output_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The path tracer against closed forms: what the pipeline is held against has to be right itself.
 #include "pathtracer/path_tracer.hpp"
 

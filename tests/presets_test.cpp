@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Presets: what they set, what overrides them, and that results tell what was resolved.
 #include "options/presets.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled programs kept on disk: what is stored comes back, and whatever else a file holds never does.
 #include "device/program_cache.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kernel text: embedded files, includes, the folder that overrides them, and what is said when one does not
 // build.
 #include "device/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Propagation: kernels against the twin, and the twin against closed forms.
 #include "pipeline/propagate.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Quality runs: the matrix of variants, what is kept of a stopped run, how results are told, and the command.
 #include "evaluate/quality.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rasteriser on a whole scene, where it is present: no holes, the same bytes twice, and how long it takes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rasteriser against closed forms: coverage, depth, normals, flux, clipping, culling, holes,
 // repeatability.
 #include "pipeline/rasterize.hpp"

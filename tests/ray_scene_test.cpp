@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What rays meet: holes, textures and single sides as path tracing sees them, and all of it as the rasteriser does.
 #include "pathtracer/ray_scene.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv reference: what it writes, what it refuses, and that a refusal costs no time and leaves nothing behind.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

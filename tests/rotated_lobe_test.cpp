@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's lobes: the one towards +z, rotated, with and without the table; and direction bins' integrals.
 #include "basis/rotated_lobe.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Look-up tables on the device and lobes made in the propagation kernel: the same light, by buffer and by image; refusals.
 #include "pipeline/run_time_lobes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scene files: what they say, what they replace, what is added where nothing is given; and Sponza as a whole.
 #include "scene/scene.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scenes made for this project: their generators write the files that are there, and light falls in them as
 // their cards say.
 #include <gtest/gtest.h>

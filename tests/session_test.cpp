@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A device in use: memory it refuses, launches of any size, times by events and by the host's clock, shared
 // structs.
 #include "device/session.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shading against closed forms: Lambert's law for every kind of light, what each view shows, and the kernels' twin.
 #include "pipeline/shade.hpp"
 

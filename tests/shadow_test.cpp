@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadows of known outline, and surfaces that must not shadow themselves (kernels/shade.cl).
 #include "tests/support/shade_scenes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Identities between bases and states: six fluxes in place of coefficients, energy in single precision, sh4 as sh3.
 #include <gtest/gtest.h>
 

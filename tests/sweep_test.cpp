@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The sweep, held against what is known of light in closed form; and the kernels against the twin.
 #include "pipeline/sweep.hpp"
 

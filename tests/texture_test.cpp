@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Textures as the rasteriser sees them: mip chains, wrap modes, filters, holes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

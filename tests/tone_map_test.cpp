@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tone curves and the sRGB encoding against published values and closed forms.
 #include "image/tone_map.hpp"
 

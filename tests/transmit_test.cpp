@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What blockers let through: the kernels against their twin, and both against closed forms.
 #include "pipeline/transmit.hpp"
 

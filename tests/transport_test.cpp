@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Transports against quadrature done here: solid angles, face fluxes, energies, operators and their gather.
 #include "basis/transport.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tunings: kept, found again, ignored where they are damaged; and `clpv tune` with the program that uses them.
 #include "pipeline/tuning.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The views a frame is rasterised from: what they cover, and that a moving cascade moves by whole texels.
 #include "pipeline/view.hpp"
 

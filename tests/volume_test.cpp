@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Volumes in every layout and storage: what is written is read back, what a device lacks is said, and every stage
 // gives the same numbers whatever way its volumes lie in memory.
 #include "volume/volume.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "bench/baseline/propagate_avx2.hpp"
 
 #include <algorithm>

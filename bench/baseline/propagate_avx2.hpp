@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The propagation of sh2 with the paper's transport in C++, OpenMP and AVX2: what the OpenCL kernels are held against.
 #pragma once
 

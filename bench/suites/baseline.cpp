@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `baseline`: propagation of sh2 in OpenCL against the same step in C++, OpenMP and AVX2 on the host.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `bases`: the cost of every basis, with either state and either lobe.
 #include "basis/basis.hpp"
 #include "bench/suites.hpp"

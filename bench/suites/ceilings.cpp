@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `ceilings`: what the device can do at most.
 #include "bench/suites.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `frame`: whole frames along a camera path, and what each stage of them takes.
 #include "pipeline/frame.hpp"
 

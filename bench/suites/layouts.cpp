@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `layouts`: every stage on every layout and storage of its volumes, and how often each reaches into them: the
 // paper's own argument is about texture reads.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `scaling`: how times grow with the grid, the coefficients, the steps, the RSM, the triangles and the compute
 // units.
 #include <fmt/format.h>

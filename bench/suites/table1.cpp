@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Suite `table1`: the paper's Table 1 in its own shape (Silvestre and Pereira, 'Cascaded Light Propagation Volumes using
 // Spherical Radial Basis Functions'), its times beside ours: injection and propagation of each cascade and the light
 // buffer, with and without indirect shadows, a column a basis. The published injection gains .033 ms at most from

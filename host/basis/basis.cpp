@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/basis.hpp"
 
 #include <fmt/format.h>

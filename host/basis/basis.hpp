@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A basis of functions on the sphere: f(w) = sum_i c_i b_i(w). All in double; knows no OpenCL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/blocking.hpp"
 
 #include <cmath>

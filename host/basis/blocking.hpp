@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What blocks light: what a surfel adds to a sample of the geometry volume, and how much of the light along a direction
 // such a sample keeps back (MATH section 4). Knows no OpenCL.
 #pragma once

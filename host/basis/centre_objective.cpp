@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/centre_objective.hpp"
 
 #include <cmath>

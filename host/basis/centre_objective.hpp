@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a search for centres makes small, and how well-conditioned a set is: both with their slopes by centres and lambdas.
 #pragma once
 

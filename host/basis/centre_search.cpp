@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/centre_search.hpp"
 
 #include <nlopt.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A search for the centres of an SRBF set that hold clamped cosines best (`clpv basis --search`).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/clamped_cosine.hpp"
 
 #include <algorithm>

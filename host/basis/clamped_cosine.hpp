@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The clamped cosine max(0, w . d) as a zonal series, and its integral against an Abel-Poisson kernel.
 // max(0, t) = sum_k a_k P_k(t): a_0 = 1/4, a_1 = 1/2, other odd a_k = 0, a_2k = (4k+1)/2 b_k,
 // b_1 = 1/8, b_{k+1} = -b_k (2k-1)/(2k+4).

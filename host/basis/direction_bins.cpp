@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/direction_bins.hpp"
 
 #include <fmt/format.h>

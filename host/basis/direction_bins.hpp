@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Direction bins: the cube's six faces, each cut into m x m regions, and one indicator function a region.
 // f is constant in each bin: nothing is ever negative and the transport operators are diagonal.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's way from cell to cell: fluxes through faces, re-emitted as lobes (docs/method.md, 'Propagation').
 #pragma once
 

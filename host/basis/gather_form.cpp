@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/gather_form.hpp"
 
 #include <algorithm>

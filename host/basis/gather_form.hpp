@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What gathering evaluates: irradiance as few functions of a surface's normal, times a matrix. In double; knows no OpenCL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/kernel_text.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pieces of straight-line OpenCL C with literal constants, for Basis::kernel_source() and the transports.
 #pragma once
 

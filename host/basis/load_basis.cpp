@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A user's own SRBF set from a JSON file; every fault is told by its JSON pointer.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/lobe_aims.hpp"
 
 #include <algorithm>

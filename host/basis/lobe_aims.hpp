@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What clamped cosines are wanted for: all directions alike, or some directions by their weights; how far off a basis is
 // on the whole; and how little that can be.
 #pragma once

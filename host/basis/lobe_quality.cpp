@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/lobe_quality.hpp"
 
 #include <algorithm>

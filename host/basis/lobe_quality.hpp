@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How well a lobe stands for the clamped cosine, and how a basis keeps energy: what `clpv basis` tells.
 #pragma once
 

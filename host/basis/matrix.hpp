@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A small dense matrix in double, row by row.
 #pragma once
 

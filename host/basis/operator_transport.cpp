@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/operator_transport.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Linear transports: the free-space transport equation discretised on cells and projected on the basis
 // (docs/method.md, Propagation).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/quadrature.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Integrals over the sphere and parts of it, split where the integrand has kinks or jumps.
 #pragma once
 

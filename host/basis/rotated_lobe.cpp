@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/rotated_lobe.hpp"
 
 #include <algorithm>

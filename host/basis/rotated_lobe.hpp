@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's cosine lobes (Appendix 2): the lobe towards +z is projected once and turned to each axis by
 // c~ = A^-1 R c, R_ij = H_ij(xi_i . Rot xi_j), H_ij(t) = 4 pi G(t; lambda_i lambda_j) read from a table. An option, for
 // comparison: the exact projection (Basis::clamped_cosine) costs less and is nowhere worse.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/spherical_harmonics.hpp"
 
 #include <fmt/format.h>

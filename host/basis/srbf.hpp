@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Spherical radial basis functions: the Abel-Poisson kernel G at fixed centres, each with a bandwidth lambda_i.
 // G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2), b_i(w) = G(w . xi_i; lambda_i), Int b_i dw
 // = 4 pi, A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda_i lambda_j): the 4 pi belongs there with the plain

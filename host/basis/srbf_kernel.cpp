@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/srbf_kernel.hpp"
 
 #include <fmt/format.h>

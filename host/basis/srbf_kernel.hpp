@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The kernel text of an SRBF set (Basis::kernel_source): antipodal centres of one lambda share all but a sign.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/sweep.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Directions that light is swept along, once through the grid each (docs/method.md, 'The sweep'). In double; knows no
 // OpenCL.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/table_kernel.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kernel text of the paper's look-up tables: lobes turned at run time (Appendix 2), and basis functions read from a table.
 #pragma once
 

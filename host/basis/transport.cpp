@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/transport.hpp"
 
 #include "basis/face_transport.hpp"

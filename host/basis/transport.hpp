@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How light moves from a cell to its neighbours: constants of a basis, computed in double. Knows no OpenCL.
 // A transport is made for a basis through Basis's interface; neither knows the other's names.
 #pragma once

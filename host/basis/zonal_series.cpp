@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "basis/zonal_series.hpp"
 
 namespace clpv {

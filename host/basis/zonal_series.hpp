@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Zonal functions as series, sum_k c_k mu^k P_k(t), with their slopes: what a search for centres climbs by.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Holds each stage's kernels against its double-precision twin, on any device: what `clpv check` and the
 // tests run.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles that block: the kernels against the twin on a soup of triangles, of all sizes and with holes.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Late light carried down: the kernel against the twin, for grids that start on even and on odd cells of the coarser one.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the checks of all stages that reach volumes have in common: formats, and their tolerances.
 #include "checks/check.hpp"
 #include "checks/tolerances.hpp"

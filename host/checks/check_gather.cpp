@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Gathering: kernels against the twin, on random light in three nested cascades seen by surfaces in and round
 // them.
 #include <fmt/format.h>

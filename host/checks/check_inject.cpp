@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection: kernels against the twin on small random surfaces.
 #include <fmt/format.h>
 

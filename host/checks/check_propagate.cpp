@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Propagation: kernels against the twin on a small grid of random light and random blockers.
 #include <fmt/format.h>
 

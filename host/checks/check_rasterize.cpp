@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rasteriser against its twin: random and awkward triangles, every kind of view.
 #include <fmt/format.h>
 

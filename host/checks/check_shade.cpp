@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shading: kernels against the twin, on random surfaces behind random shadow maps of every kind of light.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Holds the device's layout of the shared structs against the host's: a difference would garble every stage's
 // input.
 #include <fmt/format.h>

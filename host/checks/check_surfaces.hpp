@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the checks of the camera's stages share: surfaces to look at, and images held against the twin's.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The sweep: kernels against the twin, on small cascades of random light and random blockers.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far a result is from its twin's: the one comparison of checks and benchmarks.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every tolerance between a kernel and its twin, in one table, each with its reason.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "codegen/cell_macros.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the text of every kernel that handles cells starts with.
 #pragma once
 

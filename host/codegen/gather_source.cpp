@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "codegen/gather_source.hpp"
 
 #include <fmt/format.h>

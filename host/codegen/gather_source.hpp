@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Generated text of the kernels that gather (kernels/pack.cl, kernels/gather.cl).
 #pragma once
 

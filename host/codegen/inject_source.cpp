@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "codegen/inject_source.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kernel text that injection generates for a basis. Knows no OpenCL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "codegen/linear_code.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Straight-line OpenCL C for products with constant matrices, with what symmetry lets them share.
 //
 // A mirror image of the grid turns each basis function into plus or minus another one. In coordinates that

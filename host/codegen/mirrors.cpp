@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "codegen/mirrors.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mirrors of the grid, and what they do to the numbers a cell holds: the symmetries that generated code shares by.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "codegen/transport_source.hpp"
 
 #include <fmt/format.h>

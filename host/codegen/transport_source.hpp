@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A transport, for one basis, as straight-line OpenCL C: the generated part of kernels/propagate.cl.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv basis: what each basis is, how well it holds a clamped cosine, how it keeps energy.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/basis_figures.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's figures of bases and lobes, drawn by tools/clpv_draw.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/basis_search.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `clpv basis --search N`: centres that hold clamped cosines best, as a file for --centres, beside the named sets.
 #pragma once
 

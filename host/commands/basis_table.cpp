@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/basis_table.hpp"
 
 #include <fmt/format.h>

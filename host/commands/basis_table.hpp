@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `clpv basis` tells of a basis: a JSON object each, and a table of several.
 #pragma once
 

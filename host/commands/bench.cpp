@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv bench: how long stages take on this device, in all their variants.
 #include "bench/bench.hpp"
 

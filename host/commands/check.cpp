@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv check: every stage's kernels against their double-precision twins, on a device of the user's choice.
 #include "checks/check.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Values of an enumeration on the command line, by their names.
 #pragma once
 

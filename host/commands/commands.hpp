@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The sub-commands. Each adds itself to the program: its options, its help, and what it does when chosen.
 #pragma once
 

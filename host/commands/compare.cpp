@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv compare: how far an image is from its reference.
 #include "image/compare.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv devices: every OpenCL device, and what it can do.
 #include <fmt/format.h>
 

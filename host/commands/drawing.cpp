@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/drawing.hpp"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures and pages are drawn by the Python package tools/clpv_draw, from JSON, NPY and PNG files that commands write.
 #pragma once
 

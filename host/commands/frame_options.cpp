@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/frame_options.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The options of a frame on the command line, from the one table in options/render_options.hpp.
 #pragma once
 

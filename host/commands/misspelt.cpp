@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/misspelt.hpp"
 
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A command that there is not: named, with the one that was meant.
 #pragma once
 

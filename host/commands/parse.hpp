@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small values on the command line: vectors "x,y,z" and boxes "i0,j0,k0:i1,j1,k1".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv propagate: the method without a scene. Sources and blockers in an empty grid, energy step by step.
 #include "pipeline/propagate.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv quality: how far the frames of many variants are from the path-traced truth, and what they cost.
 #include "evaluate/quality.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/quality_subjects.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a quality run looks at: scenes, their cameras, the truth of each view, and where truths are kept.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv reference: the path-traced truth that `render`'s images are held against.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

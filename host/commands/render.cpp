@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv render: a scene, lit by cascaded light propagation volumes, into an image.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv report: one page with images beside the truth, errors against costs, and benchmarks; drawn by tools/clpv_draw.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "commands/tracing_options.hpp"
 
 #include "support/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The options of path tracing on the command line, shared by `reference` and `quality`, and its progress bar.
 #pragma once
 

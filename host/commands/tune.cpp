@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // clpv tune: which launch shapes and which layout propagate fastest here, kept for render and bench.
 #include "bench/tune.hpp"
 

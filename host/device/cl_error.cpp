@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/cl_error.hpp"
 
 #include <CL/cl_ext.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OpenCL's error codes by name, and its exceptions in the user's words.
 #pragma once
 

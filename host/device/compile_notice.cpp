@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/compile_notice.hpp"
 
 #include "support/log.hpp"

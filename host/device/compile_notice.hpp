@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Says in the log what a long wait for a device's compiler is for.
 #pragma once
 

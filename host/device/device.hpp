@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which OpenCL devices there are, what they can do, and choosing one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/kernel.hpp"
 
 #include "device/session.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A kernel as an object: described when it is made, built when it is first needed, launched with typed arguments.
 #pragma once
 

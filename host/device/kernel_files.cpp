@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/kernel_files.hpp"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The text of the kernels: embedded at build time, or read from CLPV_KERNEL_DIR.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/literals.hpp"
 
 #include "support/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a kernel's source is specialised with, each literal by its type.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Device memory that counts as in use for as long as someone holds it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OpenCL programs: what one is built from, its text, and building it.
 #pragma once
 

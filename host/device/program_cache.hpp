@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled programs kept on disk between runs, so that a second start compiles nothing.
 //
 // One file a program. It holds the whole key (device, driver, options, source text), which is compared when

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/session.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A device in use: context, in-order queue, programs built so far, memory held and times taken.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/timeline.hpp"
 
 #include <algorithm>

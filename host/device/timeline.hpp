@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // When each stage ran on the device, and for how long.
 #pragma once
 

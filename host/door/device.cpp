@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "clpv/device.hpp"
 
 #include "device/device.hpp"

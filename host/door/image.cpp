@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "clpv/image.hpp"
 
 #include "image/image_io.hpp"

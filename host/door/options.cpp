@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "clpv/options.hpp"
 
 #include "options/render_options.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "clpv/renderer.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "clpv/scene.hpp"
 
 #include "door/scene_contents.hpp"

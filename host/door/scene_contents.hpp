@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a SceneFile holds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluate/cached_reference.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Path-traced references kept on disk: traced once, read ever after.
 #pragma once
 

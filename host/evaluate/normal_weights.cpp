@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluate/normal_weights.hpp"
 
 #include <algorithm>

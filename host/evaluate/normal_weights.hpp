@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene's own normals, weighted by the light they send on: what its reflective shadow maps hold.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluate/quality.hpp"
 
 #include <fmt/format.h>

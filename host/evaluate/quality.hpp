@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far a frame is from the path-traced truth, and what it costs: one cell a variant and view.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which variants a quality run compares: every combination of the values of some render options.
 #pragma once
 

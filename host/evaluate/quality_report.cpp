@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluate/quality_report.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cells of a quality run as text: JSON, CSV and a table to read.
 #pragma once
 

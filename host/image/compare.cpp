@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/compare.hpp"
 
 #include <OpenImageIO/imagebuf.h>

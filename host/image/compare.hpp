@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far an image is from its reference, in figures and as the paper's difference image.
 #pragma once
 

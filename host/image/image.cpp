@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/image.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images, which are part of the library's door, taken apart and put together by layers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images in and out, through OpenImageIO: EXR, PNG and Radiance HDR in; EXR and PNG out.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a view sees, on the host: an RSM or the camera's G-buffer. Knows no OpenCL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From linear radiance to what a display shows: exposure, tone curve, sRGB encoding.
 #pragma once
 

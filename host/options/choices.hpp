@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What can be chosen of a frame, each choice an enumeration with its names on the command line, in files and in tables.
 // Those that a basis knows are beside it: TransportKind, Blocking, LobeKind. Knows no OpenCL.
 #pragma once

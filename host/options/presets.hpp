@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Presets: named sets of render options (--preset). Single options override what they set.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "options/render_options.hpp"
 
 #include <fmt/format.h>

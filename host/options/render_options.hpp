@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every choice that shapes a rendered frame, as one typed value; and the one table of names and texts that the command
 // line, --stats, image metadata and presets go through. Below it no text stands for a choice. Knows no OpenCL.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an image can show of a frame.
 #pragma once
 

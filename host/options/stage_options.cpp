@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "options/stage_options.hpp"
 
 #include "options/render_options.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What each stage is told of a frame's choices, and the one place where that comes from them. Knows no OpenCL, so that
 // stages and their twins share it.
 #pragma once

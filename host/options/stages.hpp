@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The stages there are, and what the timeline tells apart of them: the one list for `clpv check`, the times of a frame and
 // the benchmarks. A new one that is not everywhere it must be does not compile.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pathtracer/path_sampler.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rays of one pixel: what it sees, its direct light, and single paths of its indirect light.
 #pragma once
 

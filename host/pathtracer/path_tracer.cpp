@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
 #include <algorithm>
 #include <atomic>

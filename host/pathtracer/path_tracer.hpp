@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
 //
 // Every surface is diffuse; lights are points, spots and suns without extent (hard shadows). A pixel is one

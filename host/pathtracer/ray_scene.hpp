@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene that rays can be shot through: Embree in its robust mode, with alpha masks and the colours of what
 // is hit.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers for Monte Carlo: counter-based, so that a sample depends on what it is for and never on who
 // computes it. Owen-scrambled Sobol points after Burley, "Practical Hash-based Owen Scrambling" (JCGT 9(4),
 // 2020).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pathtracer/traced_view.hpp"
 
 #include <numbers>

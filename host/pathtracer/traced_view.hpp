@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a traced image shows: the same views as a rendered frame's, pixel by pixel.
 #pragma once
 

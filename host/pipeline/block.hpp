@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `block`: what a scene's own triangles block in a cascade, whoever sees them (kernels/block.cl; docs/method.md,
 // 'Blockers').
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/carry_late.hpp"
 
 #include <array>

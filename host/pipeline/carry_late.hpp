@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Late light, carried from a coarser cascade to the next finer one (kernels/carry_late.cl; docs/method.md, 'Late light').
 #pragma once
 

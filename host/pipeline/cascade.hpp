@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the cascades' grids stand: nested round the camera, snapped to whole cells.
 #pragma once
 

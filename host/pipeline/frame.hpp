@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A frame: every stage in its order, for one scene and one set of options (docs/method.md, 'The frame').
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/frame_stats.hpp"
 
 #include <algorithm>

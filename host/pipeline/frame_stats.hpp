@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `--stats` tells of a frame: device, options, stage times, memory and energies.
 #pragma once
 

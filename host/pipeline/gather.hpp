@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `gather`: volumes and the camera's G-buffer in, irradiance of every pixel out (kernels/gather.cl).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/given_options.hpp"
 
 #include "basis/basis.hpp"

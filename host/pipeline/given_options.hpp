@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Options as a user gives them, and what they come to for a scene.
 #pragma once
 

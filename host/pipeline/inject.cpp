@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/inject.hpp"
 
 #include "codegen/inject_source.hpp"

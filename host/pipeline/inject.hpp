@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Injection: what views see becomes light and blocking in the cells of volumes (docs/method.md, 'Injection').
 #pragma once
 

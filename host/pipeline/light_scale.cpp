@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/light_scale.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What light is multiplied by while volumes hold it.
 #pragma once
 

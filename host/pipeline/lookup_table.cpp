@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/lookup_table.hpp"
 
 #include "support/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's look-up tables on the device: as a plain buffer, or as a 1-D image of a buffer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/propagate.hpp"
 
 #include <fmt/ranges.h>

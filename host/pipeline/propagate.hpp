@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Propagation: the injected light, n steps on through a cascade's cells (docs/method.md, 'Propagation'; Kaplanyan
 // & Dachsbacher 2010).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rasterises a scene into what a view sees: reflective shadow maps, the camera's G-buffer, shadow maps.
 //
 // Vertices snap to 1/256 pixel; edges are then exact in integers and follow the top-left rule, so that

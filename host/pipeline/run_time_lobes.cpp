@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/run_time_lobes.hpp"
 
 #include <fmt/format.h>

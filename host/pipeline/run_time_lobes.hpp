@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lobes that propagation makes in its kernel, thirty a cell and step, as the paper does (LobeTime::kernel): slow, and
 // the same light as lobes that are constants.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/scene_buffers.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene on the device: triangles, materials, and textures with their mip chains.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `shade`: light straight from the lights, shadowed, and the images a frame can show
 // (kernels/shade.cl).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/sort_by_cell.hpp"
 
 #include <algorithm>

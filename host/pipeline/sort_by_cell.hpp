@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts the texels of a surface by the cell each falls into: kernels/sort_by_cell.cl.
 #pragma once
 

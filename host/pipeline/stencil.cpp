@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/stencil.hpp"
 
 #include <algorithm>

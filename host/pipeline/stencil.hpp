@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Launching kernels that serve every cell of a grid (propagate.cl, transmit.cl).
 #pragma once
 

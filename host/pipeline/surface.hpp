@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a view sees: an RSM or the camera's G-buffer, on the device and read back.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `sweep`: the injected light of all cascades, moved to wherever it goes in one pass a direction (kernels/sweep.cl;
 // docs/method.md, 'The sweep').
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/sweep_source.hpp"
 
 #include <fmt/format.h>

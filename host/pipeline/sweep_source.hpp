@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Generated text and tables of the kernels that sweep (kernels/sweep*.cl).
 #pragma once
 

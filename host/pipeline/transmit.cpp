@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/transmit.hpp"
 
 #include <fmt/format.h>

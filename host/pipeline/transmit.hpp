@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What blockers let through: a cascade's geometry volume as the share of light that each way into a cell passes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline/tuning.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `clpv tune` found best for a device, kept between runs in the user's cache.
 #pragma once
 

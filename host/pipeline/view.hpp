@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The views a frame is rasterised from: the camera's, and a light's for reflective shadow maps and shadow
 // maps.
 #pragma once

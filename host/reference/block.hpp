@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `block` in double: the twin of kernels/block.cl.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/carry_late.hpp"
 
 #include <array>

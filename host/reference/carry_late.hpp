@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Late light carried to a finer cascade, in double: the twin of kernels/carry_late.cl.
 #pragma once
 

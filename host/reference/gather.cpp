@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/gather.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `gather` in double: the twin of kernels/gather.cl.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The twin of kernels/inject.cl: one texel after another in double, straight from docs/method.md, 'Injection'.
 #pragma once
 

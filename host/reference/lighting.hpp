@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a light sends to a point in space, before anything stands in its way: the twin of kernels/lighting.h.
 #pragma once
 

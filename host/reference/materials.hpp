@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The colours of a scene's surfaces on the host: factors, vertex colours and textures, filtered as the
 // rasteriser does.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The twin of kernels/propagate.cl: one step after another in double, a plane at a time (a plane: one coefficient of all
 // cells), straight from docs/method.md, 'Propagation'.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a view sees of a scene, by brute force in double: the twin of the rasteriser.
 #pragma once
 

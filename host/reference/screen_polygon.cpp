@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reference/screen_polygon.hpp"
 
 #include <algorithm>

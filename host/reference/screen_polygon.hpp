@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A triangle on the screen, in double: clipped, snapped, and what pixels it covers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `shade` in double: the twin of kernels/shade.cl.
 #pragma once
 

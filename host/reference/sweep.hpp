@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stage `sweep` in double: the twin of kernels/sweep.cl and of the kernels round it (docs/method.md, 'The sweep').
 #pragma once
 

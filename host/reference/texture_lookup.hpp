@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene's textures on the host: decoded to linear light, wrapped, filtered.
 #pragma once
 

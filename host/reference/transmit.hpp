@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The twin of kernels/transmit.cl: what blockers let through on one way into a cell (docs/method.md, 'Propagation').
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A triangle's values between its vertices, on the host.
 #pragma once
 

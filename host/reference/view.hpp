@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a view's pixels look, in double: the twin of kernels/surface.h.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A volume in double on the host, for the twins.
 #pragma once
 

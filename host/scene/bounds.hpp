@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much a scene may ask for. Scenes are untrusted: each bound is checked before anything of that size is
 // allocated.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/gltf.hpp"
 
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A glTF 2.0 model into a Scene.
 #pragma once
 

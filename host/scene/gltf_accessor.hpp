@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random access to a glTF accessor: strided, normalised, sparse or all zeros. Nothing is copied, so that
 // making one costs the same whatever its size.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads a glTF file: container, JSON, checks, buffers; then lets tinygltf make typed structs of the rest.
 //
 // tinygltf 2.7 reads files and decodes images as it parses, and trusts counts and indices. It is therefore

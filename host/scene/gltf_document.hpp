@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A glTF model in memory: guarded, checked, and its buffers read. Internal to the loader; includes tinygltf.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Offsets, counts and strides are below 2^32 by schema, so that none of these products overflows 64 bits.
 #include "scene/gltf_extents.hpp"
 

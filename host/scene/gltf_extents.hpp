@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whether the parts of a glTF document lie within what holds them: views in buffers, accessors in views.
 #pragma once
 

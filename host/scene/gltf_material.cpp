@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A metal reflects nothing diffusely in glTF; here its base colour does, since light propagation volumes
 // carry diffuse light only and a black Sponza would teach nothing. Metalness, roughness and normal maps are
 // not read.

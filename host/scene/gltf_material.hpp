@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Materials: factors, alpha, and which textures they want with which texture coordinates.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Meshes: primitives of any mode and attribute format, as plain triangles in world space.
 #pragma once
 

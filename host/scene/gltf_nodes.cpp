@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/gltf_nodes.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>

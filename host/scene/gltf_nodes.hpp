@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The node hierarchy, flattened: where each mesh, camera and light stands.
 #pragma once
 

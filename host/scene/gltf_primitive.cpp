@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/gltf_primitive.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One mesh primitive in its own space: triangles over just the vertices they use. Internal to the loader.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a glTF document may say, as far as the loader reads it: types, ranges, and every index within its
 // list.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF cameras and KHR_lights_punctual as a scene's cameras and lights.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Decoders allocate by the header's size before a caller is asked (libjpeg for progressive images,
 // OpenImageIO for interlaced ones), so the size is read here first. PNG: ISO 15948, section 11.2.2. JPEG: ITU
 // T.81, annex B.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The size an encoded image claims, read without decoding it.
 #pragma once
 

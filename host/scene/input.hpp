@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reading untrusted files: whole, bounded, and only from where a scene may read.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A spot light's cone as KHR_lights_punctual means it.
 #pragma once
 

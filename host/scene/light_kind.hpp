@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The kinds of light there are, by their names in scene files and in glTF: the one list of them on the host. What a kind
 // means is switched over without a default, so that a new one does not compile until it means something everywhere.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a path to a Scene: which loader, what the scene file replaces, and what is added where nothing is
 // given.
 #include "scene/load.hpp"

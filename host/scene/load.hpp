@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scene files and glTF models into a Scene.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The mip levels of a texture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the loader decided and a user should be told, bounded: a hostile file must not flood the terminal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is lit: triangles, materials, textures, cameras and lights. Plain data in metres; knows no OpenCL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Our scene file: which model, in what units, seen and lit how. docs/scenes.md describes the format.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/texture_image.hpp"
 
 #include <OpenImageIO/filesystem.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images of a model as 8-bit RGBA textures. Content decides the format, headers are bounded before decoding.
 #pragma once
 

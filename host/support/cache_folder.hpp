@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where this user's caches are.
 #pragma once
 

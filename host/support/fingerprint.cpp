@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "support/fingerprint.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A short name for a lot of content: the key of what a cache keeps. Not cryptographic.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A small schema for untrusted JSON: which value stands where, of what kind and in what range.
 //
 // Checked once, before anything reads the document, so that readers need not check again; every refusal names

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Talk: stderr, through spdlog. stdout is for data.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The middle of a series of measurements, which a few outliers do not move.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Enumerations whose values have names: the one place where text becomes such a value, and a value text.
 //
 // An enumeration counts from 0 without gaps and has beside it

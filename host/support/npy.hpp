@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // NumPy's .npy files of float32: for whoever analyses a volume in Python, and for tests.
 #pragma once
 

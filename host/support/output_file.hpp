@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Output that is whole or not there: written beside its place, then renamed into it.
 #pragma once
 

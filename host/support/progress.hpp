@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A progress bar on stderr for work that takes over a second.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "support/refuse.hpp"
 
 #include "support/error.hpp"

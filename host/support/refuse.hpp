@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Refusing what stands in a file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "support/vti.hpp"
 
 #include <fmt/format.h>

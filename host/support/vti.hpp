@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // VTK image data (.vti) with values in cells: for ParaView.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "volume/accumulator.hpp"
 
 namespace clpv {

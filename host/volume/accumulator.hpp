@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Adding to volumes, whatever their layout.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "volume/convert.hpp"
 
 #include "codegen/cell_macros.hpp"

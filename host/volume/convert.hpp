@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A volume in an image as planes in a buffer, for stages that change cells in place (kernels/convert.cl).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "volume/volume.hpp"
 
 #include <glm/gtc/packing.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A volume on the device: N coefficients a cell and channel, in one buffer or one image.
 #pragma once
 

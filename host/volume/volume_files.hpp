@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light volumes as files: .npy for scripts, .vti for ParaView.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "volume/volume_format.hpp"
 
 #include <fmt/format.h>

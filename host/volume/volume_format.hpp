@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a volume lies in memory: layout and storage; what a device lacks for either, and what a cell costs to reach.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which OpenCL devices there are.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a user of the library may catch.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An image in memory: named float channels, layers by name, and what a file says about itself.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every choice that shapes a rendered frame, by name: those of `clpv render`, with the same values and defaults.
 #pragma once
 

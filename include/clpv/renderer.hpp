@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes lit by cascaded light propagation volumes, from a program of your own:
 //
 //   const clpv::SceneFile scene("cornell.json");

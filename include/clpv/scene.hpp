@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene as a user of the library holds it.
 #pragma once
 

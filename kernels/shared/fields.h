@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every struct that host and kernels share, with the fields whose places both sides must agree on.
 // CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order.
 // Include the structs' own headers beside it: host and kernels name them by different paths.

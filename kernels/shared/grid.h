@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A cascade's grid of cubic light cells, as host and kernels both see it.
 //
 // Cell (i, j, k) fills origin + s [i, i+1] x [j, j+1] x [k, k+1]; its sample is its centre.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A light, as host and kernels both see it. Photometric quantities are carried 1:1 as radiometric ones.
 #ifndef CLPV_SHARED_LIGHT_H
 #define CLPV_SHARED_LIGHT_H

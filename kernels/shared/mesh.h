@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles and their materials, as host and kernels both see them: world space, metres.
 #ifndef CLPV_SHARED_MESH_H
 #define CLPV_SHARED_MESH_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the rasteriser's kernels hand each other: projected vertices, and triangles ready to be drawn.
 #ifndef CLPV_SHARED_RASTER_H
 #define CLPV_SHARED_RASTER_H

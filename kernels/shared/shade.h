@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an image can show of a frame, as host and kernels both name it; every one is RGBA, alpha 1 where a surface is
 // and all 0 elsewhere.
 #ifndef CLPV_SHARED_SHADE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the sort by cell (kernels/sort_by_cell.cl) and those who use it agree on, as host and kernels both see it.
 #ifndef CLPV_SHARED_SORT_H
 #define CLPV_SHARED_SORT_H

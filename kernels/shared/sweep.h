@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a sweep knows of its bins and directions (host/basis/sweep.hpp), as host and kernels both see it.
 #ifndef CLPV_SHARED_SWEEP_H
 #define CLPV_SHARED_SWEEP_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which texels of a surface injection takes: every stride-th along a row, of every stride-th row; each the middle one of
 // those it stands for. As host and kernels both see it.
 #ifndef CLPV_SHARED_THINNED_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A viewpoint, as host and kernels both see it: a camera, or a light that looks at what it lights.
 //
 // A pixel (px, py), its row 0 at the top, looks through

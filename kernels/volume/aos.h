@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Volume layout `aos`: array of structures. The coefficients of a sample lie side by side, samples by channel, z, y, x
 // with a border of one zero sample all round. Part of the template instance.h; buffer.h makes the functions.
 #define CLPV_ROWS (CLPV_VOLUME_N + 2)

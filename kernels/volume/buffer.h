@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Load and store of volumes in buffers, for soa.h, aos.h and tiled.h alike. Part of the template instance.h.
 //
 // A layout defines

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Geometry volumes: the blocking potential of every corner of the light cells, N coefficients, one channel.
 #include "coefficients.h"
 #define CLPV_VOLUME geometry

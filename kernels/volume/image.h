@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Volume layout `image`: one 3-D image of RGBA texels, four coefficients each. Part of the template instance.h.
 //
 // One image and not one for every channel and four coefficients: OpenCL 1.2 promises but 8 images a kernel writes. Fours

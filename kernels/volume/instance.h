@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A volume in the layout and storage the host chose: the one place where kernels learn of either.
 //
 // Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, computed with in single

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light volumes: the radiant intensity [W/sr] of every light cell, N coefficients a channel.
 // CLPV_GRID is the number of cells along each axis.
 #include "coefficients.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How buffers hold numbers: float, or half. Half is loaded and stored by the functions core OpenCL C 1.2 has for it.
 #ifndef CLPV_VOLUME_NUMBERS_H
 #define CLPV_VOLUME_NUMBERS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Volume layout `soa`: structure of arrays. One plane of samples a channel and coefficient; every plane has a border
 // of one zero sample all round. Part of the template instance.h; buffer.h makes the functions.
 #define CLPV_ROWS (CLPV_VOLUME_N + 2)

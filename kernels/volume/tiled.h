@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Volume layout `tiled`: blocks of 8 samples along x by all coefficients; in a block, the 8 of a coefficient lie side by
 // side. A row of samples starts with a block of zeros, which ends the row before it as well. Rows of zeros lie all
 // round. Part of the template instance.h; buffer.h makes the functions.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes meshes, nodes and materials as one .glb, and PNG textures: bytes that depend on nothing but the input."""
 import json
 import struct

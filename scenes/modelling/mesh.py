@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Triangle meshes in metres, y up, counter-clockwise seen from outside; and vectors as tuples.
 
 A Mesh keeps one list of vertices per material. Positions, normals and texture coordinates are rounded to a

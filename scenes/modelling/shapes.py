@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parts of a building: turned columns, vases and balusters, arches, mouldings, curtains."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Small tiling textures: floor tiles, stone courses, plaster, damask. Made of hashes, so the same everywhere."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The package as the tests import it, and documents as clpv writes them."""
 import pathlib
 import sys

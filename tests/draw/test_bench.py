@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Charts of benchmarks: they go by the fields of rows."""
 import json
 import pathlib

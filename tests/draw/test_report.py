@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The report page: pictures of errors, the chart, what is escaped, what is missing, what is refused."""
 import json
 import os

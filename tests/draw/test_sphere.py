@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Spherical plots against surfaces whose outlines are known, and sheets of them."""
 import math
 import unittest

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kernels with known faults: if Oclgrind is silent about these, its silence about the others means nothing.
 
 // Every work-item reads and writes the same word.

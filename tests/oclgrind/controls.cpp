@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the kernels of controls.cl. CLPV_KERNEL_DIR names their folder.
 #include "device/kernel.hpp"
 #include "device/session.hpp"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Judges a file of kernels by what Oclgrind found in the workloads that were run.
 
     judge.py FOLDER KERNELS.cl [--expect KERNEL=TEXT...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the form of a sweep that devices of many thousand work-items take, which Oclgrind's, as a CPU, does not.
 #include "basis/sweep.hpp"
 #include "pipeline/cascade.hpp"

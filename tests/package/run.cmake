@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # cmake -DBUILD=build -DSOURCE=project -DWORK=folder -DGENERATOR=g -P run.cmake
 # Installs clpv into a folder of its own, builds examples/ against that alone and runs both programs; then configures the
 # library without the program, which asks for nothing of the program's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The common ground of tests that must be refused: a sound model to spoil.
 #pragma once
 

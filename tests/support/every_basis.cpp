@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/every_basis.hpp"
 
 namespace clpv::test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tests that every basis has to pass: TEST_P(EveryBasis, ...), instantiated once, in every_basis.cpp.
 #pragma once
 

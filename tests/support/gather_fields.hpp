@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fields of known light, surfaces that walk through them, and what the kernels and the twin gather there.
 #pragma once
 

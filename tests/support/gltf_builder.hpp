@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small glTF files made in code, well-formed or not, in a folder of their own that goes away with the test.
 #pragma once
 

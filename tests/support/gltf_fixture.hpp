@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The common ground of tests that load a small glTF model: a folder, a builder, and what to look at.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The device that tests run on, and what is expected of the checks there.
 #pragma once
 

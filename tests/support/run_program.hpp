@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs a command as a user would and keeps what it says.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small scenes made in code, for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes of known light for the tests of shading: a floor, suns, bulbs, and shadow maps that are ray-cast, texel centre
 // by texel centre.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Quadrature that shares nothing with host/basis: product Gauss rules over the octants of a frame, and over a
 // flat square seen from the origin.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A folder for what a test writes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Encoded images of a few pixels, in base64, for tests of texture loading.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes for the tests of path tracing: floors, suns, lamps, and what looks at them.
 #pragma once
 

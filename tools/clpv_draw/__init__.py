@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pictures of what clpv computed and measured: charts, sheets of plots, the report page.
 
 clpv writes numbers (JSON, NPY) and images (PNG) into a folder and runs this package on it (host/commands/drawing.hpp);

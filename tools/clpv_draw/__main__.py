@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """python3 clpv_draw check|bench|basis|report ...
 
     check KIND           names what KIND lacks here, a Debian package a line; exit code 1 where there is something

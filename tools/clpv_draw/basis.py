@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The paper's figures of bases and lobes (2, 3 and 6), as sheets of spherical plots.
 
 figures.json: "lambda" of all bases; "lobe", exact or rotate; "kernels", each with "lambda" and "centre": first the one

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Charts of what `clpv bench` measured: what the rows allow of layouts, roofline, scaling, bases and frame.
 
 A row tells what it is in its fields; its name is for readers. Each chart is a function from rows to a figure, or None

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """JSON that clpv wrote, checked before it is drawn; files written whole or not at all."""
 import json
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The report page: one HTML file with everything inside, nothing from anywhere else.
 
 report.json: "subtitle"; "views", each with "scene",

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Spherical plots: functions f on the sphere as the surfaces |f(w)| w, lit, with axes; z is up.
 
 A function comes as its values on a grid: rows from +z to -z (theta from 0 to pi, both poles included), columns round

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How all pictures look, how they are saved, and sheets of tiles in rows."""
 import io
 import math
