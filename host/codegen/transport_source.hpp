@@ -18,7 +18,8 @@ struct StepForm {
   bool blocking = false;
   bool lobes_at_run_time =
       false;  ///< CLPV_ARRIVE gives the fluxes of all faces, as the kernel makes their lobes
-  bool functions_at_run_time = false;  ///< and takes the functions from the kernel as well: they are `at[face]`
+  bool functions_at_run_time =
+      false;  ///< and takes the functions from the kernel as well: they are `at[face]`
 };
 
 /// Generated text and its cost. The text defines, for kernels/propagate.cl, the structs Source, Target and Coefficients
