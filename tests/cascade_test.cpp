@@ -108,8 +108,7 @@ TEST_F(WideModel, IsLitIndirectly) {
   EXPECT_THAT(outcome.err, ::testing::Not(::testing::HasSubstr("nothing of the scene")));
   double injected = 0;
   const nlohmann::json told = nlohmann::json::parse(test::read_file(stats()));
-  for (const auto& cascade : told["energy"])
-    injected += cascade["injected"][0].get<double>();
+  for (const auto& cascade : told["energy"]) injected += cascade["injected"][0].get<double>();
   EXPECT_GT(injected, 0);
 }
 

@@ -2,8 +2,8 @@
 // Where the cascades' grids stand: nested round the camera, snapped to whole cells.
 #pragma once
 
-#include <glm/glm.hpp>
 #include <array>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "kernels/shared/grid.h"
