@@ -59,10 +59,12 @@ TEST(Shade, SpotLightFadesAcrossItsCone) {
   expect_lit(floor_image(), light, expected, 4);
 }
 
-TEST(Shade, AnUnknownKindOfLightIsDark) {
+TEST(Shade, AnUnknownKindOfLightIsDarkAndTheTwinRefusesIt) {
   MappedLight light = bulb({0, 2, 0}, 40);
   light.light.kind = 3;
-  for (const double e : lit(floor_image(), {light})) ASSERT_EQ(e, 0.0);
+  for (const glm::vec4& pixel : show(Show::direct, floor_image(), {light}))
+    ASSERT_EQ(glm::vec3(pixel), glm::vec3(0));
+  EXPECT_THROW(reference::direct_irradiance({light}, floor_image()), Error);
 }
 
 TEST(Shade, LightsAddUp) {
