@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "basis/sweep.hpp"
+#include "codegen/sweep_source.hpp"
 #include "pipeline/cascade.hpp"
-#include "pipeline/sweep_source.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

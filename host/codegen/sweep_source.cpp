@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/sweep_source.hpp"
+#include "codegen/sweep_source.hpp"
 
 #include <fmt/format.h>
 
