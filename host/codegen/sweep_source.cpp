@@ -8,7 +8,7 @@
 #include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
 #include "codegen/mirrors.hpp"
-#include "pipeline/transmit.hpp"
+#include "codegen/transmit_source.hpp"
 
 namespace clpv {
 namespace {
