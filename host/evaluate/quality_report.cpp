@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
+
+#include "options/stages.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 namespace {
@@ -63,8 +67,18 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f}", 100 * *share) : "-";
 }
 
-/// Milliseconds of the stages of that kind: "rasterize" is rasterize-rsm, rasterize-camera and rasterize-shadow.
-double kind_ms(const QualitySummary& sum, const std::string& kind) {
+/// Stages that a frame is timed in: those that a pass is named after.
+std::vector<std::string_view> timed_stages() {
+  std::vector<std::string_view> timed;
+  for (const Stage stage : values_of<Stage>()) {
+    const auto is_part = [&](Pass pass) { return name_of(pass).starts_with(name_of(stage)); };
+    if (std::ranges::any_of(values_of<Pass>(), is_part)) timed.push_back(name_of(stage));
+  }
+  return timed;
+}
+
+/// Milliseconds of the passes of that stage: "rasterize" is rasterize-rsm, rasterize-camera and rasterize-shadow.
+double kind_ms(const QualitySummary& sum, std::string_view kind) {
   double ms = 0;
   for (const auto& [stage, value] : sum.stage_ms) ms += stage.starts_with(kind) ? value : 0;
   return ms;
@@ -142,8 +156,7 @@ std::string quality_csv(const std::vector<QualityCell>& cells) {
 }
 
 std::string quality_table(const std::vector<QualityCell>& cells) {
-  constexpr const char* kKinds[] = {"rasterize",  "inject", "block", "propagate",
-                                    "carry-late", "gather", "shade"};
+  const std::vector<std::string_view> kinds = timed_stages();
   std::vector<std::pair<std::string, std::string>> views;  // scene, camera
   for (const QualityCell& cell : cells) {
     if (std::pair view{cell.scene, cell.camera}; std::ranges::count(views, view) == 0) views.push_back(view);
@@ -153,7 +166,7 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
   for (const auto& [scene, camera] : views) rows[0].push_back(scene + ":" + camera);
   for (const char* name : {"mean", "worst", "best gain", "energy", "percept. %", "frame ms"})
     rows[0].push_back(name);
-  for (const char* kind : kKinds) rows[0].push_back(kind);
+  for (const std::string_view kind : kinds) rows[0].emplace_back(kind);
   for (const QualitySummary& sum : summarise(cells)) {
     std::vector<std::string>& row = rows.emplace_back();
     row.push_back(describe(sum.variant));
@@ -173,7 +186,7 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
     row[c++] = fmt::format("{:.2f}", sum.energy_ratio);
     row[c++] = percent(sum.perceptual);
     row[c++] = fmt::format("{:.1f}", sum.frame_ms);
-    for (const char* kind : kKinds) row[c++] = fmt::format("{:.1f}", kind_ms(sum, kind));
+    for (const std::string_view kind : kinds) row[c++] = fmt::format("{:.1f}", kind_ms(sum, kind));
   }
   return aligned(rows);
 }
