@@ -44,5 +44,15 @@ TEST(CommandLine, OptionsWithoutACommandAreAnError) {
   EXPECT_THAT(outcome.err, HasSubstr("subcommand"));
 }
 
+TEST(CommandLine, TimesAreFiniteSeconds) {
+  for (const std::string command : {"render", "reference"}) {
+    for (const std::string bad : {"nan", "inf", "1e7", "noon", "1s", "''"}) {
+      const test::Outcome outcome = clpv(command + " none.gltf -o none.exr --time " + bad);
+      EXPECT_EQ(outcome.exit_code, 2) << bad;
+      EXPECT_THAT(outcome.err, AllOf(HasSubstr("--time"), HasSubstr("-1000000..1000000"))) << bad;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace clpv

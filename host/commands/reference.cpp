@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -26,6 +27,7 @@ struct Options {
   std::string scene, model, camera, output, stats;
   std::vector<std::string> views = {std::string(name_of(Show::full))};
   int width = 960, height = 540;
+  double time = 0;
   TracingOptions tracing;
 };
 
@@ -41,6 +43,7 @@ void check_outputs(const Options& options) {
 nlohmann::json resolved(const Options& options, const Camera& camera) {
   nlohmann::json json = {{"scene", options.scene},
                          {"camera", camera.name},
+                         {"time", options.time},
                          {"width", options.width},
                          {"height", options.height},
                          {"bounces", options.tracing.bounces},
@@ -86,8 +89,10 @@ void run(const Options& options) {
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   for (const std::string& view : options.views) named<Show>("--view", view);
   check_outputs(options);
-  const Scene scene = load_scene(options.scene, {options.model});
+  MovingScene moving(options.scene, {options.model});
+  const Scene& scene = moving.scene();
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
+  moving.pose(options.time);
   const Camera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
   TraceBar bar("path tracing");
@@ -110,6 +115,7 @@ void add_options(CLI::App& command, Options& options) {
       ->required();
   command.add_option("--model", options.model, "replaces the scene file's model")->type_name("PATH");
   command.add_option("--camera", options.camera, "by name (default: the scene's first)")->type_name("NAME");
+  add_seconds(command, "--time", options.time, "the instant shown of a scene that moves [s]");
   command.add_option("--view", options.views, fmt::format("{}", fmt::join(names_of<Show>(), "|")))
       ->delimiter(',')
       ->type_name("VIEW")

@@ -8,6 +8,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
+#include "commands/time_option.hpp"
 #include "evaluate/normal_weights.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string scene, model, output, camera, tonemap = "aces", stats, dump, normals;
   int frames = 5;
+  double time = 0;
   std::vector<std::string> views;
   std::optional<float> exposure;
   GivenOptions frame;
@@ -127,10 +129,12 @@ void run(const Options& options, const Shared& shared) {
   check_outputs(options, views);
   FrameStats stats;
   Progress progress("render", 4);
-  const Scene scene = load_scene(options.scene, {options.model});
+  MovingScene moving(options.scene, {options.model});
+  const Scene& scene = moving.scene();
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
+  RenderOptions resolved = resolve_options(options.frame, scene);  // at 0 s, whatever instant is shown
+  moving.pose(options.time);
   const Camera& camera = scene.camera(options.camera);
-  RenderOptions resolved = resolve_options(options.frame, scene);
   tell_of_cascades(scene, camera, resolved);
   progress.advance();
 
@@ -162,6 +166,7 @@ void run(const Options& options, const Shared& shared) {
   all.update({{"scene", options.scene},
               {"model", options.model},
               {"camera", camera.name},
+              {"time", options.time},
               {"exposure", exposure},
               {"tonemap", options.tonemap}});
   std::map<std::string, std::string> metadata;
@@ -190,6 +195,7 @@ void add_render(CLI::App& app, Shared& shared) {
   command->add_option("--model", options->model, "replaces the scene file's model")->type_name("PATH");
   command->add_option("--camera", options->camera, "camera by name; default: the scene's first")
       ->type_name("NAME");
+  add_seconds(*command, "--time", options->time, "the instant shown of a scene that moves [s]");
   command
       ->add_option("--view", options->views,
                    fmt::format("what to write ({}); several: layers of one EXR, or FILE.VIEW.png",

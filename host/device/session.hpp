@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,13 @@ class Session {
   void write(const Buffer& buffer, const std::vector<T>& values) {
     if (!values.empty())
       queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, 0, values.size() * sizeof(T), values.data());
+  }
+  /// Over a part of what is there, from element `first` on.
+  template <typename T>
+  void write(const Buffer& buffer, std::span<const T> values, std::size_t first) {
+    if (!values.empty())
+      queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, first * sizeof(T), values.size_bytes(),
+                                values.data());
   }
   template <typename T>
   Buffer upload(const std::vector<T>& values, const std::string& what) {

@@ -157,22 +157,29 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   session.build_described();
 }
 
+void Frame::scene_moved() {
+  upload_moving(session_, scene_, buffers_);
+  // The scene's own triangles block anew where some of them may have moved.
+  if (!scene_.moving.empty()) std::fill(blocked_.begin(), blocked_.end(), std::nullopt);
+}
+
+/// Lights as the scene has them now. Their buffers are kept as long as the same ones shine.
 void Frame::prepare_lights(const Camera& camera) {
   const std::vector<Light> shining = scene_.lights_for(camera);
-  if (lights_.size() == shining.size() && lit_by_ == camera.light) return;
-  lights_.clear();
+  if (lights_.size() != shining.size() || lit_by_ != camera.light) lights_.clear();
   lit_by_ = camera.light;
-  for (const Light& light : shining) {
-    const auto same = [&](const Light& other) { return other.name == light.name; };
+  lights_.resize(shining.size());
+  for (std::size_t i = 0; i < shining.size(); ++i) {
+    const auto same = [&](const Light& other) { return other.name == shining[i].name; };
     const auto found = std::find_if(scene_.lights.begin(), scene_.lights.end(), same);
-    LitLight lit{light.data, static_cast<int>(found - scene_.lights.begin()), {}, {light.data, {}, {}}};
-    lit.shadow.views = shadow_views(light.data, buffers_.bounds, options_.shadow_size);
+    LitLight& lit = lights_[i];
+    lit.light = lit.shadow.light = shining[i].data;
+    lit.index = static_cast<int>(found - scene_.lights.begin());
+    lit.shadow.views = shadow_views(lit.light, buffers_.bounds, options_.shadow_size);
     const auto texels =
         static_cast<std::size_t>(options_.shadow_size) * static_cast<std::size_t>(options_.shadow_size);
-    for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
+    while (lit.shadow.depths.size() < lit.shadow.views.size())
       lit.shadow.depths.push_back(session_.buffer(texels * sizeof(float), "shadow map"));
-    }
-    lights_.push_back(std::move(lit));
   }
 }
 

@@ -46,6 +46,9 @@ class Frame {
   Frame(const Frame&) = delete;  // its stages refer to its other parts
   Frame& operator=(const Frame&) = delete;
 
+  /// To be called when the scene given shows another instant (MovingScene): the next frame is of that.
+  void scene_moved();
+
   /// Enqueues all stages, marked on the session's timeline; shaded views are there once the queue is finished.
   /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).
   void render(const Camera& camera, const CascadeObserver& observer = {});

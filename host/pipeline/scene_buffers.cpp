@@ -148,4 +148,14 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   return buffers;
 }
 
+void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) {
+  for (const Part& part : scene.moving) {
+    session.write(buffers.vertices, std::span(scene.vertices).subspan(part.first_vertex, part.vertices),
+                  part.first_vertex);
+    session.write(buffers.triangles, std::span(scene.triangles).subspan(part.first_triangle, part.triangles),
+                  part.first_triangle);
+  }
+  buffers.bounds = bounds_of(scene.vertices);
+}
+
 }  // namespace clpv

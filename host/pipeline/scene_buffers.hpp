@@ -30,4 +30,7 @@ struct SceneBuffers {
 /// suffice.
 SceneBuffers upload_scene(Session& session, const Scene& scene);
 
+/// Brings `buffers`, made of the same scene at another instant, to the one it shows now: its moving parts and its bounds.
+void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers);
+
 }  // namespace clpv

@@ -36,6 +36,12 @@ inline constexpr std::uint64_t kVertices = 16ull << 20;
 inline constexpr std::uint64_t kTriangles = 16ull << 20;
 inline constexpr std::uint64_t kSparseElements = 64ull << 20;
 
+// Animation: times and values of all curves of a model, 8 bytes each, and keys of one thing in a scene file. Times [s]: a
+// day is 1e5.
+inline constexpr std::uint64_t kKeyNumbers = 16ull << 20;
+inline constexpr std::size_t kSceneKeys = 1u << 16;
+inline constexpr double kSeconds = 1e6;
+
 // Each light costs its own RSMs and shadow map.
 inline constexpr std::size_t kLights = 64;
 inline constexpr std::size_t kCameras = 1024;

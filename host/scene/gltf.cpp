@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "scene/gltf_accessor.hpp"
+#include "scene/gltf_animation.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
@@ -18,19 +19,20 @@
 
 namespace clpv {
 
-Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Notes& notes) {
+Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion, Notes& notes) {
   const GltfDocument document = read_gltf_document(path);
   check_sparse(document);
   Scene scene;
   if (!document.ignored_extensions.empty()) {
     notes.add(fmt::format("extensions used but not read: {}", fmt::join(document.ignored_extensions, ", ")));
   }
-  if (document.animated) notes.add("animations are not played: shown as stored");
-  const auto nodes = flatten_nodes(document, glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
+  motion.tree = read_nodes(document, read_animations(document, notes),
+                           glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
+  const std::vector<glm::dmat4> to_world = motion.tree.to_world(0);
   const MaterialSet materials = read_materials(document, notes);
   auto textures = std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
-  append_meshes(document, nodes, materials, scene, notes);  // while the images are decoded
-  append_views(document, nodes, metres_per_unit, scene, notes);
+  append_meshes(document, to_world, materials, scene, motion, notes);  // while the images are decoded
+  append_views(document, to_world, metres_per_unit, scene, motion, notes);
   scene.textures = textures.get();
   scene.materials = materials.materials;
   const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);  // glTF's default material

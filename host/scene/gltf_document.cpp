@@ -152,7 +152,8 @@ GltfDocument read_gltf_document(const std::filesystem::path& path) {
   for (const std::string name : parsed.value("extensionsUsed", json::array())) {
     if (!reads_extension(name)) document.ignored_extensions.push_back(name);
   }
-  document.animated = parsed.contains("animations");
+  if (parsed.contains("animations"))
+    document.animations = std::make_shared<const json>(std::move(parsed["animations"]));
   parse_model(std::move(parsed), document);
   return document;
 }

@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,11 +24,11 @@ struct GltfImage {
 struct GltfDocument {
   std::string file;              ///< as the user named it, for messages
   std::filesystem::path folder;  ///< canonical; nothing outside it is read
-  tinygltf::Model model;         ///< all but buffers and images, which tinygltf never sees
+  tinygltf::Model model;         ///< all but buffers, images and animations, which tinygltf never sees
   std::vector<GltfImage> images;
   std::vector<Bytes> buffers;
-  std::vector<std::string> ignored_extensions;  ///< used, not required, and not read
-  bool animated = false;
+  std::vector<std::string> ignored_extensions;       ///< used, not required, and not read
+  std::shared_ptr<const nlohmann::json> animations;  ///< checked; null: none
 
   /// A checked view's bytes.
   std::span<const std::uint8_t> view(std::size_t index) const;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/gltf_nodes.hpp"
 
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "scene/bounds.hpp"
@@ -56,21 +54,30 @@ void check_forest(const GltfDocument& document, const std::vector<int>& parents)
   }
 }
 
-glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& file, int index) {
-  if (!node.matrix.empty()) return glm::make_mat4(node.matrix.data());
-  glm::dmat4 transform(1.0);
-  if (!node.translation.empty())
-    transform = glm::translate(transform, glm::make_vec3(node.translation.data()));
+Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index) {
+  Pose pose;
+  if (!node.translation.empty()) pose.translation = glm::make_vec3(node.translation.data());
+  if (!node.scale.empty()) pose.scale = glm::make_vec3(node.scale.data());
   if (!node.rotation.empty()) {  // glTF: x, y, z, w
     const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
     if (glm::length(rotation) < 0.5) {
       refuse(file, place_of(index) + "/rotation",
              fmt::format("a quaternion of length {}", glm::length(rotation)), "a unit quaternion");
     }
-    transform *= glm::mat4_cast(glm::normalize(rotation));
+    pose.rotation = glm::normalize(rotation);
   }
-  if (!node.scale.empty()) transform = glm::scale(transform, glm::make_vec3(node.scale.data()));
-  return transform;
+  return pose;
+}
+
+TreeNode make_node(const GltfDocument& document, int index, const std::map<int, NodeCurves>& curves) {
+  const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(index)];
+  TreeNode made;
+  made.index = index;
+  made.pose = stored_pose(source, document.file, index);
+  made.still = source.matrix.empty() ? made.pose.matrix() : glm::make_mat4(source.matrix.data());
+  if (const auto found = curves.find(index); found != curves.end()) made.curves = found->second;
+  made.moves = made.curves.any();
+  return made;
 }
 
 std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>& parents) {
@@ -97,37 +104,34 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
   return roots;
 }
 
-bool finite(const glm::dmat4& m) {
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
-      if (!std::isfinite(m[column][row])) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
-std::vector<GltfNode> flatten_nodes(const GltfDocument& document, const glm::dmat4& root) {
+NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
+                    const glm::dmat4& root) {
   const std::vector<int> parents = find_parents(document);
   check_forest(document, parents);
-  std::vector<GltfNode> pending, flat;
-  const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& to_world) {
-    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) pending.push_back({*node, to_world});
+  NodeTree tree;
+  tree.file = document.file;
+  tree.root = root;
+  struct Pending {
+    int index;
+    std::optional<std::size_t> parent;
   };
-  push(root_nodes(document, parents), root);
+  std::vector<Pending> pending;
+  const auto push = [&](const std::vector<int>& nodes, std::optional<std::size_t> parent) {
+    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) pending.push_back({*node, parent});
+  };
+  push(root_nodes(document, parents), std::nullopt);
   while (!pending.empty()) {
-    GltfNode node = pending.back();
+    const Pending next = pending.back();
     pending.pop_back();
-    const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(node.index)];
-    node.to_world = node.to_world * local_transform(source, document.file, node.index);
-    if (!finite(node.to_world)) {
-      refuse(document.file, place_of(node.index), "a transform that overflows", "finite transforms");
-    }
-    flat.push_back(node);
-    push(source.children, node.to_world);
+    TreeNode node = make_node(document, next.index, curves);
+    node.parent = next.parent;
+    if (next.parent && tree.nodes[*next.parent].moves) node.moves = true;
+    tree.nodes.push_back(std::move(node));
+    push(document.model.nodes[static_cast<std::size_t>(next.index)].children, tree.nodes.size() - 1);
   }
-  return flat;
+  return tree;
 }
 
 }  // namespace clpv

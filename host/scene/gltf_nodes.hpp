@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The node hierarchy, flattened: where each mesh, camera and light stands.
+// The node hierarchy of a glTF document, as a tree of nodes that may move.
 #pragma once
 
-#include <glm/glm.hpp>
-#include <vector>
+#include <map>
 
 #include "scene/gltf_document.hpp"
+#include "scene/node_tree.hpp"
 
 namespace clpv {
 
-struct GltfNode {
-  int index;  ///< in the document
-  glm::dmat4 to_world;
-};
-
-/// The nodes of the default scene (else the first; without scenes, all root nodes), parents first, each with
-/// its transform to world space. `root` is applied last. Throws Error(bad_input) for cycles, several parents,
-/// excessive depth and transforms that are not finite.
-std::vector<GltfNode> flatten_nodes(const GltfDocument& document, const glm::dmat4& root);
+/// The nodes of the default scene (else the first; without scenes, all root nodes), parents first; those of `curves` (by
+/// index in the document) move. `root` is applied last. Throws Error(bad_input) for cycles, several parents and excessive
+/// depth.
+NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
+                    const glm::dmat4& root);
 
 }  // namespace clpv

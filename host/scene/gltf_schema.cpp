@@ -9,7 +9,9 @@
 #include <numbers>
 
 #include "scene/bounds.hpp"
+#include "scene/curve.hpp"
 #include "scene/gltf_extents.hpp"
+#include "scene/gltf_path.hpp"
 #include "scene/input.hpp"
 #include "scene/light_kind.hpp"
 #include "support/error.hpp"
@@ -177,6 +179,22 @@ Rules view_rules() {
           number(light + "/spot/outerConeAngle", kTiny, std::numbers::pi / 2 + kTiny)};
 }
 
+Rules animation_rules() {
+  using namespace rule;
+  const std::string samplers = "/animations/*/samplers", channels = "/animations/*/channels";
+  return {list(samplers, 1, bounds::kListEntries).must(),
+          object(samplers + "/*"),
+          index(samplers + "/*/input", "/accessors").must(),
+          index(samplers + "/*/output", "/accessors").must(),
+          text(samplers + "/*/interpolation", names_of<Interpolation>()),
+          list(channels, 1, bounds::kListEntries).must(),
+          object(channels + "/*"),
+          integer(channels + "/*/sampler", 0, kMany).must(),
+          object(channels + "/*/target").must(),
+          index(channels + "/*/target/node", "/nodes"),
+          text(channels + "/*/target/path", names_of<GltfPath>()).must()};
+}
+
 void check_asset(const json& document, const std::string& file) {
   const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
   if (!version.starts_with("2.")) refuse(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
@@ -220,6 +238,7 @@ void check_gltf(const json& document, const std::string& file) {
     append(all, geometry_rules());
     append(all, material_rules());
     append(all, view_rules());
+    append(all, animation_rules());
     return all;
   }();
   check_rules(document, rules, file);

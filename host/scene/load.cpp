@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: MIT
-// From a path to a Scene: which loader, what the scene file replaces, and what is added where nothing is
-// given.
+// From a path to a scene: which loader, and what the scene file replaces.
 #include "scene/load.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
-#include <numbers>
+#include <limits>
 
+#include "scene/defaults.hpp"
 #include "scene/gltf.hpp"
 #include "scene/input.hpp"
 #include "scene/notes.hpp"
-#include "scene/scene_file.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
-
-// The sun added to a model without lights: steep, from behind the framing camera's right shoulder. An
-// illuminance of 10 shows a white floor at radiance 3.2, so that diffuse walls fill the tone curve's range at
-// exposure 0.
-constexpr glm::vec3 kSunDirection{-0.35f, -0.85f, -0.4f};
-constexpr float kSunIlluminance = 10;
-
-// The camera added to a model without cameras: from above and the side, the box's sphere just within its
-// view.
-constexpr glm::vec3 kFramingDirection{-0.5f, -0.35f, -1.0f};  // of sight
-constexpr float kFramingFov = static_cast<float>(std::numbers::pi) / 4;
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -47,44 +35,6 @@ void find_bounds(Scene& scene) {
   }
 }
 
-Camera framing_camera(const Scene& scene) {
-  Camera camera;
-  camera.name = "framing";
-  camera.forward = glm::normalize(kFramingDirection);
-  const glm::vec3 up(0, 1, 0);
-  camera.up = glm::normalize(up - camera.forward * glm::dot(camera.forward, up));
-  camera.vertical_fov = kFramingFov;
-  const float radius = std::max(glm::length(scene.upper - scene.lower) / 2, 1e-3f);
-  const float distance = radius / std::sin(kFramingFov / 2);
-  camera.eye = (scene.lower + scene.upper) / 2.0f - camera.forward * distance;
-  camera.near_depth = (distance - radius) / 2;
-  return camera;
-}
-
-Light added_sun() {
-  Light sun;
-  sun.name = "sun";
-  sun.data.kind = CLPV_LIGHT_DIRECTIONAL;
-  const glm::vec3 direction = glm::normalize(kSunDirection);
-  for (int i = 0; i < 3; ++i) {
-    sun.data.direction[i] = direction[i];
-    sun.data.intensity[i] = kSunIlluminance;
-  }
-  return sun;
-}
-
-void add_defaults(Scene& scene, bool lights_given, Notes& notes) {
-  if (scene.triangles.empty()) notes.add("the model has no triangles");
-  if (scene.cameras.empty()) {
-    scene.cameras.push_back(framing_camera(scene));
-    notes.add("no camera: added one that frames the model");
-  }
-  if (scene.lights.empty() && !lights_given) {
-    scene.lights.push_back(added_sun());
-    notes.add(fmt::format("no light: added a sun of {} lux", kSunIlluminance));
-  }
-}
-
 void check_camera_lights(const Scene& scene) {
   std::vector<std::string> names;
   for (const Light& light : scene.lights) names.push_back("'" + light.name + "'");
@@ -96,48 +46,73 @@ void check_camera_lights(const Scene& scene) {
   }
 }
 
-Scene load_described(const std::filesystem::path& path, const LoadOptions& options, Notes& notes) {
-  SceneFile file = read_scene_file(path);
-  const std::filesystem::path model = options.model.empty() ? file.model : options.model;
+std::vector<Part> parts_of(const std::vector<Motion::MovingMesh>& meshes) {
+  std::vector<Part> parts;
+  for (const auto& [instance, node] : meshes) {
+    parts.push_back({instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
+                     instance.first_triangle,
+                     static_cast<std::uint32_t>(instance.primitive->triangles.size())});
+  }
+  return parts;
+}
+
+}  // namespace
+
+void MovingScene::load_described(const std::filesystem::path& path, const LoadOptions& options,
+                                 Notes& notes) {
+  description_ = read_scene_file(path);
+  DescribedViews views = views_at(description_, 0);
+  const std::filesystem::path model = options.model.empty() ? description_.model : options.model;
   if (model.empty()) refuse(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
   std::error_code unknown;
   if (options.model.empty() && !std::filesystem::exists(model, unknown)) {
     refuse(path.string(), "/model", "no file '" + model.string() + "'",
            "an existing file; option model says where it lies");
   }
-  Scene scene = load_gltf(model, file.metres_per_unit, notes);
-  find_bounds(scene);
-  if (file.cameras) scene.cameras = std::move(*file.cameras);
-  if (file.lights) scene.lights = std::move(*file.lights);
-  scene.exposure = file.exposure;
-  scene.cascade_size = file.cascade_size;
-  scene.cascades = file.cascades;
-  scene.path = path.string();
-  add_defaults(scene, file.lights.has_value(), notes);
-  check_camera_lights(scene);
-  return scene;
+  scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
+  if (views.cameras) motion_.cameras.clear();
+  if (views.lights) motion_.lights.clear();
+  show(std::move(views));
+  scene_.exposure = description_.exposure;
+  scene_.cascade_size = description_.cascade_size;
+  scene_.cascades = description_.cascades;
 }
 
-}  // namespace
+void MovingScene::show(DescribedViews views) {
+  if (views.cameras) scene_.cameras = std::move(*views.cameras);
+  if (views.lights) scene_.lights = std::move(*views.lights);
+}
 
-Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
+MovingScene::MovingScene(const std::filesystem::path& path, const LoadOptions& options) {
   Notes notes;
-  Scene scene;
   const std::string extension = extension_of(path);
   if (extension == ".json") {
-    scene = load_described(path, options, notes);
+    load_described(path, options, notes);
+    scene_.path = path.string();
   } else if (extension == ".gltf" || extension == ".glb") {
     const std::filesystem::path model = options.model.empty() ? path : options.model;
-    scene = load_gltf(model, 1.0, notes);
-    find_bounds(scene);
-    add_defaults(scene, false, notes);
-    scene.path = model.string();
+    scene_ = load_gltf(model, 1.0, motion_, notes);
+    scene_.path = model.string();
   } else {
     refuse(path.string(), {}, "the extension '" + extension + "'", ".json (a scene file), .gltf or .glb");
   }
-  scene.name = path.stem().string();
-  scene.notes = notes.take();
-  return scene;
+  if (motion_.empty()) motion_.tree = {};  // of no use any more
+  scene_.moving = parts_of(motion_.meshes);
+  find_bounds(scene_);
+  add_defaults(scene_, description_.lights.has_value(), notes);
+  check_camera_lights(scene_);
+  scene_.name = path.stem().string();
+  scene_.notes = notes.take();
+}
+
+void MovingScene::pose(double seconds) {
+  motion_.pose(scene_, seconds);
+  if (!motion_.meshes.empty()) find_bounds(scene_);
+  if (description_.moves()) show(views_at(description_, seconds));
+}
+
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
+  return MovingScene(path, options).take();
 }
 
 bool is_bare_model(const Scene& scene) {

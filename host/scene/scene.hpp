@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is lit: triangles, materials, textures, cameras and lights. Plain data in metres; knows no OpenCL.
+// What is lit, at one instant: triangles, materials, textures, cameras and lights. Plain data in metres; knows no OpenCL.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +44,11 @@ struct Light {
   ClpvLight data{};
 };
 
+/// A run of a scene's vertices and triangles.
+struct Part {
+  std::uint32_t first_vertex, vertices, first_triangle, triangles;
+};
+
 struct Scene {
   std::string name;  ///< the file's stem
   std::string path;  ///< the file it came from
@@ -51,6 +56,7 @@ struct Scene {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;  ///< at least one, where there are triangles
   std::vector<Texture> textures;
+  std::vector<Part> moving;     ///< what of its vertices and triangles changes with time
   std::vector<Camera> cameras;  ///< at least one after loading
   std::vector<Light> lights;
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]

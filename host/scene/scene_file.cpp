@@ -27,39 +27,70 @@ constexpr double kBright = 1e9;  // lux or candela; the sun is 1e5
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kOuterCone = 45, kInnerCone = 0;  // [degrees] where not given, as in KHR_lights_punctual
 
-const std::vector<Rule>& rules() {
+const KeyedList& keyed_cameras() {
   using namespace rule;
-  static const std::vector<Rule> kRules = {
-      object(""),
-      text("/model"),
-      number("/metres_per_unit", kTiny, 1e6),
-      number("/exposure", -64, 64),
+  static const KeyedList kList = {
+      "/cameras",
+      {vector("/cameras/*/eye", 3, -kFar, kFar), vector("/cameras/*/target", 3, -kFar, kFar),
+       vector("/cameras/*/up", 3, -kFar, kFar), number("/cameras/*/vertical_fov_degrees", 0.01, 179.9)},
+      "",
+      {KeyInterpolation::linear, KeyInterpolation::step, KeyInterpolation::smooth}};
+  return kList;
+}
+
+const KeyedList& keyed_lights() {
+  using namespace rule;
+  static const KeyedList kList = {
+      "/lights",
+      {vector("/lights/*/direction", 3, -kFar, kFar), vector("/lights/*/position", 3, -kFar, kFar),
+       number("/lights/*/illuminance_lux", 0, kBright), number("/lights/*/intensity_candela", 0, kBright),
+       vector("/lights/*/colour", 3, 0, kBright)},
+      "direction",
+      {KeyInterpolation::linear, KeyInterpolation::step}};
+  return kList;
+}
+
+/// What cameras and lights are at an instant.
+std::vector<Rule> view_rules() {
+  using namespace rule;
+  std::vector<Rule> rules = {
       list("/cameras", 0, bounds::kCameras),
       object("/cameras/*"),
       text("/cameras/*/name").must(),
-      vector("/cameras/*/eye", 3, -kFar, kFar).must(),
-      vector("/cameras/*/target", 3, -kFar, kFar).must(),
-      vector("/cameras/*/up", 3, -kFar, kFar),
-      number("/cameras/*/vertical_fov_degrees", 0.01, 179.9),
       number("/cameras/*/near", kTiny, kFar),
       text("/cameras/*/light"),
       list("/lights", 0, bounds::kLights),
       object("/lights/*"),
       text("/lights/*/name"),
       text("/lights/*/kind", names_of<LightKind>()).must(),
-      vector("/lights/*/direction", 3, -kFar, kFar),
-      vector("/lights/*/position", 3, -kFar, kFar),
-      number("/lights/*/illuminance_lux", 0, kBright),
-      number("/lights/*/intensity_candela", 0, kBright),
-      vector("/lights/*/colour", 3, 0, kBright),
       number("/lights/*/inner_cone_degrees", 0, 90),
       number("/lights/*/outer_cone_degrees", kTiny, 90),
       number("/lights/*/range", kTiny, kFar),
-      object("/cascades"),
-      integer("/cascades/count", 1, 16),
-      number("/cascades/size_metres", 1e-3, kFar),
-      text("/comment"),
   };
+  for (const KeyedList* keyed : {&keyed_cameras(), &keyed_lights()})
+    rules.insert(rules.end(), keyed->quantities.begin(), keyed->quantities.end());
+  return rules;
+}
+
+/// What the file may say.
+const std::vector<Rule>& rules() {
+  using namespace rule;
+  static const std::vector<Rule> kRules = [] {
+    std::vector<Rule> all = {
+        object(""),
+        text("/model"),
+        number("/metres_per_unit", kTiny, 1e6),
+        number("/exposure", -64, 64),
+        object("/cascades"),
+        integer("/cascades/count", 1, 16),
+        number("/cascades/size_metres", 1e-3, kFar),
+        text("/comment"),
+    };
+    for (const std::vector<Rule>& more :
+         {view_rules(), key_rules(keyed_cameras()), key_rules(keyed_lights())})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
   return kRules;
 }
 
@@ -76,6 +107,9 @@ glm::dvec3 direction_in(const json& object, const char* key, const std::string& 
 }
 
 Camera read_camera(const json& given, double scale, const std::string& file, const std::string& place) {
+  for (const char* key : {"eye", "target"}) {
+    if (!given.contains(key)) refuse(file, pointer_to(place, key), "nothing", "a point, here or in keys");
+  }
   Camera made;
   made.name = given["name"];
   made.light = given.value("light", std::string());
@@ -178,20 +212,52 @@ void check_names(const std::vector<Named>& list, const std::string& file, const 
   }
 }
 
+/// Every entry of a list by `read`, the reader of one.
+template <typename Read>
+auto read_list(const json& list, Read read, double scale, const std::string& file, const char* place) {
+  std::vector<decltype(read(list, scale, file, file))> made;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    made.push_back(read(list[i], scale, file, fmt::format("{}/{}", place, i)));
+  check_names(made, file, place);
+  return made;
+}
+
+std::optional<std::vector<KeyedEntry>> read_entries(const json& document, const char* key,
+                                                    const KeyedList& list, const std::string& file) {
+  if (!document.contains(key)) return std::nullopt;
+  std::vector<KeyedEntry> entries;
+  for (std::size_t i = 0; i < document[key].size(); ++i)
+    entries.emplace_back(document[key][i], list, file, fmt::format("{}/{}", list.place, i));
+  return entries;
+}
+
+json entries_at(const std::vector<KeyedEntry>& entries, double seconds) {
+  json list = json::array();
+  for (const KeyedEntry& entry : entries) list.push_back(entry.at(seconds));
+  return list;
+}
+
 }  // namespace
 
-SceneFile read_scene_file(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  const Bytes bytes = read_file(path, bounds::kJsonBytes, file);
-  const json parsed = parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
-  check_rules(parsed, rules(), file);
-  check_no_other_keys(parsed, rules(), file);
+bool SceneDescription::moves() const {
+  const auto any = [](const auto& entries) {
+    return entries &&
+           std::any_of(entries->begin(), entries->end(), [](auto& entry) { return entry.moves(); });
+  };
+  return any(cameras) || any(lights);
+}
 
-  SceneFile scene;
+SceneDescription read_scene_file(const std::filesystem::path& path) {
+  SceneDescription scene;
+  scene.file = path.string();
+  const Bytes bytes = read_file(path, bounds::kJsonBytes, scene.file);
+  const json parsed = parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, scene.file);
+  check_rules(parsed, rules(), scene.file);
+  check_no_other_keys(parsed, rules(), scene.file);
   if (parsed.contains("model")) {
     const std::string model = parsed["model"];
     if (model.empty() || model.find('\0') != std::string::npos)
-      refuse(file, "/model", "no path", "a path to a model");
+      refuse(scene.file, "/model", "no path", "a path to a model");
     scene.model = path.parent_path() / model;
   }
   scene.metres_per_unit = parsed.value("metres_per_unit", 1.0);
@@ -201,23 +267,23 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
     if (cascades.contains("count")) scene.cascades = cascades["count"].get<int>();
     if (cascades.contains("size_metres")) scene.cascade_size = cascades["size_metres"].get<float>();
   }
-  if (parsed.contains("cameras")) {
-    scene.cameras.emplace();
-    for (std::size_t i = 0; i < parsed["cameras"].size(); ++i) {
-      scene.cameras->push_back(
-          read_camera(parsed["cameras"][i], scene.metres_per_unit, file, fmt::format("/cameras/{}", i)));
-    }
-    check_names(*scene.cameras, file, "/cameras");
-  }
-  if (parsed.contains("lights")) {
-    scene.lights.emplace();
-    for (std::size_t i = 0; i < parsed["lights"].size(); ++i) {
-      scene.lights->push_back(
-          read_light(parsed["lights"][i], scene.metres_per_unit, file, fmt::format("/lights/{}", i)));
-    }
-    check_names(*scene.lights, file, "/lights");
-  }
+  scene.cameras = read_entries(parsed, "cameras", keyed_cameras(), scene.file);
+  scene.lights = read_entries(parsed, "lights", keyed_lights(), scene.file);
   return scene;
+}
+
+DescribedViews views_at(const SceneDescription& description, double seconds) {
+  const bool moves = description.moves();
+  const std::string file = moves ? fmt::format("{} at {} s", description.file, seconds) : description.file;
+  json posed = json::object();
+  if (description.cameras) posed["cameras"] = entries_at(*description.cameras, seconds);
+  if (description.lights) posed["lights"] = entries_at(*description.lights, seconds);
+  if (moves) check_rules(posed, view_rules(), file);  // a spline may swing beyond its keys
+  const double scale = description.metres_per_unit;
+  DescribedViews made;
+  if (description.cameras) made.cameras = read_list(posed["cameras"], read_camera, scale, file, "/cameras");
+  if (description.lights) made.lights = read_list(posed["lights"], read_light, scale, file, "/lights");
+  return made;
 }
 
 }  // namespace clpv

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "scene/curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clpv {
+namespace {
+
+/// Where an instant lies among a curve's keys.
+struct Place {
+  std::size_t key;   ///< the last one not after it; the first one before that
+  double share = 0;  ///< of the way to the next key, below 1; 0 where there is none
+  double span = 0;   ///< from that key to the next [s]
+};
+
+Place place_of(const Curve& curve, double seconds) {
+  const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), seconds);
+  if (after == curve.times.begin()) return {0};
+  const auto key = static_cast<std::size_t>(after - curve.times.begin()) - 1;
+  if (after == curve.times.end()) return {key};
+  const double span = *after - curve.times[key];
+  return {key, (seconds - curve.times[key]) / span, span};
+}
+
+/// The numbers of a key; of a cubic spline's, `part` 0: tangent in, 1: value, 2: tangent out.
+const double* key_of(const Curve& curve, std::size_t key, std::size_t part = 1) {
+  const bool cubic = curve.interpolation == Interpolation::cubic_spline;
+  return &curve.values[(cubic ? 3 * key + part : key) * curve.components];
+}
+
+void hermite(const Curve& curve, const Place& at, std::span<double> out) {
+  const double t = at.share, t2 = t * t, t3 = t2 * t;
+  const double* from = key_of(curve, at.key);
+  const double* leaving = key_of(curve, at.key, 2);
+  const double* to = key_of(curve, at.key + 1);
+  const double* reaching = key_of(curve, at.key + 1, 0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = (2 * t3 - 3 * t2 + 1) * from[i] + at.span * (t3 - 2 * t2 + t) * leaving[i] +
+             (3 * t2 - 2 * t3) * to[i] + at.span * (t3 - t2) * reaching[i];
+  }
+}
+
+glm::dvec3 vector_of(const double* v) {
+  return {v[0], v[1], v[2]};
+}
+
+glm::dquat rotation_of(const double* v) {
+  return {v[3], v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+void evaluate(const Curve& curve, double seconds, std::span<double> out) {
+  const Place at = place_of(curve, seconds);
+  const double* from = key_of(curve, at.key);
+  if (at.share == 0 || curve.interpolation == Interpolation::step) {
+    std::copy_n(from, out.size(), out.begin());
+  } else if (curve.interpolation == Interpolation::cubic_spline) {
+    hermite(curve, at, out);
+  } else {
+    const double* to = key_of(curve, at.key + 1);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = (1 - at.share) * from[i] + at.share * to[i];
+  }
+}
+
+glm::dvec3 vector_at(const Curve& curve, double seconds) {
+  double v[3];
+  evaluate(curve, seconds, v);
+  return vector_of(v);
+}
+
+glm::dvec3 direction_at(const Curve& curve, double seconds) {
+  const Place at = place_of(curve, seconds);
+  const glm::dvec3 from = vector_of(key_of(curve, at.key));
+  if (at.share == 0 || curve.interpolation == Interpolation::step) return from;
+  const glm::dvec3 to = vector_of(key_of(curve, at.key + 1));
+  const double angle = std::atan2(glm::length(glm::cross(from, to)), glm::dot(from, to));
+  if (angle < 1e-9) return from;  // the same, as far as doubles tell
+  return glm::normalize(std::sin((1 - at.share) * angle) * from + std::sin(at.share * angle) * to);
+}
+
+glm::dquat rotation_at(const Curve& curve, double seconds) {
+  const Place at = place_of(curve, seconds);
+  if (at.share > 0 && curve.interpolation == Interpolation::linear) {
+    const glm::dquat from = rotation_of(key_of(curve, at.key)), to = rotation_of(key_of(curve, at.key + 1));
+    return glm::normalize(glm::slerp(from, to, at.share));
+  }
+  double v[4];
+  evaluate(curve, seconds, v);
+  const glm::dquat rotation = rotation_of(v);
+  const double length = glm::length(rotation);
+  return length > 0 ? rotation / length : rotation;
+}
+
+}  // namespace clpv

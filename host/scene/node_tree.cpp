@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "scene/node_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "support/refuse.hpp"
+
+namespace clpv {
+namespace {
+
+bool finite(const glm::dmat4& m) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(m[column][row])) return false;
+    }
+  }
+  return true;
+}
+
+/// To its parent's space.
+glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
+  if (!node.curves.any()) return node.still;
+  Pose pose = node.pose;
+  if (node.curves.translation) pose.translation = vector_at(*node.curves.translation, seconds);
+  if (node.curves.scale) pose.scale = vector_at(*node.curves.scale, seconds);
+  if (node.curves.rotation) {
+    pose.rotation = rotation_at(*node.curves.rotation, seconds);
+    if (!(glm::length(*pose.rotation) > 0.5)) {
+      refuse(tree.file, fmt::format("/nodes/{}/rotation", node.index),
+             fmt::format("a spline through no rotation at {} s", seconds), "a way through rotations");
+    }
+  }
+  return pose.matrix();
+}
+
+}  // namespace
+
+glm::dmat4 Pose::matrix() const {
+  glm::dmat4 transform(1.0);
+  if (translation) transform = glm::translate(transform, *translation);
+  if (rotation) transform *= glm::mat4_cast(*rotation);
+  if (scale) transform = glm::scale(transform, *scale);
+  return transform;
+}
+
+std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
+  std::vector<glm::dmat4> made;
+  made.reserve(nodes.size());
+  for (const TreeNode& node : nodes) {
+    const glm::dmat4& above = node.parent ? made[*node.parent] : root;
+    made.push_back(above * local_transform(*this, node, seconds));
+    if (!finite(made.back())) {
+      refuse(file, fmt::format("/nodes/{}", node.index), "a transform that overflows", "finite transforms");
+    }
+  }
+  return made;
+}
+
+}  // namespace clpv

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// A model's nodes, and where they stand at any instant. Plain numbers: the document they came from may be gone.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/curve.hpp"
+
+namespace clpv {
+
+/// Translation, rotation and scale, applied in the order scale, rotation, translation.
+struct Pose {
+  std::optional<glm::dvec3> translation, scale;
+  std::optional<glm::dquat> rotation;  ///< unit
+  glm::dmat4 matrix() const;
+};
+
+/// What of a node changes with time; null: nothing.
+struct NodeCurves {
+  std::shared_ptr<const Curve> translation, rotation, scale;
+  bool any() const { return translation || rotation || scale; }
+};
+
+struct TreeNode {
+  int index = 0;                      ///< in the document
+  std::optional<std::size_t> parent;  ///< its place in the list; parents come first
+  glm::dmat4 still{1.0};              ///< to its parent's space, where no curve moves it
+  Pose pose;                          ///< what the curves replace, where some do
+  NodeCurves curves;
+  bool moves = false;  ///< it, or one above it
+};
+
+struct NodeTree {
+  std::string file;  ///< for messages
+  glm::dmat4 root{1.0};
+  std::vector<TreeNode> nodes;
+
+  /// Each node's transform to world space, in their order. Throws Error(bad_input) for transforms that are not finite, and
+  /// splines that lead through no rotation.
+  std::vector<glm::dmat4> to_world(double seconds) const;
+};
+
+}  // namespace clpv
