@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   app.parse_complete_callback([&] { set_log_level(shared.quiet, shared.verbosity); });
   add_devices(app, shared);
   add_render(app, shared);
+  add_sequence(app, shared);
   add_propagate(app, shared);
   add_check(app, shared);
   add_compare(app, shared);

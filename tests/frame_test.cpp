@@ -12,7 +12,7 @@
 #include "image/image_io.hpp"
 #include "pipeline/light_scale.hpp"
 #include "scene/load.hpp"
-#include "tests/support/gltf_builder.hpp"
+#include "tests/support/moving_scene.hpp"
 
 namespace clpv {
 namespace {
@@ -201,33 +201,9 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
   EXPECT_LT(difference, 2e-3 * total);
 }
 
-/// A box that glides through the Cornell box's light, and a sun that turns.
-fs::path write_moving_scene(const test::TemporaryFolder& folder) {
-  test::GltfBuilder model;
-  const int floor = model.accessor<float>("VEC3", {-2, 0, -2, -2, 0, 2, 2, 0, 2, 2, 0, -2});
-  const int wall = model.accessor<float>("VEC3", {0, 0, 0, 0.6f, 0, 0, 0.6f, 1, 0, 0, 1, 0});
-  const int corners = model.accessor<std::uint8_t>("SCALAR", {0, 1, 2, 0, 2, 3});
-  model.mesh({{"POSITION", floor}}, {{"indices", corners}});
-  model.mesh({{"POSITION", wall}}, {{"indices", corners}, {"material", 0}});
-  model.document["materials"] = {{{"doubleSided", true}}};
-  model.add("animations",
-            {{"samplers",
-              {{{"input", model.accessor<float>("SCALAR", {0, 1})},
-                {"output", model.accessor<float>("VEC3", {-1, 0, 0, 1, 0, 0.5f})}}}},
-             {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
-  model.write(folder);
-  return folder.write("moving.json", R"({"model": "model.gltf", "cascades": {"count": 2, "size_metres": 4},
-    "cameras": [{"name": "walk", "target": [0, 0.4, 0], "keys": [
-      {"time": 0, "eye": [0, 1.5, 3]}, {"time": 1, "eye": [1, 1, 2.5]}]}],
-    "lights": [{"kind": "directional", "illuminance_lux": 10, "keys": [
-      {"time": 0, "direction": [0.5, -1, -0.4]}, {"time": 1, "direction": [-0.5, -1, -0.6]}]},
-      {"name": "lamp", "kind": "point", "intensity_candela": 1, "keys": [
-      {"time": 0, "position": [0, 1, 0]}, {"time": 1, "position": [0.5, 1, 1]}]}]})");
-}
-
 TEST(Frame, OfSomethingThatMovedIsAsIfMadeForThatInstant) {
   const test::TemporaryFolder folder;
-  const fs::path path = write_moving_scene(folder);
+  const fs::path path = test::write_moving_scene(folder);
   for (const Blockers blockers : {Blockers::seen, Blockers::scene}) {
     MovingScene moving(path);
     RenderOptions options = small_options(moving.scene());

@@ -90,6 +90,19 @@ TEST_F(ImageFiles, ExrKeepsFloatsLayersAndOptions) {
   }
 }
 
+TEST_F(ImageFiles, MetadataIsReadAlone) {
+  Image image = make_image(2, 2, {"R", "G", "B", "A"});
+  image.metadata = {{"basis", "sh2"}, {"scene", "a = b; c"}};
+  write_exr(folder_ / "a.exr", image);
+  image.encoding = Encoding::srgb;
+  write_png(folder_ / "a.png", image);
+  EXPECT_EQ(read_metadata(folder_ / "a.exr"), image.metadata);
+  EXPECT_EQ(read_metadata(folder_ / "a.png"), image.metadata);
+  EXPECT_EQ(read_image(folder_ / "a.png").metadata, image.metadata);
+  write_file(folder_ / "cut.exr", test::read_file(folder_ / "a.exr").substr(0, 200));
+  EXPECT_THROW(read_metadata(folder_ / "cut.exr"), Error);
+}
+
 TEST_F(ImageFiles, ExrHoldsSpecialValues) {
   Image image = make_image(4, 1, {"R"});
   const float infinity = std::numeric_limits<float>::infinity();

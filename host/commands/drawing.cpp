@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "commands/drawing.hpp"
 
-#include <fcntl.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
+#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -17,8 +13,7 @@
 
 #include "support/error.hpp"
 #include "support/output_file.hpp"
-
-extern char** environ;
+#include "support/process.hpp"
 
 namespace clpv {
 namespace {
@@ -49,46 +44,12 @@ fs::path find_package(const std::string& asked_by) {
               installed.string(), CLPV_DRAW_PACKAGE);
 }
 
-/// Every python3 in the path: the first need not be the one that has the modules.
-std::vector<fs::path> pythons() {
-  const char* path = std::getenv("PATH");
-  std::vector<fs::path> found;
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path candidate = fs::path(folder) / "python3";
-    if (access(candidate.c_str(), X_OK) == 0) found.push_back(candidate);
-  }
-  return found;
-}
-
-struct Ended {
-  int code = -1;     ///< 128 + signal where one ended it; -1: could not be started
-  std::string said;  ///< on stdout and stderr
-};
-
-/// `python -B package arguments...`, what it says into a file in `folder`. -B: nothing is written beside the package.
-Ended run(const fs::path& python, const fs::path& package, const std::vector<std::string>& arguments,
-          const fs::path& folder) {
-  const fs::path output = folder / "said.txt";
-  std::vector<std::string> words{python.string(), "-B", package.string()};
+/// `python -B package arguments...`. -B: nothing is written beside the package.
+Process::Ended run(const fs::path& python, const fs::path& package,
+                   const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{"-B", package.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> raw;
-  for (std::string& word : words) raw.push_back(word.data());
-  raw.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int failed = posix_spawn(&child, python.c_str(), &actions, nullptr, raw.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return {-1, std::strerror(failed)};
-  int status = 0;
-  waitpid(child, &status, 0);
-  std::ifstream in(output, std::ios::binary);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-          {std::istreambuf_iterator<char>(in), {}}};
+  return Process(python, words).end();
 }
 
 /// All of it in one line.
@@ -107,8 +68,9 @@ Drawing::Drawing(Picture picture, std::string asked_by)
     throw Error(ExitCode::run_time, "{}: cannot make {}: {}", asked_by_, name, std::strerror(errno));
   folder_ = name;
   std::vector<std::string> lacking;
-  for (const fs::path& python : pythons()) {
-    const Ended ended = run(python, package_, {"check", name_of(picture_)}, folder_);
+  for (const fs::path& python :
+       find_programs("python3")) {  // the first need not be the one that has the modules
+    const Process::Ended ended = run(python, package_, {"check", name_of(picture_)});
     if (ended.code == 0) {
       python_ = python;
       return;
@@ -133,7 +95,7 @@ void Drawing::add(const std::string& file, const nlohmann::json& document) const
 }
 
 void Drawing::draw(const fs::path& output) const {
-  const Ended ended = run(python_, package_, {name_of(picture_), folder_.string(), output.string()}, folder_);
+  const Process::Ended ended = run(python_, package_, {name_of(picture_), folder_.string(), output.string()});
   if (ended.code == 0) return;
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, in_a_line(ended.said));

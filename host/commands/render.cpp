@@ -2,17 +2,15 @@
 // clpv render: a scene, lit by cascaded light propagation volumes, into an image.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "commands/frame_options.hpp"
+#include "commands/render_request.hpp"
 #include "commands/time_option.hpp"
 #include "evaluate/normal_weights.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
-#include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
 #include "scene/load.hpp"
@@ -29,13 +27,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, model, output, camera, tonemap = "aces", stats, dump, normals;
+  RenderRequest request;
+  std::string output, stats, dump, normals;
   int frames = 5;
   double time = 0;
   std::vector<std::string> views;
-  std::optional<float> exposure;
-  GivenOptions frame;
-  bool no_tune = false;
 };
 
 /// FILE.png, or FILE.VIEW.png where there are several.
@@ -73,12 +69,6 @@ void check_outputs(const Options& options, const std::vector<Show>& views) {
   }
 }
 
-Image view_image(Frame& frame, Show view) {
-  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
-  image.pixels = frame.read(view);
-  return image;
-}
-
 void write_images(Frame& frame, const Options& options, const std::vector<Show>& views, float exposure,
                   const std::map<std::string, std::string>& metadata) {
   const fs::path output = options.output;
@@ -91,9 +81,10 @@ void write_images(Frame& frame, const Options& options, const std::vector<Show>&
     all.metadata = metadata;
     return write_exr(output, all);
   }
-  const ToneMap curve = named<ToneMap>("--tonemap", options.tonemap);
+  const ToneMap curve = named<ToneMap>("--tonemap", options.request.tonemap);
   for (const Show view : views) {
-    const Image shown = display_image(view_image(frame, view), exposure, curve);
+    Image shown = display_image(view_image(frame, view), exposure, curve);
+    shown.metadata = metadata;
     write_png(png_path(output, view, views.size() > 1), shown);
   }
 }
@@ -107,41 +98,25 @@ void dump_volume(Session& session, const Options& options, const CascadeVolumes&
   write_volume_vti(stem.string() + ".vti", values, volumes.grid, shape.coefficients);
 }
 
-/// What was chosen in place of the user, and what will come of it.
-void tell_of_cascades(const Scene& scene, const Camera& camera, const RenderOptions& options) {
-  const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
-  if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
-    spdlog::info("cascades of {:.4g} to {:.4g} m round camera '{}'", options.cascade_size, coarsest,
-                 camera.name);
-  }
-  if (!cascades_meet(scene, camera.eye, options.cascades, options.cascade_size, options.grid)) {
-    spdlog::warn(
-        "nothing of the scene is in the cascades, which end {:.4g} m from camera '{}': no indirect light; a "
-        "larger "
-        "--cascade-size or more --cascades reach farther",
-        coarsest / 2, camera.name);
-  }
-}
-
 void run(const Options& options, const Shared& shared) {
   const std::vector<Show> views = parse_views(options.views);
-  named<ToneMap>("--tonemap", options.tonemap);
+  named<ToneMap>("--tonemap", options.request.tonemap);
   check_outputs(options, views);
   FrameStats stats;
   Progress progress("render", 4);
-  MovingScene moving(options.scene, {options.model});
+  const RenderRequest& request = options.request;
+  MovingScene moving(request.scene, {request.model});
   const Scene& scene = moving.scene();
-  for (const std::string& note : scene.notes) spdlog::info("{}", note);
-  RenderOptions resolved = resolve_options(options.frame, scene);  // at 0 s, whatever instant is shown
+  RenderOptions resolved = resolve_options(request.frame, scene);  // at 0 s, whatever instant is shown
   moving.pose(options.time);
-  const Camera& camera = scene.camera(options.camera);
-  tell_of_cascades(scene, camera, resolved);
+  const Camera& camera = scene.camera(request.camera);
+  tell_of_scene(scene, camera, resolved);
   progress.advance();
 
   stats.begin_startup();
   Session session(choose_device(shared.device), ProgramCache::of_user());
   const Tuning tuning =
-      options.no_tune ? Tuning{} : tuning_for(session.device(), resolved, !options.frame.contains("layout"));
+      request.no_tune ? Tuning{} : tuning_for(session.device(), resolved, !request.frame.contains("layout"));
   Frame frame(session, scene, resolved, tuning);
   stats.end_startup(session);
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
@@ -161,21 +136,11 @@ void run(const Options& options, const Shared& shared) {
     stats.end_frame(session);
   }
 
-  const float exposure = options.exposure.value_or(scene.exposure);
-  nlohmann::json all = to_json(resolved);
-  all.update({{"scene", options.scene},
-              {"model", options.model},
-              {"camera", camera.name},
-              {"time", options.time},
-              {"exposure", exposure},
-              {"tonemap", options.tonemap}});
-  std::map<std::string, std::string> metadata;
-  for (const auto& [name, value] : all.items())
-    metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
-  write_images(frame, options, views, exposure, metadata);
+  const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
+  write_images(frame, options, views, request.exposure_of(scene), metadata_of(described));
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
-  if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, all).dump(2) + "\n");
+  if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, described).dump(2) + "\n");
   progress.advance();
   session.store_programs();
 }
@@ -186,15 +151,12 @@ void add_render(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("render", "Render a scene with indirect light from light propagation volumes");
   auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  add_render_request(*command, options->request);
   command
       ->add_option("-o,--output", options->output,
-                   "image: .exr (linear, options in its metadata) or .png (tone-mapped, sRGB)")
+                   "image: .exr (linear) or .png (tone-mapped, sRGB); options in its metadata")
       ->required()
       ->type_name("FILE");
-  command->add_option("--model", options->model, "replaces the scene file's model")->type_name("PATH");
-  command->add_option("--camera", options->camera, "camera by name; default: the scene's first")
-      ->type_name("NAME");
   add_seconds(*command, "--time", options->time, "the instant shown of a scene that moves [s]");
   command
       ->add_option("--view", options->views,
@@ -203,10 +165,6 @@ void add_render(CLI::App& app, Shared& shared) {
       ->delimiter(',')
       ->type_name("VIEW")
       ->default_str("full");
-  command->add_option("--exposure", options->exposure, "brightness of a PNG [EV]; default: the scene's")
-      ->type_name("EV");
-  command->add_option("--tonemap", options->tonemap, "tone curve of a PNG: none|reinhard|aces")
-      ->capture_default_str();
   command->add_option("--stats", options->stats, "stage times, options and energies, as JSON")
       ->type_name("FILE.json");
   command
@@ -222,8 +180,6 @@ void add_render(CLI::App& app, Shared& shared) {
       ->add_option("--dump-normals", options->normals,
                    "normals that the lights see, weighted by the flux they send on, for clpv basis --weights")
       ->type_name("FILE.json");
-  command->add_flag("--no-tune", options->no_tune, "leave what clpv tune found aside");
-  add_frame_options(*command, options->frame);
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -116,6 +116,34 @@ std::string first_line(const std::string& message) {
   return message.substr(0, message.find('\n'));
 }
 
+/// A file that was looked at, down to its size, and whose pixels can be read.
+struct OpenImage {
+  std::vector<unsigned char> bytes;
+  std::string format;
+  OIIO::Filesystem::IOMemReader memory;
+  std::unique_ptr<OIIO::ImageInput> input;
+  OIIO::ImageSpec spec;
+
+  OpenImage(const fs::path& path, const ImageLimits& limits)
+      : bytes(read_bytes(path, limits)),
+        format(checked_format(path, bytes)),
+        memory(bytes.data(), bytes.size()),
+        input(OIIO::ImageInput::create(format)) {
+    if (!input)
+      refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
+    input->set_ioproxy(&memory);
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    if (!input->open(path.string(), spec, config))
+      refuse(path, "cannot be read: " + first_line(input->geterror()));
+    check_size(path, spec, limits);
+  }
+};
+
+void add_metadata(OIIO::ImageSpec& spec, const Image& image) {
+  for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
+}
+
 /// `name` is for messages.
 std::vector<unsigned char> encoded(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
                                    OIIO::TypeDesc type, const void* pixels) {
@@ -133,26 +161,19 @@ std::vector<unsigned char> encoded(const std::string& name, const char* format, 
 }  // namespace
 
 Image read_image(const fs::path& path, const ImageLimits& limits) {
-  const std::vector<unsigned char> bytes = read_bytes(path, limits);
-  const std::string format = checked_format(path, bytes);
-  const auto input = OIIO::ImageInput::create(format);
-  if (!input)
-    refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  input->set_ioproxy(&memory);
-  OIIO::ImageSpec spec, config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  if (!input->open(path.string(), spec, config))
-    refuse(path, "cannot be read: " + first_line(input->geterror()));
-  check_size(path, spec, limits);
-
+  OpenImage opened(path, limits);
+  const OIIO::ImageSpec& spec = opened.spec;
   Image image = make_image(spec.width, spec.height, spec.channelnames);
   image.metadata = metadata_of(spec);
-  image.encoding = format == "png" ? Encoding::srgb : Encoding::linear;
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data())) {
-    refuse(path, "damaged or truncated: " + first_line(input->geterror()));
+  image.encoding = opened.format == "png" ? Encoding::srgb : Encoding::linear;
+  if (!opened.input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data())) {
+    refuse(path, "damaged or truncated: " + first_line(opened.input->geterror()));
   }
   return image;
+}
+
+std::map<std::string, std::string> read_metadata(const fs::path& path, const ImageLimits& limits) {
+  return metadata_of(OpenImage(path, limits).spec);
 }
 
 void write_exr(const fs::path& path, const Image& image) {
@@ -161,7 +182,7 @@ void write_exr(const fs::path& path, const Image& image) {
   spec.attribute("compression", "zip");
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("DateTime", kFixedDate);
-  for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
+  add_metadata(spec, image);
   const auto bytes = encoded(path.string(), "openexr", spec, OIIO::TypeFloat, image.pixels.data());
   write_file(path, std::as_bytes(std::span(bytes)));
 }
@@ -181,6 +202,7 @@ std::vector<unsigned char> png_bytes(const Image& image) {
   if (channels == 4) spec.alpha_channel = 3;
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  add_metadata(spec, image);
   return encoded("image.png", "png", spec, OIIO::TypeUInt8, pixels.data());
 }
 

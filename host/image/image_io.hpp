@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "image/image.hpp"
@@ -24,11 +26,15 @@ struct ImageLimits {
 /// agree. Throws Error(bad_input) that names the file, what was found, and what is allowed.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
+/// The metadata alone, of a file that read_image reads; pixels are not looked at. Throws as it does.
+std::map<std::string, std::string> read_metadata(const std::filesystem::path& path,
+                                                 const ImageLimits& limits = {});
+
 /// Writes 32-bit float EXR with the image's channel names; metadata goes in as string attributes "clpv:NAME"
 /// (and comes back from read_image). The same image gives the same bytes. Throws Error(run_time).
 void write_exr(const std::filesystem::path& path, const Image& image);
 
-/// An 8-bit PNG file of a display-encoded image (display_image): R,G,B or R,G,B,A in [0,1].
+/// An 8-bit PNG file of a display-encoded image (display_image): R,G,B or R,G,B,A in [0,1]. Metadata goes in as text.
 std::vector<unsigned char> png_bytes(const Image& image);
 
 /// The same, in a file.

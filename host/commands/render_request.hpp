@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// What commands that render frames are asked for alike: a scene, a camera, options, and how images show it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands/frame_options.hpp"
+#include "image/image.hpp"
+#include "pipeline/frame.hpp"
+
+namespace clpv {
+
+struct RenderRequest {
+  std::string scene, model, camera, tonemap = "aces";
+  std::optional<float> exposure;
+  GivenOptions frame;
+  bool no_tune = false;
+
+  float exposure_of(const Scene& shown) const { return exposure.value_or(shown.exposure); }
+};
+
+/// The scene and all options of a RenderRequest, which must outlive the parse.
+void add_render_request(CLI::App& command, RenderRequest& request);
+
+/// The scene's notes, and what was chosen of cascades in place of the user and what will come of it.
+void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);
+
+/// All that shaped an image of `shown` at an instant [s], by name.
+nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
+                        const Camera& camera, double seconds);
+
+/// The same as an image holds it.
+std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
+
+/// A view of the frame's last render, linear.
+Image view_image(Frame& frame, Show view);
+
+}  // namespace clpv

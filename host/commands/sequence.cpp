@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+// clpv sequence: a scene that moves, frame by frame into a folder, and into a film.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands/choices.hpp"
+#include "commands/commands.hpp"
+#include "commands/render_request.hpp"
+#include "commands/sequence_frames.hpp"
+#include "commands/sequence_times.hpp"
+#include "commands/time_option.hpp"
+#include "commands/video.hpp"
+#include "image/image_io.hpp"
+#include "scene/bounds.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kMostFrames = 1000000;
+constexpr double kMostFramesPerSecond = 1000;
+// A run that is killed loses the times of this many seconds at most, and none of its frames.
+constexpr std::chrono::seconds kTimesEvery{10};
+
+struct Options {
+  RenderRequest request;
+  std::string output, video;
+  int frames = 0;
+  double frames_per_second = 0, from = 0;
+  Show view = Show::full;
+  FrameFormat format = FrameFormat::exr;
+
+  double instant(int frame) const { return from + frame / frames_per_second; }
+};
+
+double parse_rate(const std::string& text) {
+  double rate = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
+  const bool number = error == std::errc{} && end == text.data() + text.size();
+  if (!number || !(rate > 0 && rate <= kMostFramesPerSecond)) {  // NaN is in no range
+    throw Error(ExitCode::usage, "--fps: found '{}', allowed: more than 0, up to {}", text,
+                kMostFramesPerSecond);
+  }
+  return rate;
+}
+
+/// What can be known to be wrong before the scene is read.
+void check_outputs(const Options& options) {
+  named<ToneMap>("--tonemap", options.request.tonemap);
+  if (const double last = options.instant(options.frames - 1); last > bounds::kSeconds) {
+    throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
+                last, bounds::kSeconds);
+  }
+  if (!options.video.empty() && fs::path(options.video).extension() != ".mp4") {
+    throw Error(ExitCode::usage, "--video {}: found extension '{}', allowed: .mp4", options.video,
+                fs::path(options.video).extension().string());
+  }
+  std::error_code failed;
+  const fs::path folder = options.output;
+  if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
+    throw Error(ExitCode::run_time, "--output {}: what is there is not a folder", options.output);
+  fs::create_directories(folder, failed);
+  if (failed) throw Error(ExitCode::run_time, "--output {}: {}", options.output, failed.message());
+  check_writable(frame_file(folder, 0, options.format));
+  check_writable(folder / "times.json");
+}
+
+double milliseconds(Clock::duration span) {
+  return std::chrono::duration<double, std::milli>(span).count();
+}
+
+/// A sequence at work: the scene, the device and all that is made for it stay from frame to frame.
+class Sequence {
+ public:
+  Sequence(const Options& options, const Shared& shared)
+      : options_(options),
+        moving_(options.request.scene, {options.request.model}),
+        resolved_(resolve_options(options.request.frame, moving_.scene())),
+        device_(choose_device(shared.device)),
+        tuning_(options.request.no_tune
+                    ? Tuning{}
+                    : tuning_for(device_, resolved_, !options.request.frame.contains("layout"))),
+        identity_(moving_.scene(), device_, resolved_) {
+    tell_of_scene(moving_.scene(), moving_.scene().camera(options.request.camera), resolved_);
+    if (!moving_.moves())
+      spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
+  }
+
+  void run();
+  void film(Video& video);
+
+ private:
+  const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
+  fs::path file_of(int frame) const { return frame_file(options_.output, frame, options_.format); }
+  nlohmann::json described(int frame) const;
+  std::vector<int> missing();
+  FrameTimes render(Session& session, Frame& frame, int number);
+  void write_times() const;
+
+  const Options& options_;
+  MovingScene moving_;
+  RenderOptions resolved_;
+  Device device_;
+  Tuning tuning_;
+  FrameIdentity identity_;
+  SequenceTimes times_;
+};
+
+nlohmann::json Sequence::described(int frame) const {
+  nlohmann::json all =
+      describe(options_.request, resolved_, moving_.scene(), camera(), options_.instant(frame));
+  all["view"] = name_of(options_.view);
+  return all;
+}
+
+/// Frames whose files are not there, or are of something else. The times of the others are kept.
+std::vector<int> Sequence::missing() {
+  std::vector<int> missing, there;
+  for (int i = 0; i < options_.frames; ++i) {
+    bool found = fs::exists(file_of(i));
+    if (found) {
+      moving_.pose(options_.instant(i));
+      found = holds_frame(file_of(i), identity_.of(moving_.scene(), camera(), described(i)));
+    }
+    (found ? there : missing).push_back(i);
+  }
+  times_.keep(fs::path(options_.output) / "times.json", there);
+  if (!there.empty()) spdlog::info("{} of {} frames are there already", there.size(), options_.frames);
+  return missing;
+}
+
+FrameTimes Sequence::render(Session& session, Frame& frame, int number) {
+  FrameTimes times;
+  const Clock::time_point started = Clock::now();
+  moving_.pose(options_.instant(number));
+  if (moving_.moves()) frame.scene_moved();
+  const Clock::time_point posed = Clock::now();
+  session.timeline().clear();
+  frame.render(camera());
+  session.queue().finish();
+  const Clock::time_point rendered = Clock::now();
+  times.stages = session.timeline().times();
+  write_frame(file_of(number), options_.format, view_image(frame, options_.view), described(number),
+              identity_.of(moving_.scene(), camera(), described(number)));
+  times.pose_ms = milliseconds(posed - started);
+  times.frame_ms = milliseconds(rendered - posed);
+  times.write_ms = milliseconds(Clock::now() - rendered);
+  return times;
+}
+
+void Sequence::write_times() const {
+  nlohmann::json options = describe(options_.request, resolved_, moving_.scene(), camera(), options_.from);
+  options.erase("time");
+  options["view"] = name_of(options_.view);
+  const nlohmann::json about = {
+      {"device", {{"platform", device_.platform}, {"name", device_.name}, {"driver", device_.driver}}},
+      {"options", options},
+      {"fps", options_.frames_per_second},
+      {"from", options_.from}};
+  write_file(fs::path(options_.output) / "times.json", times_.to_json(about).dump(1) + "\n");
+}
+
+void Sequence::run() {
+  const std::vector<int> missing = this->missing();
+  if (missing.empty()) return write_times();
+  Progress progress("sequence", missing.size());
+  const Clock::time_point started = Clock::now();
+  Session session(device_, ProgramCache::of_user());
+  Frame frame(session, moving_.scene(), resolved_, tuning_);
+  Clock::time_point written = started;
+  for (const int number : missing) {
+    FrameTimes times = render(session, frame, number);
+    times.first = number == missing.front();
+    times_.add(number, options_.instant(number), times);
+    spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, options_.instant(number), times.frame_ms);
+    if (Clock::now() - written > kTimesEvery) {
+      write_times();
+      written = Clock::now();
+    }
+    progress.advance();
+  }
+  write_times();
+  spdlog::info("{} frames in {:.1f} s", missing.size(), milliseconds(Clock::now() - started) / 1000);
+  session.store_programs();
+}
+
+/// All frames, from their files: most of them may be of an earlier run.
+void Sequence::film(Video& video) {
+  Progress progress("film", static_cast<std::uint64_t>(options_.frames));
+  const auto curve = named<ToneMap>("--tonemap", options_.request.tonemap);
+  for (int i = 0; i < options_.frames; ++i) {
+    const Image image = read_image(file_of(i));
+    video.add(image.encoding == Encoding::srgb
+                  ? image
+                  : display_image(image, options_.request.exposure_of(moving_.scene()), curve));
+    progress.advance();
+  }
+  video.finish();
+}
+
+void run(const Options& options, const Shared& shared) {
+  check_outputs(options);
+  std::unique_ptr<Video> video;
+  if (!options.video.empty()) video = std::make_unique<Video>(options.video, options.frames_per_second);
+  Sequence sequence(options, shared);
+  sequence.run();
+  if (video) sequence.film(*video);
+}
+
+}  // namespace
+
+void add_sequence(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("sequence", "Render a scene that moves, frame by frame");
+  auto options = std::make_shared<Options>();
+  command
+      ->add_option("-o,--output", options->output,
+                   "folder of frame-0000.exr and so on, and of times.json; made where it is not there")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--frames", options->frames, "how many")
+      ->check(CLI::Range(1, kMostFrames))
+      ->required()
+      ->type_name("N");
+  command
+      ->add_option_function<std::string>(
+          "--fps", [&rate = options->frames_per_second](const std::string& text) { rate = parse_rate(text); },
+          "frames a second of the scene's time")
+      ->required()
+      ->type_name("RATE");
+  add_seconds(*command, "--from", options->from, "the instant of the first frame [s]");
+  add_choice(*command, "--view", options->view, "what frames show");
+  add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
+  command->add_option("--video", options->video, "all frames as a film too, through ffmpeg")
+      ->type_name("FILE.mp4");
+  add_render_request(*command, options->request);
+  command->footer(
+      "Frame i shows FROM + i / RATE seconds, with the pixels of `clpv render --time` of that instant. A "
+      "frame "
+      "whose\nfile is there and was made of the same is not rendered again, so that a run that was ended "
+      "goes on "
+      "where it was.\ntimes.json has the times of every frame, and of each stage the median, 95th percentile "
+      "and "
+      "worst [ms].");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

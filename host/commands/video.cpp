@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "commands/video.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "support/error.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Players want even sides and half as many colours; 18 is where x264's loss is hardly seen.
+constexpr const char* kEvenSides = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
+constexpr const char* kQuality = "18";
+
+std::vector<std::uint8_t> rgb_bytes(const Image& shown) {
+  const std::size_t channels = shown.channels.size();
+  const auto pixels = static_cast<std::size_t>(shown.width) * static_cast<std::size_t>(shown.height);
+  std::vector<std::uint8_t> bytes(3 * pixels);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const float value = shown.pixels[i / 3 * channels + i % 3];
+    bytes[i] = static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Video::Video(fs::path file, double frames_per_second)
+    : file_(std::move(file)), frames_per_second_(frames_per_second) {
+  const std::vector<fs::path> found = find_programs("ffmpeg");
+  if (found.empty())
+    throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in the path (Debian: ffmpeg)");
+  ffmpeg_ = found.front();
+  check_writable(file_);
+  part_ = file_.parent_path() / fmt::format(".{}.{}.part", file_.filename().string(), ::getpid());
+}
+
+Video::~Video() {
+  process_.reset();
+  std::error_code ignored;
+  fs::remove(part_, ignored);
+}
+
+void Video::fail(const Process::Ended& ended) const {
+  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(), ended.code,
+              ended.said);
+}
+
+void Video::start(const Image& first) {
+  process_ =
+      std::make_unique<Process>(ffmpeg_,
+                                std::vector<std::string>{"-hide_banner",
+                                                         "-loglevel",
+                                                         "error",
+                                                         "-f",
+                                                         "rawvideo",
+                                                         "-pixel_format",
+                                                         "rgb24",
+                                                         "-video_size",
+                                                         fmt::format("{}x{}", first.width, first.height),
+                                                         "-framerate",
+                                                         fmt::format("{}", frames_per_second_),
+                                                         "-i",
+                                                         "pipe:0",
+                                                         "-vf",
+                                                         kEvenSides,
+                                                         "-c:v",
+                                                         "libx264",
+                                                         "-crf",
+                                                         kQuality,
+                                                         "-pix_fmt",
+                                                         "yuv420p",
+                                                         "-movflags",
+                                                         "+faststart",
+                                                         "-f",
+                                                         "mp4",
+                                                         "-y",
+                                                         part_.string()},
+                                true);
+}
+
+void Video::add(const Image& shown) {
+  if (!process_) start(shown);
+  const std::vector<std::uint8_t> bytes = rgb_bytes(shown);
+  if (!process_->feed(std::as_bytes(std::span(bytes)))) fail(process_->end());
+}
+
+void Video::finish() {
+  const Process::Ended ended = process_->end();
+  process_.reset();
+  if (ended.code != 0) fail(ended);
+  std::error_code failed;
+  fs::rename(part_, file_, failed);
+  if (failed) throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), failed.message());
+}
+
+}  // namespace clpv

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// `clpv sequence`: its frames are those rendered alone, a run goes on where one ended, and films are made through ffmpeg.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/image_io.hpp"
+#include "tests/support/moving_scene.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace clpv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kSmall = " --width 48 --height 27 --grid 16 --rsm-size 64 --shadow-size 128 --no-tune";
+
+struct SequenceTest : ::testing::Test {
+  TemporaryFolder folder;
+  const fs::path scene = write_moving_scene(folder);
+
+  fs::path frame(int i, const std::string& extension = "exr") const {
+    return folder / fmt::format("out/frame-{:04}.{}", i, extension);
+  }
+  Outcome clpv(const std::string& arguments, const std::string& environment = "") const {
+    return run("cd " + folder.path().string() + " && " + environment + " " CLPV_PROGRAM " " + arguments);
+  }
+  Outcome sequence(const std::string& arguments, const std::string& environment = "") const {
+    return clpv("sequence moving.json -o out " + arguments + kSmall, environment);
+  }
+  json times() const { return json::parse(read_file(folder / "out/times.json")); }
+
+  /// An ffmpeg that writes what it is fed and told into its output.
+  std::string fake_ffmpeg(const std::string& script) const {
+    const fs::path path = folder.write("bin/ffmpeg", "#!/bin/sh\n" + script);
+    fs::permissions(path, fs::perms::owner_all);
+    return "PATH=" + path.parent_path().string() + ":$PATH";
+  }
+};
+
+TEST_F(SequenceTest, EveryFrameIsTheOneRenderedAlone) {
+  // The camera crosses cells of .25 m, a wall, a sun and a lamp move; both kinds of blockers and of transport.
+  for (const std::string options : {"", " --transport sweep --blockers scene"}) {
+    const Outcome outcome = sequence("--frames 4 --fps 3 --from 0.1" + options);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    for (int i = 0; i < 4; ++i) {
+      const Outcome alone =
+          clpv(fmt::format("render moving.json -o alone.exr --time {}", 0.1 + i / 3.0) + options + kSmall);
+      ASSERT_EQ(alone.exit_code, 0) << alone.err;
+      const Image image = read_image(folder / "alone.exr"), of_sequence = read_image(frame(i));
+      EXPECT_EQ(of_sequence.pixels, image.pixels) << i << options;
+      EXPECT_EQ(of_sequence.metadata.at("time"), image.metadata.at("time"));
+    }
+    EXPECT_NE(read_image(frame(0)).pixels, read_image(frame(1)).pixels) << "something moves";
+  }
+}
+
+TEST_F(SequenceTest, ARunGoesOnWhereOneEnded) {
+  ASSERT_EQ(sequence("--frames 3 --fps 10").exit_code, 0);
+  const std::string first = read_file(frame(0)), second = read_file(frame(1));
+  const auto written = fs::last_write_time(frame(0));
+  fs::remove(frame(1));
+  folder.write("out/frame-0002.exr", read_file(frame(2)).substr(0, 300));
+  const Outcome again = sequence("--frames 4 --fps 10");
+  ASSERT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.err, AllOf(HasSubstr("1 of 4 frames are there"), HasSubstr("frame-0002.exr"),
+                               HasSubstr("rendered again"), HasSubstr("3 frames in")));
+  EXPECT_EQ(fs::last_write_time(frame(0)), written) << "not rendered again";
+  EXPECT_EQ(read_file(frame(1)), second) << "the same bytes";
+  const json told = times();
+  ASSERT_EQ(told["frames"].size(), 4u) << "what was there has its times of then";
+  EXPECT_EQ(told["frames"][3]["frame"], 3);
+  EXPECT_DOUBLE_EQ(told["frames"][3]["time"].get<double>(), 0.3);
+  EXPECT_EQ(told["summary"]["frames"], 2) << "the first frame of each run aside";
+}
+
+TEST_F(SequenceTest, FramesOfSomethingElseAreRenderedAgain) {
+  ASSERT_EQ(sequence("--frames 2 --fps 10 --format png").exit_code, 0);
+  EXPECT_THAT(sequence("--frames 2 --fps 10 --format png").err, HasSubstr("2 of 2 frames are there"));
+  for (const std::string other : {"--fps 5", "--fps 10 --from 3", "--fps 10 --iterations 3",
+                                  "--fps 10 --exposure 1", "--fps 10 --view albedo"}) {
+    const std::string before = read_file(frame(1, "png"));
+    const Outcome outcome = sequence("--frames 2 --format png " + other);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, Not(HasSubstr("2 of 2"))) << other;
+    EXPECT_NE(read_file(frame(1, "png")), before) << other;
+  }
+  std::string text = read_file(scene);
+  text.replace(text.find("\"illuminance_lux\": 10"), 21, "\"illuminance_lux\": 11");
+  folder.write("moving.json", text);
+  EXPECT_THAT(sequence("--frames 2 --fps 10 --format png --view albedo").err, Not(HasSubstr("there already")))
+      << "the scene file says something else";
+}
+
+TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
+  ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
+  const json told = times();
+  EXPECT_EQ(told["schema"], 1);
+  EXPECT_EQ(told["fps"], 10);
+  EXPECT_EQ(told["options"]["grid"], 16);
+  EXPECT_TRUE(told["frames"][0]["first"].get<bool>());
+  ASSERT_EQ(told["summary"]["frames"], 3);
+  const json& stages = told["summary"]["stages"];
+  ASSERT_EQ(stages.size(), told["frames"][1]["stages"].size());
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    std::vector<double> ms;
+    for (int i = 1; i < 4; ++i) ms.push_back(told["frames"][i]["stages"][s]["ms"]);
+    std::ranges::sort(ms);
+    EXPECT_DOUBLE_EQ(stages[s]["median_ms"].get<double>(), ms[1]) << stages[s];
+    EXPECT_DOUBLE_EQ(stages[s]["worst_ms"].get<double>(), ms[2]) << stages[s];
+    EXPECT_NEAR(stages[s]["p95_ms"].get<double>(), 0.9 * ms[2] + 0.1 * ms[1], 1e-9) << stages[s];
+  }
+}
+
+TEST_F(SequenceTest, AFilmHasEveryFrame) {
+  const std::string ffmpeg = fake_ffmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"$last\"\n");
+  ASSERT_EQ(sequence("--frames 3 --fps 12.5 --video film.mp4", ffmpeg).exit_code, 0);
+  EXPECT_THAT(read_file(folder / "film.mp4"), AllOf(HasSubstr("-video_size 48x27 -framerate 12.5"),
+                                                    HasSubstr(std::to_string(3 * 48 * 27 * 3))));
+  const Outcome failing =
+      sequence("--frames 3 --fps 12.5 --video other.mp4", fake_ffmpeg("echo no codec >&2; exit 9\n"));
+  EXPECT_EQ(failing.exit_code, 1);
+  EXPECT_THAT(failing.err, AllOf(HasSubstr("other.mp4"), HasSubstr("ended with 9"), HasSubstr("no codec")));
+  EXPECT_FALSE(fs::exists(folder / "other.mp4"));
+}
+
+TEST_F(SequenceTest, WithoutFfmpegItSaysWhatToInstall) {
+  const Outcome outcome = sequence("--frames 3 --fps 25 --video film.mp4", "PATH=/nowhere");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("--video needs ffmpeg, which is not in the path (Debian: ffmpeg)"));
+  EXPECT_FALSE(fs::exists(frame(0))) << "said before the work";
+}
+
+TEST_F(SequenceTest, BadNumbers) {
+  for (const auto& [arguments, named] :
+       {std::pair("--frames 0 --fps 1", "--frames"), std::pair("--frames -3 --fps 1", "--frames"),
+        std::pair("--frames 2000000 --fps 1", "--frames"), std::pair("--frames 1.5 --fps 1", "--frames"),
+        std::pair("--fps 1", "--frames"), std::pair("--frames 1", "--fps"),
+        std::pair("--frames 1 --fps 0", "--fps: found '0', allowed: more than 0"),
+        std::pair("--frames 1 --fps -5", "--fps: found '-5'"),
+        std::pair("--frames 1 --fps nan", "--fps: found 'nan'"),
+        std::pair("--frames 1 --fps inf", "--fps: found 'inf'"),
+        std::pair("--frames 1 --fps 1e9", "--fps: found '1e9'"),
+        std::pair("--frames 1 --fps 1 --from nan", "--from"),
+        std::pair("--frames 1000000 --fps 1 --from 10", "--frames 1000000"),
+        std::pair("--frames 1 --fps 1 --format gif", "--format"),
+        std::pair("--frames 1 --fps 1 --video film.avi", "'.avi', allowed: .mp4")}) {
+    const Outcome outcome = sequence(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(named)) << arguments;
+  }
+  EXPECT_FALSE(fs::exists(folder / "out/times.json"));
+}
+
+TEST_F(SequenceTest, FoldersThatCannotBe) {
+  folder.write("out", "a file");
+  const Outcome file = sequence("--frames 1 --fps 1");
+  EXPECT_EQ(file.exit_code, 1);
+  EXPECT_THAT(file.err, AllOf(HasSubstr("--output out"), HasSubstr("not a folder")));
+  const Outcome below = clpv("sequence moving.json -o out/there --frames 1 --fps 1");
+  EXPECT_EQ(below.exit_code, 1);
+  EXPECT_THAT(below.err, HasSubstr("--output out/there"));
+  const Outcome nowhere = clpv("sequence moving.json -o /proc/1/there --frames 1 --fps 1");
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_THAT(nowhere.err, HasSubstr("/proc/1/there"));
+}
+
+TEST_F(SequenceTest, AStillSceneIsToldOf) {
+  GltfBuilder still;
+  still.triangle();
+  still.finish("still.bin");
+  folder.write("still.bin", still.binary);
+  folder.write("still.gltf", still.document.dump());
+  const Outcome outcome = clpv(std::string("sequence still.gltf -o out --frames 2 --fps 1") + kSmall);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("nothing moves"));
+  EXPECT_EQ(read_image(frame(0)).pixels, read_image(frame(1)).pixels);
+}
+
+}  // namespace
+}  // namespace clpv::test
