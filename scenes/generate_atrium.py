@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes atrium.glb and atrium.json beside itself: a two-storey colonnade round an open court, hung with curtains.
+"""Writes atrium.glb and atrium.json beside itself, a two-storey colonnade round an open court, hung with curtains; and
+atrium_living.gltf and .json, the same for ten seconds of a day.
 
 Python's standard library only; the same bytes every time. `generate_atrium.py [FOLDER]` writes into FOLDER instead.
 
@@ -280,6 +281,65 @@ def scene_file():
     }
 
 
+def move_curtain(document):
+    """Draws a curtain of the lit row open to one side, so that the sun gets into the aisle, and shut again."""
+    node, (x, y, z) = document.node_named("curtain 0.4")
+    half, folded = BAY_LONG / 2 - 1.75 * RADIUS[0] / 2, 0.25
+    still, shut, open_ = (0, 0, 0), ((1, 1, 1), (x, y, z)), ((folded, 1, 1), (x - (1 - folded) * half, y, z))
+    times, keys = (2, 4, 7, 9), (shut, open_, open_, shut)
+    for i, path in enumerate(("scale", "translation")):
+        values = [row for key in keys for row in (still, key[i], still)]
+        document.animate(node, path, times, values, "CUBICSPLINE")
+
+
+def throw_ball(document):
+    """A ball that bounces down the court, each time less high, and rolls to rest before the basin."""
+    radius, gravity, speed, z = 0.45, 9.81, 1.75, -0.9
+    ball = document.mesh("ball", shapes.turned(shapes.arc((0.0, 0.0), radius, -90, 90, 24)[1:-1], 36, "saffron"))
+    times, values = [], []
+    x, time, fall = -9.4, 0.0, 0.0
+    for rise in (4.6, 3.9, 3.2, 2.5, 1.8, 1.1, 0.5):  # [m/s], upwards as it leaves the floor
+        times.append(time)
+        values += [(speed, -fall, 0), (x, radius, z), (speed, rise, 0)]
+        time += 2 * rise / gravity
+        x += speed * 2 * rise / gravity
+        fall = rise
+    for wait, going in ((0, speed), (10 - time, 0)):  # the last stretch slows down evenly
+        time += wait
+        x += wait * speed / 2
+        times.append(time)
+        values += [(going, -fall if going else 0, 0), (x, radius, z), (going, 0, 0)]
+    node = document.node("ball", ball, values[1])
+    document.animate(node, "translation", times, values, "CUBICSPLINE")
+
+
+def living_scene_file():
+    """The atrium while its sun crosses the sky and someone walks down the court."""
+    return {
+        "model": "atrium_living.gltf",
+        "exposure": -0.2,
+        "cameras": [{
+            "name": "walk", "vertical_fov_degrees": 60, "interpolation": "smooth", "keys": [
+                {"time": 0, "eye": [-10.2, 1.7, 1.4], "target": [-5.0, 1.6, -0.8]},
+                {"time": 4, "eye": [-6.4, 1.7, 1.9], "target": [-1.0, 1.5, -2.2]},
+                {"time": 7, "eye": [-2.6, 1.7, 1.6], "target": [2.6, 1.7, -2.4]},
+                {"time": 10, "eye": [0.6, 1.8, 1.9], "target": [6.0, 2.0, -1.6]}]}],
+        "lights": [{
+            "name": "sun", "kind": "directional", "keys": [
+                {"time": 0, "direction": [0.52, -0.84, -0.15], "illuminance_lux": 12.0, "colour": [1.0, 0.80, 0.58]},
+                {"time": 5, "direction": [0.0, -0.98, -0.18], "illuminance_lux": 16.0, "colour": [1.0, 0.95, 0.86]},
+                {"time": 10, "direction": [-0.52, -0.84, -0.15], "illuminance_lux": 12.0,
+                 "colour": [1.0, 0.80, 0.58]}]}],
+        "cascades": {"count": 3, "size_metres": 25.0},
+    }
+
+
+def write_scene(folder, name, scene):
+    with open(os.path.join(folder, name), "w", encoding="utf-8", newline="\n") as file:
+        json.dump(scene, file, indent=2)
+        file.write("\n")
+
+
 def main(folder):
     document = Document("clpv scenes/generate_atrium.py")
     add_materials(document)
@@ -290,10 +350,12 @@ def main(folder):
     place_curtains(document)
     place_banners(document)
     place_furniture(document)
-    document.write(os.path.join(folder, "atrium.glb"))
-    with open(os.path.join(folder, "atrium.json"), "w", encoding="utf-8", newline="\n") as file:
-        json.dump(scene_file(), file, indent=2)
-        file.write("\n")
+    glb = document.write(os.path.join(folder, "atrium.glb"))
+    write_scene(folder, "atrium.json", scene_file())
+    move_curtain(document)
+    throw_ball(document)
+    document.write_beside(os.path.join(folder, "atrium_living.gltf"), "atrium.glb", glb)
+    write_scene(folder, "atrium_living.json", living_scene_file())
 
 
 if __name__ == "__main__":

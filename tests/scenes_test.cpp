@@ -81,12 +81,14 @@ TEST_P(Generator, WritesTheFilesThatAreThere) {
       test::run("PYTHONDONTWRITEBYTECODE=1 python3 " + (kScenes / ("generate_" + name + ".py")).string() +
                 " " + folder.path().string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const std::string suffix : {".glb", ".json"}) {
-    const std::string made = test::read_file(folder.path() / (name + suffix));
-    ASSERT_FALSE(made.empty());
-    EXPECT_TRUE(made == test::read_file(kScenes / (name + suffix)))
-        << name << suffix << " differs from the committed one";
+  int files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
+    const fs::path file = entry.path().filename();
+    EXPECT_TRUE(test::read_file(entry.path()) == test::read_file(kScenes / file))
+        << file << " differs from the committed one";
+    ++files;
   }
+  EXPECT_EQ(files, name == "atrium" ? 4 : 2) << "a model and a scene file each";
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
@@ -190,6 +192,60 @@ TEST(Cornell, HasThePublishedSizeAndItsLightsReachBothWalls) {
   // The published camera looks along +z with y up: x grows to its left, where the red wall is.
   const glm::vec3 right = glm::cross(scene.cameras[1].forward, scene.cameras[1].up);
   EXPECT_LT(right.x, -0.99f);
+}
+
+/// The least corner of what moves of a scene, and the greatest.
+std::pair<glm::vec3, glm::vec3> box_of(const Scene& scene, const Part& part) {
+  glm::vec3 lower(kFar), upper(-kFar);
+  for (std::uint32_t i = 0; i < part.vertices; ++i) {
+    const float* p = scene.vertices[part.first_vertex + i].position;
+    lower = glm::min(lower, glm::vec3(p[0], p[1], p[2]));
+    upper = glm::max(upper, glm::vec3(p[0], p[1], p[2]));
+  }
+  return {lower, upper};
+}
+
+TEST(AtriumLiving, StandsAsTheAtriumDoes) {
+  const Scene still = load_scene(kScenes / "atrium.json"),
+              living = load_scene(kScenes / "atrium_living.json");
+  ASSERT_EQ(living.moving.size(), 2u) << "a curtain and a ball";
+  EXPECT_EQ(living.triangles.size(), still.triangles.size() + living.moving.back().triangles);
+  EXPECT_EQ(living.textures.size(), still.textures.size());
+  EXPECT_EQ(living.lower, still.lower);
+  EXPECT_EQ(living.upper, still.upper);
+}
+
+TEST(AtriumLiving, TheBallBouncesOnTheFloorAndTheWayIsFree) {
+  MovingScene moving(kScenes / "atrium_living.json");
+  float highest = 0;
+  for (int i = 0; i <= 200; ++i) {
+    moving.pose(i / 20.0);
+    const auto [lower, upper] = box_of(moving.scene(), moving.scene().moving.back());
+    EXPECT_GT(lower.y, -1e-4f) << i / 20.0 << " s";
+    EXPECT_NEAR(upper.y - lower.y, 0.9f, 1e-2f) << i / 20.0 << " s";
+    highest = std::max(highest, lower.y);
+  }
+  EXPECT_NEAR(highest, 4.6 * 4.6 / (2 * 9.81), 1e-2) << "v^2 / 2g";
+  for (const double seconds : {0.0, 2.5, 5.0, 7.5, 10.0}) {
+    moving.pose(seconds);
+    const RayScene rays(moving.scene());
+    const glm::vec3 eye = moving.scene().camera("walk").eye;
+    for (int i = 0; i < 500; ++i)
+      EXPECT_FALSE(rays.intersect(eye, spread(i, 500), 0, 0.5f, Faces::both)) << seconds << " s";
+    EXPECT_LT(check_fronts(rays, eye), 2000) << "no way out but the sky";
+  }
+}
+
+TEST(AtriumLiving, TheCurtainLetsTheSunIntoTheAisle) {
+  MovingScene moving(kScenes / "atrium_living.json");
+  moving.pose(5.5);
+  // From the aisle's floor behind the curtain's middle, against the light.
+  const float* light = moving.scene().lights[0].data.direction;
+  const auto [lower, upper] = box_of(moving.scene(), moving.scene().moving.front());
+  const glm::vec3 behind(lower.x + 1.6f, 0.5f, lower.z - 0.15f), to_sun(-light[0], -light[1], -light[2]);
+  EXPECT_FALSE(RayScene(moving.scene()).intersect(behind, to_sun, 0, kFar, Faces::both)) << "open";
+  moving.pose(0);
+  EXPECT_TRUE(RayScene(moving.scene()).intersect(behind, to_sun, 0, kFar, Faces::both)) << "shut";
 }
 
 }  // namespace

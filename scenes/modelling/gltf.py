@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Writes meshes, nodes and materials as one .glb, and PNG textures: bytes that depend on nothing but the input."""
+"""Writes meshes, nodes, materials and animations as one .glb, or as a .gltf that shares one's bytes, and PNG textures: bytes
+that depend on nothing but the input."""
+import base64
 import json
 import struct
 import zlib
@@ -72,16 +74,51 @@ class Document:
             entry["scale"] = list(factor)
         self._json["scenes"][0]["nodes"].append(len(self._json["nodes"]))
         self._json["nodes"].append(entry)
+        return len(self._json["nodes"]) - 1
+
+    def node_named(self, name):
+        """Its index and where it stands."""
+        index = next(i for i, node in enumerate(self._json["nodes"]) if node["name"] == name)
+        return index, self._json["nodes"][index].get("translation", [0, 0, 0])
+
+    def animate(self, node, path, times, values, interpolation="LINEAR"):
+        """Moves a node's "translation", "rotation" or "scale" through keys; of a CUBICSPLINE three rows of values a key."""
+        animations = self._json.setdefault("animations", [{"name": "life", "samplers": [], "channels": []}])
+        samplers, channels = animations[0]["samplers"], animations[0]["channels"]
+        channels.append({"sampler": len(samplers), "target": {"node": node, "path": path}})
+        samplers.append({"input": self._floats([(t,) for t in times], "SCALAR", bounds=True, target=None),
+                         "output": self._floats(values, f"VEC{len(values[0])}", target=None),
+                         "interpolation": interpolation})
 
     def write(self, path):
-        self._json["buffers"] = [{"byteLength": len(self._blob)}]
-        text = json.dumps(self._json, separators=(",", ":")).encode()
+        """As a .glb. Returns it, for write_beside."""
+        document = {**self._json, "buffers": [{"byteLength": len(self._blob)}]}
+        text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         blob = bytes(self._blob) + b"\0" * (-len(self._blob) % 4)
+        glb = struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(blob))
+        glb += struct.pack("<I4s", len(text), b"JSON") + text
+        glb += struct.pack("<I4s", len(blob), b"BIN\0") + blob
         with open(path, "wb") as file:
-            file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(blob)))
-            file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-            file.write(struct.pack("<I4s", len(blob), b"BIN\0") + blob)
+            file.write(glb)
+        return glb
+
+    def write_beside(self, path, name, glb):
+        """As a .gltf that takes what was there when `glb` was written from that file, called `name`, and holds the rest."""
+        start = 12 + 8 + struct.unpack("<I", glb[12:16])[0] + 8
+        shared = len(glb) - start
+        views = []
+        for view in self._json["bufferViews"]:
+            own = view["byteOffset"] >= shared
+            views.append({**view, "buffer": 1 if own else 0,
+                          "byteOffset": view["byteOffset"] - shared if own else view["byteOffset"] + start})
+        rest = bytes(self._blob[shared:])
+        data = "data:application/octet-stream;base64," + base64.b64encode(rest).decode()
+        document = {**self._json, "bufferViews": views,
+                    "buffers": [{"uri": name, "byteLength": len(glb)}, {"uri": data, "byteLength": len(rest)}]}
+        with open(path, "w", encoding="utf-8", newline="\n") as file:
+            json.dump(document, file, separators=(",", ":"))
+            file.write("\n")
 
     def _view(self, data, target=None):
         self._blob += b"\0" * (-len(self._blob) % 4)
@@ -97,12 +134,12 @@ class Document:
             {"bufferView": view, "componentType": component, "count": count, "type": kind, **more})
         return len(self._json["accessors"]) - 1
 
-    def _floats(self, rows, kind, bounds=False):
+    def _floats(self, rows, kind, bounds=False, target=ARRAY_BUFFER):
         data = b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows)
         more = {}
         if bounds:
             more = {"min": [min(c) for c in zip(*rows)], "max": [max(c) for c in zip(*rows)]}
-        return self._accessor(self._view(data, ARRAY_BUFFER), FLOAT, len(rows), kind, **more)
+        return self._accessor(self._view(data, target), FLOAT, len(rows), kind, **more)
 
     def _indices(self, indices):
         wide = max(indices) > 65534  # 65535 restarts a strip in some interfaces, glTF forbids it
