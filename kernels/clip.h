@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Clips a triangle against the near plane and the guard band, and turns points of a view into ClpvProjected.
+// Clips a triangle against the near plane and the guard band.
 //
 // A point is (x, y, w, z): along right and up [m], what its screen position is divided by (perspective: the
 // depth; orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point,
@@ -8,39 +8,13 @@
 #ifndef CLPV_CLIP_H
 #define CLPV_CLIP_H
 
-#pragma OPENCL FP_CONTRACT OFF
-
-#include "shared/raster.h"
-#include "triangle.h"
+#include "project.h"
 
 #define CLPV_CLIP_PLANES 5
 #define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may, at worst, add a few
 
-static inline float4 clpv_view_point(const ClpvView view, __global const ClpvVertex* vertex) {
-  const Vec p = vec_minus(vec_load(vertex->position), vec_of(view.eye));
-  const float z = vec_dot(p, vec_of(view.forward));
-  return (float4)(vec_dot(p, vec_of(view.right)), vec_dot(p, vec_of(view.up)), CLPV_ORTHOGRAPHIC ? 1.0f : z,
-                  z);
-}
-
-// How far the guard band reaches on the screen, in units of clpv_screen().
-static inline float2 clpv_guard(const ClpvView view) {
-  return (float2)(view.half_width / (float)view.width, view.half_height / (float)view.height) *
-         (2.0f * CLPV_GUARD_PIXELS);
-}
-
-static inline int clpv_subpixel(const float screen, const float half_extent, const float pixels) {
-  return convert_int_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
-}
-
-static inline ClpvProjected clpv_project(const ClpvView view, const float4 p) {
-  ClpvProjected projected;
-  projected.x = clpv_subpixel(p.x / p.z, view.half_width, (float)view.width);
-  projected.y = clpv_subpixel(-p.y / p.z, view.half_height, (float)view.height);
-  projected.key = CLPV_ORTHOGRAPHIC ? p.w : -1.0f / p.w;
-  projected.where = 0;
-  return projected;
-}
+// The point in the first lane.
+static inline float4 clpv_polygon_corner(const ViewPoint p) { return (float4)(p.x.s0, p.y.s0, p.w.s0, p.z.s0); }
 
 // Signed distance of a point from clipping plane `plane`, negative: cut away.
 static inline float clpv_clip_distance(const ClpvView view, const float4 p, const int plane) {

@@ -78,13 +78,17 @@ static inline void cover_by_small(__global const ClpvRasterTriangle* r, const in
   }
 }
 
-static inline bool none(const int8 lanes) {  // any() goes through them one by one on PoCL
-  const long4 pairs = as_long4(lanes);
-  return (pairs.x | pairs.y | pairs.z | pairs.w) == 0;
+// The farthest key of a tile's pixels.
+static inline float farthest_of(__global const float8* keys) {
+  float8 most = keys[0];
+  for (int row = 1; row < CLPV_TILE; ++row) most = keys[row] > most ? keys[row] : most;
+  const float4 four = most.lo > most.hi ? most.lo : most.hi;
+  const float2 two = four.lo > four.hi ? four.lo : four.hi;
+  return two.x > two.y ? two.x : two.y;
 }
 
 __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
-                         __global const uint* ends, __global const uint* binned,
+                         __global const uint* starts, __global const uint2* binned,
                          __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global float8* keys, __global uint8* seen) {
@@ -104,9 +108,11 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   }
   const float8 column = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
   int8 covered[CLPV_TILE];
-  const uint end = ends[tile];
-  for (uint i = tile == 0 ? 0 : ends[tile - 1]; i < end; ++i) {
-    __global const ClpvRasterTriangle* r = list + binned[i];
+  const uint end = starts[tile + 1];
+  float hidden = farthest_of(tile_keys);  // what lies beyond is not seen
+  for (uint i = starts[tile]; i < end; ++i) {
+    if (as_float(binned[i].y) > hidden) continue;
+    __global const ClpvRasterTriangle* r = list + binned[i].x;
     const uint triangle = r->triangle & CLPV_TRIANGLE_INDEX;
     const bool masked = (r->triangle & CLPV_TRIANGLE_MASKED) != 0;
     const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
@@ -134,6 +140,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       tile_keys[row] = select(old, key, closer);
       tile_seen[row] = select(old_seen, (uint8)(triangle), closer);
     }
+    hidden = farthest_of(tile_keys);
   }
 }
 

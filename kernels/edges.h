@@ -13,15 +13,20 @@ typedef struct {
   long step_x, step_y;  // from a pixel to the next one right, and below
 } Edge;
 
-static inline Edge edge_at(__global const ClpvRasterTriangle* r, const int i, const int px, const int py) {
-  const int dx = r->x[i + 1] - r->x[i], dy = r->y[i + 1] - r->y[i];
+// From corner (x0, y0) to (x1, y1), at pixel (px, py).
+static inline Edge edge_between(const int x0, const int y0, const int x1, const int y1, const int px, const int py) {
+  const int dx = x1 - x0, dy = y1 - y0;
   const int x = px * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2, y = py * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2;
   const bool top_left = dy < 0 || (dy == 0 && dx > 0);
   Edge edge;
-  edge.value = (long)dx * (y - r->y[i]) - (long)dy * (x - r->x[i]) - (top_left ? 0 : 1);
+  edge.value = (long)dx * (y - y0) - (long)dy * (x - x0) - (top_left ? 0 : 1);
   edge.step_x = -(long)dy * CLPV_SUBPIXELS;
   edge.step_y = (long)dx * CLPV_SUBPIXELS;
   return edge;
+}
+
+static inline Edge edge_at(__global const ClpvRasterTriangle* r, const int i, const int px, const int py) {
+  return edge_between(r->x[i], r->y[i], r->x[i + 1], r->y[i + 1], px, py);
 }
 
 // The largest value the edge function takes in a tile, `edge` being at its upper left pixel.

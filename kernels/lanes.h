@@ -34,4 +34,13 @@ static inline void gather_rows(__global const float4* from, const uint8 at, Rows
   ((float8)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
             (rows).r7.c))
 
+// Whether a comparison holds in no lane. any() goes through them one by one on PoCL.
+static inline bool none(const int8 lanes) {
+  const long4 pairs = as_long4(lanes);
+  return (pairs.x | pairs.y | pairs.z | pairs.w) == 0;
+}
+
+// PoCL leaves large functions out of line.
+#define CLPV_INLINE static inline __attribute__((always_inline))
+
 #endif

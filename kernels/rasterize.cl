@@ -1,162 +1,236 @@
 // SPDX-License-Identifier: MIT
-// From a scene's triangles to lists of those over each tile of a view.
+// From a scene's triangles to those over each tile of a view.
 //
-//   project_vertices   every vertex onto the screen, snapped to 1/256 pixel
-//   set_up             triangles that may cover a pixel's centre -> a list of ClpvRasterTriangle
-//   set_up_clipped     the same for those that cross the near plane or the guard band
-//   bin_triangles      counts, then lists, the triangles over each tile of 8 x 8 pixels
-// and draw_tiles.cl finds out which of them each pixel sees, resolve.cl what that looks like.
+//   set_up           triangles that may cover a pixel's centre -> a list of ClpvRasterTriangle, and for each of them
+//                    the tiles of 8 x 8 pixels that it is over -> entries
+//   set_up_clipped   the same for those that cross the near plane or the guard band
+// Then bin.cl sorts the entries by tile, draw_tiles.cl finds out which triangle each pixel sees, resolve.cl what that
+// looks like.
 //
-// Lists are in no particular order: atomics hand out their places.
+// A work-item takes eight triangles side by side. Lists are in no particular order: atomics hand out their places, once
+// a work-item. counts[CLPV_LISTED] and so on tell how many there are, beyond what lists hold too: the host then makes
+// them longer and starts again.
 #include "clip.h"
-#include "edges.h"
+#include "enter.h"
 
-// Bits of a vertex: outside which borders of the view it is.
-static inline uint where_is(const ClpvView view, const float4 p) {
-  const float2 guard = clpv_guard(view);
-  const float2 border = (float2)(view.half_width, view.half_height) * p.z;
-  uint where = 0;
-  if (p.x < -border.x) where |= CLPV_LEFT;
-  if (p.x > border.x) where |= CLPV_RIGHT;
-  if (p.y > border.y) where |= CLPV_ABOVE;
-  if (p.y < -border.y) where |= CLPV_BELOW;
-  if (p.w > view.far_depth) where |= CLPV_BEYOND;
-  if (!CLPV_ORTHOGRAPHIC && p.w < view.near_depth) where |= CLPV_BEHIND;
-  if (!(fabs(p.x) <= guard.x * p.z && fabs(p.y) <= guard.y * p.z)) where |= CLPV_OUT_OF_GUARD;
-  return where;
-}
+// Eight triangles of the scene on the screen.
+typedef struct {
+  Corner a, b, c;
+  Face face;
+  uint8 triangle;  // index in the scene
+  uint8 flags;     // of its material
+} Eight;
 
-__kernel void project_vertices(const ClpvView view, const uint count, __global const ClpvVertex* vertices,
-                               __global ClpvProjected* projected) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const float4 p = clpv_view_point(view, vertices + i);
-  const uint where = where_is(view, p);
-  ClpvProjected result = {0, 0, 0.0f, 0};
-  if ((where & CLPV_NEEDS_CLIPPING) == 0) result = clpv_project(view, p);
-  result.where = where;
-  projected[i] = result;
-}
+// Pixels that triangles may cover: those whose centres lie in the box about their corners.
+typedef struct {
+  int8 left, right, top, bottom;
+  int8 small;  // no side longer than CLPV_SMALL_PIXELS
+} Box;
 
-static inline Face face_of(const ClpvView view, __global const ClpvVertex* vertices, const ClpvTriangle t) {
-  return clpv_face(view, vec_load(vertices[t.vertex[0]].position), vec_load(vertices[t.vertex[1]].position),
-                   vec_load(vertices[t.vertex[2]].position));
-}
-
-// Twice the signed area in squared sub-pixels; positive: clockwise on the screen, where y points down.
-static inline long screen_area(const ClpvProjected a, const ClpvProjected b, const ClpvProjected c) {
-  return (long)(b.x - a.x) * (c.y - a.y) - (long)(c.x - a.x) * (b.y - a.y);
-}
+static inline int8 least(const int8 a, const int8 b, const int8 c) { return min(a, min(b, c)); }
+static inline int8 most(const int8 a, const int8 b, const int8 c) { return max(a, max(b, c)); }
 
 // First pixel whose centre is at or after a sub-pixel coordinate, last one whose centre is at or before it.
-static inline int first_centre(const int at) {
-  return (at + CLPV_SUBPIXELS / 2 - 1) >> 8;
-}
-static inline int last_centre(const int at) {
-  return (at - CLPV_SUBPIXELS / 2) >> 8;
+static inline int8 first_centre(const int8 at) { return (at + CLPV_SUBPIXELS / 2 - 1) >> 8; }
+static inline int8 last_centre(const int8 at) { return (at - CLPV_SUBPIXELS / 2) >> 8; }
+
+static inline Box box_of(const ClpvView view, const Eight t) {
+  const int8 least_x = least(t.a.x, t.b.x, t.c.x), least_y = least(t.a.y, t.b.y, t.c.y);
+  const int8 most_x = most(t.a.x, t.b.x, t.c.x), most_y = most(t.a.y, t.b.y, t.c.y);
+  Box box;
+  box.left = max(first_centre(least_x), (int8)(0));
+  box.right = min(last_centre(most_x), (int8)((int)view.width - 1));
+  box.top = max(first_centre(least_y), (int8)(0));
+  box.bottom = min(last_centre(most_y), (int8)((int)view.height - 1));
+  box.small = (most_x - least_x <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS) &
+              (most_y - least_y <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS);
+  return box;
 }
 
-// Appends a triangle of the screen to the list, unless it covers no pixel's centre or shows its culled back.
-// A count beyond `capacity` tells the host how many there are.
-static inline void append(const ClpvView view, const ClpvProjected a, ClpvProjected b, ClpvProjected c,
-                          const Face face, const uint triangle, const uint flags, const uint cull,
-                          volatile __global uint* count, const uint capacity,
-                          __global ClpvRasterTriangle* list) {
-  const long area = screen_area(a, b, c);
-  if (area == 0 || (area > 0 && cull && !(flags & CLPV_MATERIAL_DOUBLE_SIDED))) return;
-  const int least_x = min(a.x, min(b.x, c.x)), least_y = min(a.y, min(b.y, c.y));
-  const int most_x = max(a.x, max(b.x, c.x)), most_y = max(a.y, max(b.y, c.y));
-  const int left = max(first_centre(least_x), 0), right = min(last_centre(most_x), (int)view.width - 1);
-  const int top = max(first_centre(least_y), 0), bottom = min(last_centre(most_y), (int)view.height - 1);
-  if (left > right || top > bottom) return;
-  const uint at = atomic_inc(count);
-  if (at >= capacity) return;
-  if (area < 0) {
-    const ClpvProjected swapped = b;
-    b = c;
-    c = swapped;
+// The sign of the area on the screen; positive: clockwise, where y points down.
+static inline int8 winding(const Eight t) {
+  const long8 area = convert_long8(t.b.x - t.a.x) * convert_long8(t.c.y - t.a.y) -
+                     convert_long8(t.c.x - t.a.x) * convert_long8(t.b.y - t.a.y);
+  return (convert_int8(area > 0L) & 1) | convert_int8(area < 0L);
+}
+
+// Whether triangles whose box is at most 2 x 2 pixels miss all of their centres; exact, for a third of those do.
+// `tiny`: which these are; the others' coordinates might not fit 32 bits.
+typedef struct {
+  int8 value, step_x, step_y;  // as an Edge's, at the box's upper left pixel; steps across the box
+} TinyEdge;
+
+static inline TinyEdge tiny_edge(const Corner p, const Corner q, const Box box, const int8 tiny) {
+  const int8 dx = (q.x - p.x) & tiny, dy = (q.y - p.y) & tiny;
+  const int8 to_x = (box.left * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.x) & tiny;
+  const int8 to_y = (box.top * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.y) & tiny;
+  const int8 top_left = (dy < 0) | ((dy == 0) & (dx > 0));
+  TinyEdge edge;
+  edge.value = dx * to_y - dy * to_x - 1 - top_left;
+  edge.step_x = -dy * ((box.right - box.left) * CLPV_SUBPIXELS & tiny);
+  edge.step_y = dx * ((box.bottom - box.top) * CLPV_SUBPIXELS & tiny);
+  return edge;
+}
+
+static inline int8 misses(const Eight t, const Box box) {
+  const int8 tiny = box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1);
+  const TinyEdge e0 = tiny_edge(t.a, t.b, box, tiny), e1 = tiny_edge(t.b, t.c, box, tiny),
+                 e2 = tiny_edge(t.c, t.a, box, tiny);
+  const int8 right0 = e0.value + e0.step_x, right1 = e1.value + e1.step_x, right2 = e2.value + e2.step_x;
+  const int8 out = (e0.value | e1.value | e2.value) & (right0 | right1 | right2) &
+                   (e0.value + e0.step_y | e1.value + e1.step_y | e2.value + e2.step_y) &
+                   (right0 + e0.step_y | right1 + e1.step_y | right2 + e2.step_y);
+  return tiny & (out < 0);
+}
+
+// As ClpvRasterTriangles.
+CLPV_INLINE void write_words(const ClpvView view, const Eight t, const Box box, Words* words) {
+  const float8 nearest = fmin(t.a.key, fmin(t.b.key, t.c.key)), farthest = fmax(t.a.key, fmax(t.b.key, t.c.key));
+  const Vec plane = clpv_key_plane(view, t.face, convert_float8(box.left), convert_float8(box.top));
+  const int8 edge_on = ~(isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z));
+  const float8 none = (float8)(0.0f);
+  const uint8 kinds = (as_uint8(box.small) & CLPV_TRIANGLE_SMALL) |
+                      ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uint8)(CLPV_TRIANGLE_MASKED) : (uint8)(0u));
+  vstore8(t.a.x, 0, words->word[0]);
+  vstore8(t.b.x, 0, words->word[1]);
+  vstore8(t.c.x, 0, words->word[2]);
+  vstore8(t.a.x, 0, words->word[3]);
+  vstore8(t.a.y, 0, words->word[4]);
+  vstore8(t.b.y, 0, words->word[5]);
+  vstore8(t.c.y, 0, words->word[6]);
+  vstore8(t.a.y, 0, words->word[7]);
+  vstore8(as_int8(edge_on ? nearest : plane.x), 0, words->word[8]);
+  vstore8(as_int8(edge_on ? none : plane.y), 0, words->word[9]);
+  vstore8(as_int8(edge_on ? none : plane.z), 0, words->word[10]);
+  vstore8(as_int8(nearest), 0, words->word[11]);
+  vstore8(as_int8(farthest), 0, words->word[12]);
+  vstore8(box.left + (box.top << 16), 0, words->word[13]);
+  vstore8(box.right + (box.bottom << 16), 0, words->word[14]);
+  vstore8(as_int8(t.triangle | kinds), 0, words->word[15]);
+}
+
+// Lists those of eight triangles that are wanted, but for those that cover no pixel's centre or show their culled back.
+CLPV_INLINE void append(const ClpvView view, Eight t, int8 lists, const uint cull, volatile __global uint* counts,
+                        const Capacity capacity, __global ClpvRasterTriangle* list, __global uint* entries,
+                        volatile __global uint* places) {
+  const int8 wound = winding(t);
+  const int8 one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;
+  lists &= (wound < 0) | ((wound > 0) & ((cull ? 0 : -1) | ~one_sided));
+  const Box box = box_of(view, t);
+  lists &= (box.left <= box.right) & (box.top <= box.bottom);
+  if (none(lists)) return;
+  const Corner b = t.b, c = t.c;
+  t.b.x = wound < 0 ? c.x : b.x, t.b.y = wound < 0 ? c.y : b.y;
+  t.c.x = wound < 0 ? b.x : c.x, t.c.y = wound < 0 ? b.y : c.y;
+  lists &= ~misses(t, box);
+  if (none(lists)) return;
+  Words words;
+  write_words(view, t, box, &words);
+  list_lanes(view, &words, lists, counts, capacity, list, entries, places);
+}
+
+// Rows of the scene's buffers: a vertex is three of four numbers, a triangle one.
+#define CLPV_MESH                                                          \
+  __global const float4 *vertices, __global const float4 *triangles, \
+      __global const ClpvMaterial *materials
+#define CLPV_LISTS                                                                                            \
+  volatile __global uint *counts, const uint most_listed, __global ClpvRasterTriangle *list, const uint most_entered, \
+      __global uint *entries, volatile __global uint *places, __global uint *to_clip
+
+CLPV_INLINE void position_of(__global const float4* vertices, const uint8 vertex, Vec* position) {
+  Rows rows;
+  gather_rows(vertices, 3u * vertex, &rows);
+  *position = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+}
+
+// Puts the triangles of those lanes aside.
+static inline void put_aside(const int8 lanes, const uint8 triangle, volatile __global uint* counts,
+                             __global uint* to_clip) {
+  int aside[CLPV_LANES];
+  uint index[CLPV_LANES];
+  vstore8(lanes, 0, aside);
+  vstore8(triangle, 0, index);
+  for (int lane = 0; lane < CLPV_LANES; ++lane) {
+    if (aside[lane]) to_clip[atomic_inc(counts + CLPV_TO_CLIP)] = index[lane];
   }
-  ClpvRasterTriangle r;
-  r.x[0] = a.x, r.x[1] = b.x, r.x[2] = c.x, r.x[3] = a.x;
-  r.y[0] = a.y, r.y[1] = b.y, r.y[2] = c.y, r.y[3] = a.y;
-  r.nearest = fmin(a.key, fmin(b.key, c.key));
-  r.farthest = fmax(a.key, fmax(b.key, c.key));
-  const Vec plane = clpv_key_plane(view, face, (float)left, (float)top);
-  const bool edge_on = !isfinite(plane.x) || !isfinite(plane.y) || !isfinite(plane.z);
-  r.key = edge_on ? r.nearest : plane.x;
-  r.key_x = edge_on ? 0.0f : plane.y;
-  r.key_y = edge_on ? 0.0f : plane.z;
-  r.first = (uint)left + ((uint)top << 16);
-  r.last = (uint)right + ((uint)bottom << 16);
-  const bool small = most_x - least_x <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS &&
-                     most_y - least_y <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS;
-  r.triangle = triangle | (small ? CLPV_TRIANGLE_SMALL : 0) |
-               (flags & CLPV_MATERIAL_MASKED ? CLPV_TRIANGLE_MASKED : 0);
-  list[at] = r;
 }
 
-// counts[0]: triangles listed; counts[1]: triangles to clip.
-__kernel void set_up(const ClpvView view, const uint first, const uint count, const uint cull,
-                     __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                     __global const ClpvMaterial* materials, __global const ClpvProjected* projected,
-                     volatile __global uint* counts, const uint capacity, __global ClpvRasterTriangle* list,
-                     __global uint* to_clip) {
-  const uint i = get_global_id(0);
+__kernel void set_up(const ClpvView view, const uint first, const uint count, const uint cull, CLPV_MESH, CLPV_LISTS) {
+  const uint i = get_global_id(0) * CLPV_LANES;
   if (i >= count) return;
-  const ClpvTriangle t = triangles[first + i];
-  const ClpvProjected a = projected[t.vertex[0]], b = projected[t.vertex[1]], c = projected[t.vertex[2]];
-  if (a.where & b.where & c.where & CLPV_OUT_OF_SIGHT) return;
-  if ((a.where | b.where | c.where) & CLPV_NEEDS_CLIPPING) {
-    to_clip[atomic_inc(counts + 1)] = first + i;
-    return;
-  }
-  append(view, a, b, c, face_of(view, vertices, t), first + i, materials[t.material].flags, cull, counts,
-         capacity, list);
+  const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const uint8 triangle = first + min(i + lane, (uint8)(count - 1));
+  Rows rows;
+  gather_rows(triangles, triangle, &rows);
+  Vec a, b, c;
+  position_of(vertices, as_uint8(CLPV_COLUMN(rows, x)), &a);
+  position_of(vertices, as_uint8(CLPV_COLUMN(rows, y)), &b);
+  position_of(vertices, as_uint8(CLPV_COLUMN(rows, z)), &c);
+  const ViewPoint p = view_point(view, a), q = view_point(view, b), r = view_point(view, c);
+  const int8 p_is = where_is(view, p), q_is = where_is(view, q), r_is = where_is(view, r);
+  const int8 there = (i + lane < count) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
+  if (none(there)) return;
+  const int8 clipped = there & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);
+  if (!none(clipped)) put_aside(clipped, triangle, counts, to_clip);
+  const uint8 material = as_uint8(CLPV_COLUMN(rows, w));
+#define CLPV_FLAGS(lane) materials[material.s##lane].flags
+  const uint8 flags = (uint8)(CLPV_FLAGS(0), CLPV_FLAGS(1), CLPV_FLAGS(2), CLPV_FLAGS(3), CLPV_FLAGS(4), CLPV_FLAGS(5),
+                              CLPV_FLAGS(6), CLPV_FLAGS(7));
+  const Eight t = {project(view, p), project(view, q), project(view, r), clpv_face(view, a, b, c), triangle, flags};
+  const Capacity capacity = {most_listed, most_entered};
+  append(view, t, there & ~clipped, cull, counts, capacity, list, entries, places);
 }
 
-__kernel void set_up_clipped(const ClpvView view, const uint count, const uint cull,
-                             __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                             __global const ClpvMaterial* materials, volatile __global uint* counts,
-                             const uint capacity, __global ClpvRasterTriangle* list,
-                             __global const uint* to_clip) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const uint triangle = to_clip[i];
-  const ClpvTriangle t = triangles[triangle];
-  float4 polygon[CLPV_CLIP_CORNERS];
-  for (int k = 0; k < 3; ++k) polygon[k] = clpv_view_point(view, vertices + t.vertex[k]);
-  const int corners = clpv_clip(view, polygon);
-  const Face face = face_of(view, vertices, t);
-  const ClpvProjected apex = clpv_project(view, polygon[0]);
-  for (int k = 2; k < corners; ++k) {
-    append(view, apex, clpv_project(view, polygon[k - 1]), clpv_project(view, polygon[k]), face, triangle,
-           materials[t.material].flags, cull, counts, capacity, list);
+// Corners of a clipped triangle, and room for eight lanes from any of them.
+typedef struct {
+  int x[CLPV_CLIP_CORNERS + CLPV_LANES], y[CLPV_CLIP_CORNERS + CLPV_LANES];
+  float key[CLPV_CLIP_CORNERS + CLPV_LANES];
+} Outline;
+
+static inline void project_polygon(const ClpvView view, const float4* polygon, const int corners, Outline* outline) {
+  for (int k = 0; k < CLPV_CLIP_CORNERS + CLPV_LANES; ++k) {
+    const float4 at = polygon[k < corners ? k : 0];
+    const ViewPoint point = {(float8)(at.x), (float8)(at.y), (float8)(at.w), (float8)(at.z)};
+    const Corner corner = project(view, point);
+    outline->x[k] = corner.x.s0;
+    outline->y[k] = corner.y.s0;
+    outline->key[k] = corner.key.s0;
   }
 }
 
-// One work-item a listed triangle. `fill` 0: counts the tiles it is over in places[tile]; 1: places[tile] is
-// where the tile's next triangle goes in `binned`, and is advanced.
-__kernel void bin_triangles(const uint count, const uint tiles_x, const uint fill,
-                            __global const ClpvRasterTriangle* list, volatile __global uint* places,
-                            __global uint* binned) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const ClpvRasterTriangle r = list[i];
-  const int left = (int)(r.first & 0xffffu) / CLPV_TILE, right = (int)(r.last & 0xffffu) / CLPV_TILE;
-  const int top = (int)(r.first >> 16) / CLPV_TILE, bottom = (int)(r.last >> 16) / CLPV_TILE;
-  const Edge e0 = edge_at(list + i, 0, left * CLPV_TILE, top * CLPV_TILE);
-  const Edge e1 = edge_at(list + i, 1, left * CLPV_TILE, top * CLPV_TILE);
-  const Edge e2 = edge_at(list + i, 2, left * CLPV_TILE, top * CLPV_TILE);
-  const bool one_tile = left == right && top == bottom;
-  for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) {
-      const long dx = CLPV_TILE * (x - left), dy = CLPV_TILE * (y - top);
-      const long inside = (largest_in_tile(e0) + dx * e0.step_x + dy * e0.step_y) |
-                          (largest_in_tile(e1) + dx * e1.step_x + dy * e1.step_y) |
-                          (largest_in_tile(e2) + dx * e2.step_x + dy * e2.step_y);
-      if (inside < 0 && !one_tile) continue;
-      const uint at = atomic_inc(places + (uint)y * tiles_x + (uint)x);
-      if (fill) binned[at] = i;
+static inline Corner outline_from(const Outline* outline, const int k) {
+  const Corner corner = {vload8(0, outline->x + k), vload8(0, outline->y + k), vload8(0, outline->key + k)};
+  return corner;
+}
+
+static inline Corner outline_apex(const Outline* outline) {
+  const Corner corner = {(int8)(outline->x[0]), (int8)(outline->y[0]), (float8)(outline->key[0])};
+  return corner;
+}
+
+// A triangle that was put aside: clipped, it is a fan about its first corner.
+__kernel void set_up_clipped(const ClpvView view, const uint cull, CLPV_MESH, CLPV_LISTS) {
+  const Capacity capacity = {most_listed, most_entered};
+  const int8 lane = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  for (uint i = get_global_id(0); i < counts[CLPV_TO_CLIP]; i += get_global_size(0)) {
+    const uint triangle = to_clip[i];
+    const uint4 t = as_uint4(triangles[triangle]);
+    float4 polygon[CLPV_CLIP_CORNERS];
+    Vec a, b, c;
+    position_of(vertices, (uint8)(t.x), &a);
+    position_of(vertices, (uint8)(t.y), &b);
+    position_of(vertices, (uint8)(t.z), &c);
+    polygon[0] = clpv_polygon_corner(view_point(view, a));
+    polygon[1] = clpv_polygon_corner(view_point(view, b));
+    polygon[2] = clpv_polygon_corner(view_point(view, c));
+    const int corners = clpv_clip(view, polygon);
+    if (corners == 0) continue;
+    Outline outline;
+    project_polygon(view, polygon, corners, &outline);
+    for (int k = 1; k + 1 < corners; k += CLPV_LANES) {
+      const Eight fan = {outline_apex(&outline), outline_from(&outline, k), outline_from(&outline, k + 1),
+                         clpv_face(view, a, b, c), (uint8)(triangle), (uint8)(materials[t.w].flags)};
+      append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries, places);
     }
   }
 }

@@ -9,9 +9,6 @@
 #include "srgb.h"
 #include "vec.h"
 
-// PoCL leaves functions of this size out of line.
-#define CLPV_INLINE static inline __attribute__((always_inline))
-
 // Texture coordinates.
 typedef struct {
   float8 u, v;

@@ -2,17 +2,20 @@
 #include "pipeline/rasterize.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "kernels/shared/raster.h"
 
 namespace clpv {
 namespace {
 
-static_assert(sizeof(ClpvProjected) == CLPV_SIZEOF_PROJECTED &&
-              sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
+static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
 constexpr std::size_t kGroup = 64;
+constexpr std::size_t kLanes = 8;        // triangles a work-item sets up
+constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
+constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
+constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
+const ProgramSource kBin{"bin.cl", {}, {}};
 const cl::NDRange kTileRow(8, 1);  // tiles differ in work: small groups even it out between cores
 
 unsigned tiles_along(unsigned pixels) {
@@ -41,20 +44,43 @@ float largest_flux(const ClpvLight& light, const ClpvView& view) {
 }  // namespace
 
 Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed)
-    : session_(session), scene_(scene), most_listed_(most_listed) {
-  session_.reserve(counts_, 2 * sizeof(cl_uint), "counters of the rasteriser");
+    : session_(session),
+      scene_(scene),
+      most_listed_(most_listed),
+      sum_places_(session, kBin, "sum_places"),
+      start_places_(session, kBin, "start_places"),
+      bin_entries_(session, kBin, "bin_entries") {
+  session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
-  session_.reserve(projected_, scene.vertex_count * sizeof(ClpvProjected), "projected vertices");
-  session_.reserve(listed_, (scene.triangle_count / 2 + kGroup) * sizeof(ClpvRasterTriangle),
-                   "triangles to draw");
+  reserve_list(scene.triangle_count / 2 + kGroup);
+  reserve_entries(scene.triangle_count + kGroup);
+}
+
+void Rasterizer::reserve_list(std::size_t count) {
+  if (count <= list_room()) return;
+  session_.reserve(listed_, (count + count / kSpare) * sizeof(ClpvRasterTriangle), "triangles to draw");
+}
+
+cl_uint Rasterizer::list_room() const {
+  return static_cast<cl_uint>(listed_.bytes() / sizeof(ClpvRasterTriangle));
+}
+
+cl_uint Rasterizer::entry_room() const {
+  return static_cast<cl_uint>(entries_.bytes() / kEntryBytes);
+}
+
+void Rasterizer::reserve_entries(std::size_t count) {
+  if (count <= entry_room()) return;
+  count += count / kSpare;
+  session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
+  session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
 }
 
 Rasterizer::Drawing Rasterizer::make_drawing(bool orthographic) const {
   const Literals literals = Literals().flag("CLPV_ORTHOGRAPHIC", orthographic);
   const ProgramSource list{"rasterize.cl", literals, {}}, draw{"draw_tiles.cl", literals, {}};
-  return {Kernel(session_, list, "project_vertices"), Kernel(session_, list, "set_up"),
-          Kernel(session_, list, "set_up_clipped"),   Kernel(session_, list, "bin_triangles"),
-          Kernel(session_, draw, "draw_tiles"),       Kernel(session_, draw, "resolve_depth")};
+  return {Kernel(session_, list, "set_up"), Kernel(session_, list, "set_up_clipped"),
+          Kernel(session_, draw, "draw_tiles"), Kernel(session_, draw, "resolve_depth")};
 }
 
 Rasterizer::Drawing& Rasterizer::drawing(const ClpvView& view) {
@@ -80,72 +106,63 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
 }
 
 void Rasterizer::find_visible(const Pass& pass) {
-  const std::size_t pixels = padded_pixels(pass.view);
+  const std::size_t pixels = padded_pixels(pass.view), tiles = tile_count(pass.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
-  if (scene_.vertex_count > 0) {
-    drawing(pass.view)
-        .project.set(pass.view, scene_.vertex_count, scene_.vertices, projected_)
-        .launch(scene_.vertex_count, kGroup);
-  }
+  session_.reserve(places_, (tiles + 1) * sizeof(cl_uint), "tiles");
+  session_.reserve(totals_, (tiles / CLPV_TILE_CHUNK + 1) * sizeof(cl_uint), "tiles by chunks");
   draw(pass, 0, scene_.triangle_count, true);
 }
 
-/// Lists the triangles of a range that may cover a pixel, growing the list where it is too short. Returns how
-/// many.
-unsigned Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
-  if (count == 0) return 0;
+/// Lists the triangles of a range that may cover a pixel, and enters them for the tiles they are over.
+void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   Drawing& kernels = drawing(pass.view);
-  const cl_uint cull = pass.cull_back_faces ? 1 : 0;
-  for (;;) {
-    const auto capacity = static_cast<cl_uint>(listed_.bytes() / sizeof(ClpvRasterTriangle));
-    session_.write(counts_, std::vector<cl_uint>(2, 0));
-    kernels.set_up
-        .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials, projected_,
-             counts_, capacity, listed_, to_clip_)
-        .launch(count, kGroup);
-    std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, 2);
-    if (counts[1] > 0) {
-      kernels.set_up_clipped
-          .set(pass.view, counts[1], cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
-               capacity, listed_, to_clip_)
-          .launch(counts[1], kGroup);
-      counts = session_.read<cl_uint>(counts_, 2);
-    }
-    if (counts[0] <= capacity) return counts[0];
-    session_.reserve(listed_, counts[0] * sizeof(ClpvRasterTriangle), "triangles to draw");
-  }
+  const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
+  session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
+  session_.fill_zero(places_, tile_count(pass.view) * sizeof(cl_uint));
+  if (count == 0) return;
+  kernels.set_up
+      .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
+           list_room(), listed_, entry_room(), entries_, places_, to_clip_)
+      .launch((count + kLanes - 1) / kLanes, kGroup);
+  kernels.set_up_clipped
+      .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
+           listed_, entry_room(), entries_, places_, to_clip_)
+      .launch(kClippers, kGroup);
 }
 
-void Rasterizer::bin(const ClpvView& view, unsigned listed, bool fill) {
-  if (listed == 0) return;
-  drawing(view)
-      .bin.set(listed, tiles_along(view.width), cl_uint{fill}, listed_, places_, binned_)
-      .launch(listed, kGroup);
+/// Sorts what set_up() entered by tile.
+void Rasterizer::bin(const ClpvView& view) {
+  const unsigned tiles = tile_count(view);
+  const std::size_t chunks = (tiles + CLPV_TILE_CHUNK - 1) / CLPV_TILE_CHUNK;
+  sum_places_.set(tiles, places_, totals_).launch(chunks, kGroup);
+  start_places_.set(tiles, places_, totals_).launch(chunks, kGroup);
+  const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
+  bin_entries_.set(counts_, list_room(), entry_room(), entries_, places_, binned_)
+      .launch(groups * kGroup, kGroup);
+}
+
+/// Lists a range of triangles by tile, growing the lists where they are too short; false where they would
+/// grow too long.
+bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
+  for (;;) {
+    set_up(pass, first, count);
+    bin(pass.view);
+    const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
+    const std::size_t listed = counts[CLPV_LISTED], entered = counts[CLPV_ENTERED];
+    if (count > 1 && (counts[CLPV_ENTERED_TOO_MANY] > 0 || entered > most_listed_)) return false;
+    if (listed <= list_room() && entered <= entry_room()) return true;
+    reserve_list(listed);
+    reserve_entries(entered);
+  }
 }
 
 /// Draws a range of triangles; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
 /// lists would grow too long.
 void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
-  const ClpvView& view = pass.view;
-  const unsigned listed = set_up(pass, first, count);
-  session_.reserve(places_, tile_count(view) * sizeof(cl_uint), "tiles");
-  session_.reserve(binned_, sizeof(cl_uint), "triangles by tile");
-  session_.write(places_, std::vector<cl_uint>(tile_count(view), 0));
-  bin(view, listed, false);
-  std::vector<cl_uint> places = session_.read<cl_uint>(places_, tile_count(view));
-  const std::size_t total = std::accumulate(places.begin(), places.end(), std::size_t{0});
-  if (total > most_listed_ && count > 1) {
-    draw(pass, first, count / 2, fresh);
-    draw(pass, first + count / 2, count - count / 2, false);
-    return;
-  }
-  // Where each tile's list starts, one after another.
-  std::exclusive_scan(places.begin(), places.end(), places.begin(), cl_uint{0});
-  session_.write(places_, places);
-  session_.reserve(binned_, total * sizeof(cl_uint), "triangles by tile");
-  bin(view, listed, true);
-  draw_tiles(view, fresh);
+  if (list(pass, first, count)) return draw_tiles(pass.view, fresh);
+  draw(pass, first, count / 2, fresh);
+  draw(pass, first + count / 2, count - count / 2, false);
 }
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {

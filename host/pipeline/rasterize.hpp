@@ -48,7 +48,7 @@ class Rasterizer {
 
   /// Kernels of one projection, which is in their code.
   struct Drawing {
-    Kernel project, set_up, set_up_clipped, bin, draw_tiles, resolve_depth;
+    Kernel set_up, set_up_clipped, draw_tiles, resolve_depth;
   };
   Drawing make_drawing(bool orthographic) const;
   Drawing& drawing(const ClpvView& view);
@@ -59,19 +59,25 @@ class Rasterizer {
   };
   Kernel& resolve(const Resolving& wanted);
 
+  void reserve_list(std::size_t count);
+  void reserve_entries(std::size_t count);
+  cl_uint list_room() const;   ///< triangles there is room for
+  cl_uint entry_room() const;  ///< and entries
   void clear(Surface& surface);
   void find_visible(const Pass& pass);
   void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
-  unsigned set_up(const Pass& pass, unsigned first, unsigned count);
+  bool list(const Pass& pass, unsigned first, unsigned count);
+  void set_up(const Pass& pass, unsigned first, unsigned count);
+  void bin(const ClpvView& view);
   void draw_tiles(const ClpvView& view, bool fresh);
-  void bin(const ClpvView& view, unsigned listed, bool fill);
 
   Session& session_;
   SceneBuffers scene_;
   std::size_t most_listed_;
   std::map<bool, Drawing> drawing_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
-  Buffer projected_, listed_, to_clip_, counts_, places_, binned_, keys_, seen_;
+  Kernel sum_places_, start_places_, bin_entries_;
+  Buffer listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
 };
 
 }  // namespace clpv

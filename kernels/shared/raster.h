@@ -26,27 +26,35 @@
 // Up to this size the edge functions of a triangle fit 32 bits, as far as a tile beside it.
 #define CLPV_SMALL_PIXELS 64
 
-typedef struct {
-  int x, y;            // 1/CLPV_SUBPIXELS pixel, from the left and top border; unset where it needs clipping
-  float key;           // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
-  unsigned int where;  // bits as above
-} ClpvProjected;
-
-#define CLPV_SIZEOF_PROJECTED 16
-
 // In `triangle`, beside its index in the scene:
 #define CLPV_TRIANGLE_MASKED 0x80000000u  // its material has holes
 #define CLPV_TRIANGLE_SMALL 0x40000000u   // no side longer than CLPV_SMALL_PIXELS along x or y
 #define CLPV_TRIANGLE_INDEX 0x3fffffffu
 
 typedef struct {
-  int x[4], y[4];            // corners as in ClpvProjected, clockwise on the screen; the fourth is the first
-  float key, key_x, key_y;   // at pixel `first`, and its change from pixel to pixel
+  int x[4], y[4];            // corners [1/CLPV_SUBPIXELS pixel], clockwise on the screen; the fourth is the first
+  float key, key_x, key_y;   // at pixel `first`, and its change from pixel to pixel: linear, smaller is nearer;
+                             // orthographic: depth, perspective: -1 / depth
   float nearest, farthest;   // least and greatest key of the corners
   unsigned int first, last;  // pixels it may cover: least and greatest x, plus 65536 y
   unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
 #define CLPV_SIZEOF_RASTER_TRIANGLE 64
+#define CLPV_RASTER_WORDS 16
+
+// Counters of a pass: triangles listed, triangles to clip, places for entries, and how often those outgrew 32 bits.
+#define CLPV_LISTED 0
+#define CLPV_TO_CLIP 1
+#define CLPV_ENTERED 2
+#define CLPV_ENTERED_TOO_MANY 3
+#define CLPV_RASTER_COUNTERS 4
+
+// An entry is four words: a tile or CLPV_NO_TILE, which one of the tile's it is, the triangle's place in the list, and
+// its least key. Sorted by tile, the last two are left.
+#define CLPV_NO_TILE 0xffffffffu
+#define CLPV_ENTRY_WORDS 4
+#define CLPV_ENTRY_GROUP 1024u  // a work-group sorts
+#define CLPV_TILE_CHUNK 256u    // tiles that a work-item adds up
 
 #endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// From the scene onto the screen, eight points at a time (lanes.h).
+//
+// Two triangles that share a corner must have it at the same place, bit by bit, whichever lane it is in: nothing is
+// fused.
+#ifndef CLPV_PROJECT_H
+#define CLPV_PROJECT_H
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#include "lanes.h"
+#include "shared/raster.h"
+#include "triangle.h"
+
+// Points relative to the view.
+typedef struct {
+  float8 x, y, z;  // along right, up and forward [m]
+  float8 w;        // what x and y are divided by: perspective: the depth z; orthographic: 1
+} ViewPoint;
+
+static inline ViewPoint view_point(const ClpvView view, const Vec position) {
+  const Vec p = vec_minus(position, vec_of(view.eye));
+  ViewPoint point;
+  point.x = vec_dot(p, vec_of(view.right));
+  point.y = vec_dot(p, vec_of(view.up));
+  point.z = vec_dot(p, vec_of(view.forward));
+  point.w = CLPV_ORTHOGRAPHIC ? (float8)(1.0f) : point.z;
+  return point;
+}
+
+// How far the guard band reaches on the screen, in units of clpv_screen().
+static inline float2 clpv_guard(const ClpvView view) {
+  return (float2)(view.half_width / (float)view.width, view.half_height / (float)view.height) *
+         (2.0f * CLPV_GUARD_PIXELS);
+}
+
+// Outside which borders of the view the points are: CLPV_LEFT and so on.
+static inline int8 where_is(const ClpvView view, const ViewPoint p) {
+  const float2 guard = clpv_guard(view);
+  const float8 width = view.half_width * p.w, height = view.half_height * p.w;
+  int8 where = ((p.x < -width) & CLPV_LEFT) | ((p.x > width) & CLPV_RIGHT) | ((p.y > height) & CLPV_ABOVE) |
+               ((p.y < -height) & CLPV_BELOW) | ((p.z > view.far_depth) & CLPV_BEYOND);
+  if (!CLPV_ORTHOGRAPHIC) where |= (p.z < view.near_depth) & CLPV_BEHIND;
+  const int8 in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
+  return where | (~in_guard & CLPV_OUT_OF_GUARD);
+}
+
+// Corners of eight triangles on the screen.
+typedef struct {
+  int8 x, y;   // 1/CLPV_SUBPIXELS pixel, from the left and top border
+  float8 key;  // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
+} Corner;
+
+static inline int8 subpixel(const float8 screen, const float half_extent, const float pixels) {
+  return convert_int8_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
+}
+
+static inline Corner project(const ClpvView view, const ViewPoint p) {
+  Corner corner;
+  corner.x = subpixel(p.x / p.w, view.half_width, (float)view.width);
+  corner.y = subpixel(-p.y / p.w, view.half_height, (float)view.height);
+  corner.key = CLPV_ORTHOGRAPHIC ? p.z : -1.0f / p.z;
+  return corner;
+}
+
+#endif
