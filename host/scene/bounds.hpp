@@ -39,6 +39,8 @@ inline constexpr std::uint64_t kSparseElements = 64ull << 20;
 // Animation: times and values of all curves of a model, 8 bytes each, and keys of one thing in a scene file. Times [s]: a
 // day is 1e5.
 inline constexpr std::uint64_t kKeyNumbers = 16ull << 20;
+inline constexpr std::uint64_t kMorphNumbers = 64ull << 20;  // of morph targets, 4 bytes each
+inline constexpr std::size_t kJoints = 1u << 16;             // of all skins
 inline constexpr std::size_t kSceneKeys = 1u << 16;
 inline constexpr double kSeconds = 1e6;
 

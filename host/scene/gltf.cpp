@@ -28,11 +28,11 @@ Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Motio
   }
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
-  const std::vector<glm::dmat4> to_world = motion.tree.to_world(0);
+  PosedTree posed(motion.tree, 0);
   const MaterialSet materials = read_materials(document, notes);
   auto textures = std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
-  append_meshes(document, to_world, materials, scene, motion, notes);  // while the images are decoded
-  append_views(document, to_world, metres_per_unit, scene, motion, notes);
+  append_meshes(document, posed, materials, scene, motion, notes);  // while the images are decoded
+  append_views(document, posed, metres_per_unit, scene, motion, notes);
   scene.textures = textures.get();
   scene.materials = materials.materials;
   const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);  // glTF's default material

@@ -112,8 +112,8 @@ double GltfAccessor::number(std::size_t element, int component) const {
   return from == nullptr ? 0.0 : load_number(from, accessor_->componentType, accessor_->normalized);
 }
 
-std::uint32_t GltfAccessor::index(std::size_t element) const {
-  const std::uint8_t* from = address(element, 0);
+std::uint32_t GltfAccessor::index(std::size_t element, int component) const {
+  const std::uint8_t* from = address(element, component);
   return from == nullptr ? 0 : load_unsigned(from, accessor_->componentType);
 }
 

@@ -24,8 +24,8 @@ class GltfAccessor {
 
   /// One component of an element (which must be in range): normalised integers in [0, 1] or [-1, 1].
   double number(std::size_t element, int component) const;
-  /// An unsigned integer scalar.
-  std::uint32_t index(std::size_t element) const;
+  /// An unsigned integer.
+  std::uint32_t index(std::size_t element, int component = 0) const;
 
  private:
   const std::uint8_t* address(std::size_t element, int component) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
@@ -22,7 +23,8 @@ class AnimationReader {
 
   /// `place`: "/animations/0".
   void read(const json& animation, const std::string& place) {
-    std::map<std::pair<std::size_t, GltfPath>, CurvePointer> read;  // channels may share a sampler
+    std::map<std::tuple<std::size_t, GltfPath, std::size_t>, CurvePointer>
+        read;  // channels may share a sampler
     for (std::size_t i = 0; i < animation["channels"].size(); ++i) {
       const json& channel = animation["channels"][i];
       const std::string here = fmt::format("{}/channels/{}", place, i);
@@ -33,24 +35,46 @@ class AnimationReader {
                fmt::format("an index into {}/samplers, 0 to {}", place, samplers - 1));
       }
       if (!channel["target"].contains("node")) continue;  // of an extension that is not read
-      if (!moves_nodes(path)) {
-        notes_.add(fmt::format("{}: animates {}, which is not read", here, name_of(path)));
+      const int node = channel["target"]["node"];
+      const std::size_t components = components_of(path, node);
+      if (components == 0) {
+        notes_.add(fmt::format("{}: animates {} of node {}, which has none that are read", here,
+                               name_of(path), node));
         continue;
       }
-      CurvePointer& curve = read[{sampler, path}];
+      CurvePointer& curve = read[{sampler, path, components}];
       if (!curve) {
-        curve =
-            read_curve(animation["samplers"][sampler], path, fmt::format("{}/samplers/{}", place, sampler));
+        curve = read_curve(animation["samplers"][sampler], path, components,
+                           fmt::format("{}/samplers/{}", place, sampler));
       }
-      assign(channel["target"]["node"], path, curve, here);
+      assign(node, path, curve, here);
     }
   }
 
   std::map<int, NodeCurves> take() { return std::move(nodes_); }
 
  private:
+  /// Numbers a key has; 0: nothing of the node that is read.
+  std::size_t components_of(GltfPath path, int node) const {
+    switch (path) {
+      case GltfPath::translation:
+      case GltfPath::scale:
+        return 3;
+      case GltfPath::rotation:
+        return 4;
+      case GltfPath::weights: {
+        const int mesh = document_.model.nodes[static_cast<std::size_t>(node)].mesh;
+        return mesh < 0 ? 0
+                        : document_.model.meshes[static_cast<std::size_t>(mesh)].primitives[0].targets.size();
+      }
+      case GltfPath::pointer:
+        return 0;
+    }
+    return 0;
+  }
+
   void assign(int node, GltfPath path, const CurvePointer& curve, const std::string& place) {
-    if (!document_.model.nodes[static_cast<std::size_t>(node)].matrix.empty()) {
+    if (path != GltfPath::weights && !document_.model.nodes[static_cast<std::size_t>(node)].matrix.empty()) {
       refuse(document_.file, place + "/target/node", fmt::format("node {}, which has a matrix", node),
              "a node with translation, rotation and scale");
     }
@@ -65,28 +89,31 @@ class AnimationReader {
         return curves.rotation;
       case GltfPath::scale:
         return curves.scale;
-      case GltfPath::translation:
       case GltfPath::weights:
+        return curves.weights;
+      case GltfPath::translation:
       case GltfPath::pointer:
         break;
     }
     return curves.translation;
   }
 
-  CurvePointer read_curve(const json& sampler, GltfPath path, const std::string& place) {
+  CurvePointer read_curve(const json& sampler, GltfPath path, std::size_t components,
+                          const std::string& place) {
     const GltfAccessor input(document_, sampler["input"].get<int>()),
         output(document_, sampler["output"].get<int>());
     Curve curve;
     curve.interpolation =
         named<Interpolation>("interpolation", sampler.value("interpolation", std::string("LINEAR")));
-    curve.components = path == GltfPath::rotation ? 4 : 3;
+    curve.components = components;
     check_kinds(sampler, input, output, path, place);
     const std::size_t parts = curve.interpolation == Interpolation::cubic_spline ? 3 : 1;
-    if (output.count() != input.count() * parts) {
+    const std::size_t elements = path == GltfPath::weights ? parts * components : parts;  // of a key
+    if (output.count() != input.count() * elements) {
       refuse(document_.file, place + "/output", fmt::format("{} elements", output.count()),
-             fmt::format("{} for each of the {} times of its input", parts, input.count()));
+             fmt::format("{} for each of the {} times of its input", elements, input.count()));
     }
-    reserve(input.count() + output.count() * curve.components, place);
+    reserve(input.count() * (1 + parts * components), place);
     read_times(input, curve, place + "/input");
     read_values(output, curve, place + "/output");
     if (path == GltfPath::rotation) make_unit(curve, parts, place + "/output");
@@ -107,13 +134,15 @@ class AnimationReader {
     if (input.components() != 1 || !is_float(input)) {
       refuse(document_.file, place + "/input", kind(input, "input"), "SCALAR of floats (componentType 5126)");
     }
-    const bool rotates = path == GltfPath::rotation;
+    const bool integers = path == GltfPath::rotation || path == GltfPath::weights;
     const auto type = document_.model.accessors[static_cast<std::size_t>(sampler["output"].get<int>())].type;
-    if (type != (rotates ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3) ||
-        !(is_float(output) || (rotates && output.normalized()))) {
+    const auto [wanted, name] = path == GltfPath::rotation  ? std::pair(TINYGLTF_TYPE_VEC4, "VEC4")
+                                : path == GltfPath::weights ? std::pair(TINYGLTF_TYPE_SCALAR, "SCALAR")
+                                                            : std::pair(TINYGLTF_TYPE_VEC3, "VEC3");
+    if (type != wanted || !(is_float(output) || (integers && output.normalized()))) {
       refuse(document_.file, place + "/output", kind(output, "output"),
-             rotates ? "VEC4 of floats (componentType 5126) or normalized integers"
-                     : "VEC3 of floats (componentType 5126)");
+             fmt::format("{} of floats (componentType 5126){}", name,
+                         integers ? " or normalized integers" : ""));
     }
   }
 
@@ -141,7 +170,7 @@ class AnimationReader {
   }
 
   void read_values(const GltfAccessor& output, Curve& curve, const std::string& place) const {
-    curve.values.reserve(output.count() * curve.components);
+    curve.values.reserve(output.count() * static_cast<std::size_t>(output.components()));
     for (std::size_t i = 0; i < output.count(); ++i) {
       for (int k = 0; k < output.components(); ++k) {
         curve.values.push_back(output.number(i, k));

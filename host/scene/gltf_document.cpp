@@ -121,7 +121,7 @@ void read_image_places(const json& parsed, GltfDocument& document) {
 
 /// Hands tinygltf what it is to make structs of.
 void parse_model(json parsed, GltfDocument& document) {
-  for (const char* unread : {"buffers", "images", "animations", "skins", "extras"}) parsed.erase(unread);
+  for (const char* unread : {"buffers", "images", "animations", "extras"}) parsed.erase(unread);
   const std::string text = parsed.dump();
   tinygltf::TinyGLTF parser;
   std::string error, warning;

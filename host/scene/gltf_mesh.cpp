@@ -5,17 +5,49 @@
 #include <map>
 
 #include "scene/bounds.hpp"
+#include "scene/gltf_deformation.hpp"
 #include "scene/gltf_primitive.hpp"
+#include "scene/gltf_skin.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
 
+/// Weights of morph targets where no curve says them: the node's, else the mesh's, else none.
+std::vector<double> stored_weights(const GltfDocument& document, const TreeNode& node, std::size_t targets) {
+  const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(node.index)];
+  const bool own = !source.weights.empty();
+  const std::vector<double>& given =
+      own ? source.weights : document.model.meshes[static_cast<std::size_t>(source.mesh)].weights;
+  if (given.empty()) return std::vector<double>(targets, 0.0);
+  if (given.size() != targets) {
+    refuse(
+        document.file,
+        own ? fmt::format("/nodes/{}/weights", node.index) : fmt::format("/meshes/{}/weights", source.mesh),
+        fmt::format("{} weights", given.size()), fmt::format("one for each of {} morph targets", targets));
+  }
+  return given;
+}
+
 class Appender {
  public:
-  Appender(const GltfDocument& document, Scene& scene) : document_(document), scene_(scene) {}
+  Appender(const GltfDocument& document, Scene& scene, Motion& motion, Notes& notes)
+      : document_(document), scene_(scene), motion_(motion), notes_(notes), skins_(document, motion.tree) {}
 
-  /// Makes room for `count` instances of a primitive, or refuses all of them before any is made.
+  /// The primitive at all these nodes; refused before any is made where there is no room.
+  void append(const std::shared_ptr<const LocalPrimitive>& primitive, const std::vector<std::size_t>& nodes,
+              PosedTree& posed) {
+    reserve(*primitive, nodes.size());
+    for (const std::size_t node : nodes) {
+      Instance made = instance(primitive, node);
+      scene_.vertices.resize(scene_.vertices.size() + primitive->vertices.size());
+      scene_.triangles.resize(scene_.triangles.size() + primitive->triangles.size());
+      place(made, posed, scene_);
+      if (moves(made, motion_.tree)) motion_.meshes.push_back(std::move(made));
+    }
+  }
+
+ private:
   void reserve(const LocalPrimitive& primitive, std::size_t count) {
     const std::uint64_t vertices = scene_.vertices.size() + count * primitive.vertices.size();
     const std::uint64_t triangles = scene_.triangles.size() + count * primitive.triangles.size();
@@ -29,17 +61,34 @@ class Appender {
     grow(scene_.triangles, triangles);
   }
 
-  /// The primitive at a node: placed, and where it is in the scene.
-  Instance append(std::shared_ptr<const LocalPrimitive> primitive, int node, const glm::dmat4& to_world) {
-    Instance made{std::move(primitive), node, static_cast<std::uint32_t>(scene_.vertices.size()),
-                  static_cast<std::uint32_t>(scene_.triangles.size())};
-    scene_.vertices.resize(scene_.vertices.size() + made.primitive->vertices.size());
-    scene_.triangles.resize(scene_.triangles.size() + made.primitive->triangles.size());
-    place(made, to_world, document_.file, scene_);
+  Instance instance(const std::shared_ptr<const LocalPrimitive>& primitive, std::size_t node) {
+    Instance made;
+    made.primitive = primitive;
+    made.node = node;
+    made.first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
+    made.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
+    const TreeNode& at = motion_.tree.nodes[node];
+    if (!primitive->targets.empty()) made.weights = stored_weights(document_, at, primitive->targets.size());
+    if (const int skin = document_.model.nodes[static_cast<std::size_t>(at.index)].skin; skin >= 0) {
+      made.skin = skins_.read(skin);
+      if (primitive->influences.empty())
+        notes_.add(fmt::format("{}: has no joints for the skin of /nodes/{}", primitive->place, at.index));
+      check_joints(*primitive, made.skin->joints.size(), skin);
+    }
     return made;
   }
 
- private:
+  void check_joints(const LocalPrimitive& primitive, std::size_t joints, int skin) const {
+    for (std::size_t i = 0; i < primitive.influences.size(); ++i) {
+      for (const std::uint16_t joint : primitive.influences[i].joints) {
+        if (joint < joints) continue;
+        refuse(document_.file, primitive.place + "/attributes/JOINTS_0",
+               fmt::format("joint {} of vertex {}", joint, primitive.vertices[i].source),
+               fmt::format("0 to {}, the joints of /skins/{}", joints - 1, skin));
+      }
+    }
+  }
+
   /// Reserves geometrically, as push_back would: exact reserves for each primitive would copy all at each.
   template <typename T>
   static void grow(std::vector<T>& values, std::uint64_t size) {
@@ -48,37 +97,43 @@ class Appender {
 
   const GltfDocument& document_;
   Scene& scene_;
+  Motion& motion_;
+  Notes& notes_;
+  SkinReader skins_;
 };
+
+/// The primitives of a mesh have their morph targets in common.
+void check_targets(const GltfDocument& document, std::size_t mesh, std::size_t index) {
+  const auto& primitives = document.model.meshes[mesh].primitives;
+  if (primitives[index].targets.size() != primitives[0].targets.size()) {
+    refuse(document.file, fmt::format("/meshes/{}/primitives/{}/targets", mesh, index),
+           fmt::format("{} morph targets", primitives[index].targets.size()),
+           fmt::format("as many as the mesh's first primitive has, {}", primitives[0].targets.size()));
+  }
+}
 
 }  // namespace
 
-void append_meshes(const GltfDocument& document, const std::vector<glm::dmat4>& to_world,
-                   const MaterialSet& materials, Scene& scene, Motion& motion, Notes& notes) {
+void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials, Scene& scene,
+                   Motion& motion, Notes& notes) {
   const std::vector<TreeNode>& nodes = motion.tree.nodes;
   std::map<int, std::vector<std::size_t>> stands;  // each primitive is read once, however often it stands
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(nodes[i].index)];
-    if (source.mesh < 0) continue;
-    stands[source.mesh].push_back(i);
-    if (source.skin >= 0) notes.add(fmt::format("/nodes/{}: skinned, shown as stored", nodes[i].index));
+    const int mesh = document.model.nodes[static_cast<std::size_t>(nodes[i].index)].mesh;
+    if (mesh >= 0) stands[mesh].push_back(i);
   }
-  Appender appender(document, scene);
+  Appender appender(document, scene, motion, notes);
   VertexMap map;
+  std::uint64_t morph_numbers = 0;
   for (const auto& [mesh, at] : stands) {
     const auto index = static_cast<std::size_t>(mesh);
     for (std::size_t i = 0; i < document.model.meshes[index].primitives.size(); ++i) {
+      check_targets(document, index, i);
       const Room room{bounds::kVertices - scene.vertices.size(), bounds::kTriangles - scene.triangles.size()};
-      const auto primitive = std::make_shared<const LocalPrimitive>(
-          read_primitive(document, index, i, materials, room, map, notes));
-      if (primitive->triangles.empty()) continue;
-      appender.reserve(*primitive, at.size());
-      for (const std::size_t node : at) {
-        Instance instance = appender.append(primitive, nodes[node].index, to_world[node]);
-        if (nodes[node].moves) motion.meshes.push_back({std::move(instance), node});
-      }
-    }
-    if (!document.model.meshes[index].weights.empty()) {
-      notes.add(fmt::format("/meshes/{}: morph targets are not applied", mesh));
+      LocalPrimitive primitive = read_primitive(document, index, i, materials, room, map, notes);
+      if (primitive.triangles.empty()) continue;
+      read_deformation(document, document.model.meshes[index].primitives[i], primitive, morph_numbers, notes);
+      appender.append(std::make_shared<const LocalPrimitive>(std::move(primitive)), at, posed);
     }
   }
 }

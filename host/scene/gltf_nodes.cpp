@@ -76,7 +76,7 @@ TreeNode make_node(const GltfDocument& document, int index, const std::map<int, 
   made.pose = stored_pose(source, document.file, index);
   made.still = source.matrix.empty() ? made.pose.matrix() : glm::make_mat4(source.matrix.data());
   if (const auto found = curves.find(index); found != curves.end()) made.curves = found->second;
-  made.moves = made.curves.any();
+  made.moves = made.curves.moves();
   return made;
 }
 

@@ -32,9 +32,4 @@ constexpr std::string_view name_of(GltfPath path) {
   return {};
 }
 
-/// Whether it changes where a node stands.
-constexpr bool moves_nodes(GltfPath path) {
-  return path == GltfPath::translation || path == GltfPath::rotation || path == GltfPath::scale;
-}
-
 }  // namespace clpv

@@ -178,19 +178,12 @@ void PrimitiveReader::read_triangles(const Attributes& from, int mode, std::uint
   }
 }
 
-glm::dvec3 geometric_normal(const LocalPrimitive& primitive, const glm::uvec3& t) {
-  const glm::dvec3& a = primitive.vertices[t.x].position;
-  const glm::dvec3 n = glm::cross(primitive.vertices[t.y].position - a, primitive.vertices[t.z].position - a);
-  const double length = glm::length(n);
-  return length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
-}
-
 /// Each triangle gets three vertices of its own with its normal (glTF 2.0, section 3.7.2.1: flat normals).
 void split_flat(LocalPrimitive& primitive) {
   std::vector<LocalVertex> split;
   split.reserve(primitive.triangles.size() * 3);
   for (glm::uvec3& triangle : primitive.triangles) {
-    const glm::dvec3 normal = geometric_normal(primitive, triangle);
+    const glm::dvec3 normal = triangle_normal(primitive.vertices, triangle);
     for (int i = 0; i < 3; ++i) {
       split.push_back(primitive.vertices[triangle[i]]);
       split.back().normal = normal == glm::dvec3(0) ? kUp : normal;
@@ -212,7 +205,7 @@ void normalize_stored(LocalPrimitive& primitive) {
   for (const glm::uvec3& triangle : primitive.triangles) {
     for (int i = 0; i < 3; ++i) {
       if (missing[triangle[i]])
-        primitive.vertices[triangle[i]].normal += geometric_normal(primitive, triangle);
+        primitive.vertices[triangle[i]].normal += triangle_normal(primitive.vertices, triangle);
     }
   }
   for (std::size_t i = 0; i < missing.size(); ++i) {
@@ -222,6 +215,13 @@ void normalize_stored(LocalPrimitive& primitive) {
 }
 
 }  // namespace
+
+glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::uvec3& t) {
+  const glm::dvec3& a = vertices[t.x].position;
+  const glm::dvec3 n = glm::cross(vertices[t.y].position - a, vertices[t.z].position - a);
+  const double length = glm::length(n);
+  return length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
+}
 
 void VertexMap::restart(std::size_t count) {
   if (entries_.size() < count) entries_.resize(count);
@@ -256,10 +256,11 @@ LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, st
   const Attributes attributes = reader.attributes(textured, notes);
   const std::uint64_t triangles = reader.triangle_count(attributes, mode, room);
   reader.read_triangles(attributes, mode, triangles, map, made);
-  if (attributes.normal) {
-    normalize_stored(made);
-  } else {
+  made.flat = !attributes.normal;
+  if (made.flat) {
     split_flat(made);
+  } else {
+    normalize_stored(made);
   }
   return made;
 }

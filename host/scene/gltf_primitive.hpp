@@ -20,12 +20,29 @@ struct LocalVertex {
   std::uint32_t source;  ///< its index in the accessors, for messages
 };
 
+/// What joints of a skin a vertex goes with, and their shares, which add up to 1.
+struct Influence {
+  std::uint16_t joints[4];
+  double weights[4];
+};
+
+/// What a morph target adds at weight 1: one a vertex, or none.
+struct MorphTarget {
+  std::vector<glm::vec3> positions, normals;
+};
+
 struct LocalPrimitive {
   std::string place;  ///< "/meshes/3/primitives/0"
   std::vector<LocalVertex> vertices;
   std::vector<glm::uvec3> triangles;
   std::uint32_t material = 0;
+  bool flat = false;                  ///< without stored normals: each triangle has three vertices of its own
+  std::vector<Influence> influences;  ///< one a vertex; none: it has no joints
+  std::vector<MorphTarget> targets;
 };
+
+/// The unit normal of a triangle of those vertices; 0 of one without area.
+glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::uvec3& triangle);
 
 /// Vertices of an accessor -> vertices of a primitive, made anew for each primitive without clearing:
 /// primitives often share one huge accessor and use a small part of it.

@@ -23,9 +23,10 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kAny = 1e30;         // finite, and its products with coordinates fit a double
-constexpr double kMany = 4294967295;  // counts and offsets: more than any bounded buffer holds
-constexpr double kTiny = 1e-9;        // stands for "greater than 0"
+constexpr double kAny = 1e30;           // finite, and its products with coordinates fit a double
+constexpr double kMany = 4294967295;    // counts and offsets: more than any bounded buffer holds
+constexpr std::size_t kTargets = 1024;  // of a primitive
+constexpr double kTiny = 1e-9;          // stands for "greater than 0"
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
 
 /// Extensions that are read. Whatever else a file requires is refused by name.
@@ -70,6 +71,12 @@ Rules node_rules() {
           index("/nodes/*/mesh", "/meshes"),
           index("/nodes/*/camera", "/cameras"),
           index("/nodes/*/skin", "/skins"),
+          list("/nodes/*/weights", 0, kTargets),
+          number("/nodes/*/weights/*", -kAny, kAny),
+          list("/skins/*/joints", 1, bounds::kJoints).must(),
+          index("/skins/*/joints/*", "/nodes"),
+          index("/skins/*/inverseBindMatrices", "/accessors"),
+          index("/skins/*/skeleton", "/nodes"),
           vector("/nodes/*/matrix", 16, -kAny, kAny),
           vector("/nodes/*/translation", 3, -kAny, kAny),
           vector("/nodes/*/rotation", 4, -1.001, 1.001),
@@ -90,7 +97,9 @@ Rules geometry_rules() {
           index(primitive + "/indices", "/accessors"),
           index(primitive + "/material", "/materials"),
           integer(primitive + "/mode", 0, 6),
-          list(primitive + "/targets", 0, 1024),
+          list("/meshes/*/weights", 0, kTargets),
+          number("/meshes/*/weights/*", -kAny, kAny),
+          list(primitive + "/targets", 0, kTargets),
           object(primitive + "/targets/*"),
           index(primitive + "/targets/*/*", "/accessors"),
           integer("/accessors/*/count", 1, kMany).must(),

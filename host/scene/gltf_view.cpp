@@ -82,17 +82,17 @@ class ViewReader {
 
 }  // namespace
 
-void append_views(const GltfDocument& document, const std::vector<glm::dmat4>& to_world,
-                  double metres_per_unit, Scene& scene, Motion& motion, Notes& notes) {
+void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit, Scene& scene,
+                  Motion& motion, Notes& notes) {
   ViewReader reader(document, metres_per_unit, scene, notes);
-  for (std::size_t i = 0; i < to_world.size(); ++i) {
+  for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
     const TreeNode& node = motion.tree.nodes[i];
     const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(node.index)];
-    if (source.camera >= 0 && reader.camera(node.index, source, to_world[i]) && node.moves) {
+    if (source.camera >= 0 && reader.camera(node.index, source, posed.to_world(i)) && node.moves) {
       motion.cameras.push_back({scene.cameras.size() - 1, i});
     }
     if (const auto found = source.extensions.find("KHR_lights_punctual"); found != source.extensions.end()) {
-      reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(), to_world[i]);
+      reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(), posed.to_world(i));
       if (node.moves) motion.lights.push_back({scene.lights.size() - 1, i});
     }
   }

@@ -3,23 +3,28 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <memory>
-#include <string>
+#include <vector>
 
 #include "scene/gltf_primitive.hpp"
 #include "scene/scene.hpp"
+#include "scene/skin.hpp"
 
 namespace clpv {
 
 struct Instance {
   std::shared_ptr<const LocalPrimitive> primitive;
-  int node_index = 0;                                  ///< in the document, for messages
+  std::size_t node = 0;                                ///< of the tree
+  std::shared_ptr<const Skin> skin;                    ///< null: it goes with its node
+  std::vector<double> weights;                         ///< of morph targets, where no curve says them
   std::uint32_t first_vertex = 0, first_triangle = 0;  ///< in the scene, which has room for all from there on
 };
 
-/// Writes its vertices [m] and triangles into the scene, as `to_world` places them; a mirrored one keeps its outside
-/// outside. Throws Error(bad_input) that names `file` for coordinates beyond the bounds.
-void place(const Instance& instance, const glm::dmat4& to_world, const std::string& file, Scene& scene);
+/// Whether it changes with time.
+bool moves(const Instance& instance, const NodeTree& tree);
+
+/// Writes its vertices [m] and triangles into the scene: bent by its morph targets and its skin, or placed by its node; a
+/// mirrored one keeps its outside outside. Throws Error(bad_input) for coordinates beyond the bounds.
+void place(const Instance& instance, PosedTree& posed, Scene& scene);
 
 }  // namespace clpv

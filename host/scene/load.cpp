@@ -46,9 +46,9 @@ void check_camera_lights(const Scene& scene) {
   }
 }
 
-std::vector<Part> parts_of(const std::vector<Motion::MovingMesh>& meshes) {
+std::vector<Part> parts_of(const std::vector<Instance>& meshes) {
   std::vector<Part> parts;
-  for (const auto& [instance, node] : meshes) {
+  for (const Instance& instance : meshes) {
     parts.push_back({instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
                      instance.first_triangle,
                      static_cast<std::uint32_t>(instance.primitive->triangles.size())});

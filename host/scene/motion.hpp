@@ -12,18 +12,14 @@
 namespace clpv {
 
 struct Motion {
-  /// An instance, a camera or a light at a node that moves.
-  struct MovingMesh {
-    Instance instance;
-    std::size_t node;  ///< in `tree`
-  };
+  /// A camera or a light at a node that moves.
   struct MovingView {
     std::size_t view;  ///< in the scene's cameras, or its lights
-    std::size_t node;
+    std::size_t node;  ///< in `tree`
   };
 
   NodeTree tree;
-  std::vector<MovingMesh> meshes;
+  std::vector<Instance> meshes;
   std::vector<MovingView> cameras, lights;
 
   bool empty() const { return meshes.empty() && cameras.empty() && lights.empty(); }

@@ -22,7 +22,7 @@ bool finite(const glm::dmat4& m) {
 
 /// To its parent's space.
 glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
-  if (!node.curves.any()) return node.still;
+  if (!node.curves.moves()) return node.still;
   Pose pose = node.pose;
   if (node.curves.translation) pose.translation = vector_at(*node.curves.translation, seconds);
   if (node.curves.scale) pose.scale = vector_at(*node.curves.scale, seconds);

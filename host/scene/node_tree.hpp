@@ -23,7 +23,8 @@ struct Pose {
 /// What of a node changes with time; null: nothing.
 struct NodeCurves {
   std::shared_ptr<const Curve> translation, rotation, scale;
-  bool any() const { return translation || rotation || scale; }
+  std::shared_ptr<const Curve> weights;  ///< of its mesh's morph targets
+  bool moves() const { return translation || rotation || scale; }
 };
 
 struct TreeNode {

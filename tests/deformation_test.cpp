@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// Skins and morph targets against closed forms, still and animated; and bad ones, which are refused before anything of the
+// size they ask for is allocated.
+#include <glm/gtc/constants.hpp>
+
+#include "tests/support/animation_fixture.hpp"
+
+namespace clpv::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr float kNear = 1e-6f;
+
+/// The triangle as a finger: (0,0,0) goes with joint 0, (1,0,0) with joint 1, (0,1,0) with both by halves.
+struct SkinTest : AnimationTest {
+  SkinTest() {
+    primitive()["attributes"]["JOINTS_0"] =
+        model.accessor<std::uint8_t>("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0});
+    primitive()["attributes"]["WEIGHTS_0"] =
+        model.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0});
+    model.document["nodes"][0]["skin"] = 0;
+    for (int i = 0; i < 2; ++i) model.add("nodes", {{"name", "joint"}});
+    model.add("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", binds({0, 0, 0, -2, 0, 0})}});
+  }
+
+  /// Inverse bind matrices that only move.
+  int binds(const std::vector<float>& moves) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i + 2 < moves.size(); i += 3) {
+      for (const float v : {1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, moves[i],
+                            moves[i + 1], moves[i + 2], 1.f})
+        values.push_back(v);
+    }
+    json made = {{"bufferView", model.view(bytes_of(values))},
+                 {"componentType", 5126},
+                 {"count", moves.size() / 3},
+                 {"type", "MAT4"}};
+    return model.add("accessors", made);
+  }
+  json& skin() { return model.document["skins"][0]; }
+};
+
+TEST_F(SkinTest, VerticesGoWithTheirJoints) {
+  model.document["nodes"][0]["translation"] = {50, 50, 50};  // of no account: the joints place it
+  model.document["nodes"][1]["translation"] = {0, 0, 4};
+  model.document["nodes"][2]["translation"] = {2, 10, 0};
+  const Scene scene = load_scene(model.write(folder));
+  EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(0, 0, 4), kNear));
+  EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(1, 10, 0), kNear)) << "its bind matrix takes 2 off";
+  EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(0, 6, 2), kNear)) << "half way between the two";
+  EXPECT_TRUE(scene.moving.empty());
+  EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("skin"))));
+}
+
+TEST_F(SkinTest, JointsMoveAndTheirChildrenToo) {
+  model.document["nodes"][1]["children"] = {2};
+  model.document["nodes"][2]["translation"] = {2, 0, 0};
+  animate<float>(1, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, std::sqrt(0.5f), std::sqrt(0.5f)});
+  MovingScene moving = load();
+  ASSERT_EQ(moving.scene().moving.size(), 1u);
+  moving.pose(1);  // x turns to y, all about the origin
+  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(0, 1, 0), kNear));
+  EXPECT_THAT(position(moving.scene(), 0, 2), IsNear(glm::vec3(-1, 0, 0), kNear));
+  moving.pose(0);
+  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(1, 0, 0), kNear));
+}
+
+TEST_F(SkinTest, NormalsTurnWithTheirJoints) {
+  primitive()["attributes"]["NORMAL"] = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const float half = std::sqrt(0.5f);
+  model.document["nodes"][2] = {{"translation", {2, 0, 0}}, {"rotation", {0, half, 0, half}}};  // z to x
+  const Scene scene = load_scene(model.write(folder));
+  EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::vec3(0, 0, 1), kNear));
+  EXPECT_THAT(normal(scene, 0, 1), IsNear(glm::vec3(1, 0, 0), kNear));
+}
+
+TEST_F(SkinTest, WeightsAreSharesAndNoneMeansTheFirstJoint) {
+  model.document["nodes"][2]["translation"] = {2, 10, 0};
+  primitive()["attributes"]["WEIGHTS_0"] =
+      model.accessor<float>("VEC4", {0, 0, 0, 0, 5, 0, 0, 0, 3, 1, 0, 0});
+  const Scene scene = load_scene(model.write(folder));
+  EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(0), kNear));
+  EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(1, 10, 0), kNear));
+  EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(0, 3.5f, 0), kNear));
+}
+
+TEST_F(SkinTest, BadSkins) {
+  const json sound = model.document;
+  ASSERT_NO_THROW(load_scene(model.write(folder)));
+  primitive()["attributes"]["JOINTS_0"] =
+      model.accessor<std::uint16_t>("VEC4", {0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/meshes/0/primitives/0/attributes/JOINTS_0"),
+                               HasSubstr("joint 2 of vertex 1"), HasSubstr("0 to 1")));
+  model.document = sound;
+  primitive()["attributes"]["JOINTS_0"] = primitive()["attributes"]["WEIGHTS_0"];
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/attributes/JOINTS_0"), HasSubstr("componentType 5126"),
+                               HasSubstr("5121 or 5123")));
+  model.document = sound;
+  primitive()["attributes"].erase("WEIGHTS_0");
+  EXPECT_THAT(refused(), HasSubstr("JOINTS_0 without WEIGHTS_0"));
+  for (const float bad : {NAN, -1.0f, INFINITY}) {
+    model.document = sound;
+    primitive()["attributes"]["WEIGHTS_0"] =
+        model.accessor<float>("VEC4", {1, 0, 0, 0, 1, bad, 0, 0, 1, 0, 0, 0});
+    EXPECT_THAT(refused(), AllOf(HasSubstr("/attributes/WEIGHTS_0"), HasSubstr("in component 1 of vertex 1")))
+        << bad;
+  }
+  model.document = sound;
+  primitive()["attributes"]["WEIGHTS_0"] = model.accessor<float>("VEC4", {1, 0, 0, 0});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/attributes/WEIGHTS_0"), HasSubstr("1 elements"),
+                               HasSubstr("as many as POSITION, 3")));
+  model.document = sound;
+  skin()["inverseBindMatrices"] = binds({0, 0, 0});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/skins/0/inverseBindMatrices"), HasSubstr("1 elements"),
+                               HasSubstr("each of 2 joints")));
+  skin()["inverseBindMatrices"] = binds({0, 0, 0, NAN, 0, 0});
+  EXPECT_THAT(refused(),
+              AllOf(HasSubstr("/skins/0/inverseBindMatrices"), HasSubstr("in component 12 of matrix 1")));
+  skin()["inverseBindMatrices"] = primitive()["attributes"]["POSITION"];
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/skins/0/inverseBindMatrices"), HasSubstr("MAT4 of floats")));
+  model.document = sound;
+  skin()["joints"] = {1, 99};
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/skins/0/joints/1: found 99"), HasSubstr("an index into /nodes")));
+  skin()["joints"] = {1, 2};
+  model.document["scenes"] = {{{"nodes", {0, 1}}}};
+  EXPECT_THAT(refused(),
+              AllOf(HasSubstr("/skins/0/joints/1"), HasSubstr("node 2, which is not in the scene")));
+}
+
+/// The triangle with two targets: one lifts its third corner by 2, the other moves its second one.
+struct MorphTest : AnimationTest {
+  MorphTest() {
+    primitive()["targets"] = {{{"POSITION", model.accessor<float>("VEC3", {0, 0, 0, 0, 0, 0, 0, 0, 2})}},
+                              {{"POSITION", model.accessor<float>("VEC3", {0, 0, 0, 3, 0, 0, 0, 0, 0})}}};
+  }
+};
+
+TEST_F(MorphTest, TargetsAddUpByTheWeightsOfTheNodeElseTheMesh) {
+  EXPECT_THAT(position(load_scene(model.write(folder)), 0, 2), IsNear(glm::vec3(0, 1, 0), kNear));
+  model.document["meshes"][0]["weights"] = {0.5, -1};
+  const Scene of_mesh = load_scene(model.write(folder));
+  EXPECT_THAT(position(of_mesh, 0, 2), IsNear(glm::vec3(0, 1, 1), kNear));
+  EXPECT_THAT(position(of_mesh, 0, 1), IsNear(glm::vec3(-2, 0, 0), kNear));
+  model.document["nodes"][0]["weights"] = {1, 0};
+  const Scene of_node = load_scene(model.write(folder));
+  EXPECT_THAT(position(of_node, 0, 2), IsNear(glm::vec3(0, 1, 2), kNear));
+  EXPECT_THAT(normal(of_node, 0, 0), IsNear(face_normal(of_node, 0), kNear)) << "flat ones are made anew";
+  EXPECT_TRUE(of_node.moving.empty());
+}
+
+TEST_F(MorphTest, StoredNormalsTakeTheirTargets) {
+  primitive()["attributes"]["NORMAL"] = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  primitive()["targets"][0]["NORMAL"] = model.accessor<float>("VEC3", {1, 0, 0, 0, 0, 0, 0, 0, -2});
+  model.document["meshes"][0]["weights"] = {1, 0};
+  const Scene scene = load_scene(model.write(folder));
+  EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::normalize(glm::vec3(1, 0, 1)), kNear));
+  EXPECT_THAT(normal(scene, 0, 1), IsNear(glm::vec3(0, 0, 1), kNear));
+  EXPECT_THAT(normal(scene, 0, 2), IsNear(glm::vec3(0, 0, -1), kNear));
+}
+
+TEST_F(MorphTest, WeightsMove) {
+  animate<float>(0, "weights", {0, 2}, {0, 0, 1, 0.5f});
+  MovingScene moving = load();
+  EXPECT_THAT(moving.scene().notes, Not(Contains(HasSubstr("weights"))));
+  ASSERT_EQ(moving.scene().moving.size(), 1u);
+  moving.pose(1);
+  EXPECT_THAT(position(moving.scene(), 0, 2), IsNear(glm::vec3(0, 1, 1), kNear));
+  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(1.75f, 0, 0), kNear));
+  moving.pose(0);
+  EXPECT_THAT(position(moving.scene(), 0, 2), IsNear(glm::vec3(0, 1, 0), kNear));
+}
+
+TEST_F(MorphTest, WeightsMoveInSplines) {
+  // Tangents a second of the first weight: leaves with 4, over 1 s, from 0 to 0: at the middle 4 / 8.
+  animate<float>(0, "weights", {0, 1}, {0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0}, "CUBICSPLINE");
+  MovingScene moving = load();
+  moving.pose(0.5);
+  EXPECT_THAT(position(moving.scene(), 0, 2), IsNear(glm::vec3(0, 1, 1), kNear));
+}
+
+TEST_F(MorphTest, BadTargets) {
+  const json sound = model.document;
+  animate<float>(0, "weights", {0, 1}, {0, 1});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/animations/0/samplers/0/output"), HasSubstr("found 2 elements"),
+                               HasSubstr("2 for each of the 2 times")));
+  model.document = sound;
+  model.document["meshes"][0]["weights"] = {1};
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/meshes/0/weights"), HasSubstr("1 weights"),
+                               HasSubstr("each of 2 morph targets")));
+  model.document["nodes"][0]["weights"] = {1, 2, 3};
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/nodes/0/weights"), HasSubstr("3 weights")));
+  model.document["nodes"][0]["weights"] = {1, "half"};
+  EXPECT_THAT(refused(), HasSubstr("/nodes/0/weights/1"));
+  model.document = sound;
+  primitive()["targets"][1]["POSITION"] = model.accessor<float>("VEC3", {0, 0, 0});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/meshes/0/primitives/0/targets/1/POSITION"),
+                               HasSubstr("1 elements"), HasSubstr("as many as POSITION, 3")));
+  primitive()["targets"][1]["POSITION"] = model.accessor<float>("VEC3", {0, 0, 0, 0, NAN, 0, 0, 0, 0});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/targets/1/POSITION"), HasSubstr("in component 1 of vertex 1")));
+  model.document = sound;
+  json second = primitive();
+  second["targets"].erase(1);
+  model.document["meshes"][0]["primitives"].push_back(second);
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/meshes/0/primitives/1/targets"), HasSubstr("1 morph targets"),
+                               HasSubstr("first primitive has, 2")));
+}
+
+TEST_F(MorphTest, MoreTargetsThanMemory) {
+  // A thousand targets of the same accessor of zeros, for a hundred thousand vertices.
+  std::vector<std::uint32_t> corners(99999);
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
+  const int zeros = model.add("accessors", {{"componentType", 5126}, {"count", 99999}, {"type", "VEC3"}});
+  primitive() = {{"attributes", {{"POSITION", zeros}}},
+                 {"indices", model.accessor<std::uint32_t>("SCALAR", corners)}};
+  for (int i = 0; i < 1000; ++i) primitive()["targets"].push_back({{"POSITION", zeros}});
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/meshes/0/primitives/0/targets/223/POSITION"),
+                               HasSubstr("67199328 numbers"), HasSubstr("at most 67108864")));
+}
+
+}  // namespace
+}  // namespace clpv::test
