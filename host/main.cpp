@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   add_devices(app, shared);
   add_render(app, shared);
   add_sequence(app, shared);
+  add_query(app, shared);
   add_propagate(app, shared);
   add_check(app, shared);
   add_compare(app, shared);

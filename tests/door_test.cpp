@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "clpv/renderer.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/moving_scene.hpp"
 
 namespace clpv {
 namespace {
@@ -42,6 +42,36 @@ TEST(Door, RendersCornell) {
   EXPECT_NEAR(mean(full, 1), mean(direct, 1) + mean(indirect, 1), 1e-5 * mean(full, 1));
   EXPECT_EQ(full.metadata.at("basis"), "sh2");
   EXPECT_EQ(full.pixels, renderer.render().pixels) << "frames of one renderer are the same";
+}
+
+TEST(Door, TellsOfLightAtAnyPoint) {
+  Renderer renderer(SceneFile(kCornell), small());
+  EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error) << "before the first frame";
+  renderer.render();
+  const auto up = renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}),
+             down = renderer.irradiance({0.28, 0.27, 0.3}, {0, -4, 0});
+  EXPECT_GE(up[1], 0);
+  EXPECT_GT(down[1], up[1]) << "the floor is lit, the ceiling has its light from there";
+  EXPECT_EQ(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), up);
+  EXPECT_THROW(renderer.irradiance({0, 0, 0}, {0, 0, 0}), Error);
+  EXPECT_THROW(renderer.irradiance({0, NAN, 0}, {0, 1, 0}), Error);
+}
+
+TEST(Door, ScenesThatMoveAreShownAtAnyInstant) {
+  const test::TemporaryFolder folder;
+  const SceneFile scene(test::write_moving_scene(folder));
+  EXPECT_TRUE(scene.moves());
+  EXPECT_FALSE(SceneFile(kCornell).moves());
+  Renderer renderer(scene, small()), other(scene, small());
+  const Image start = renderer.render(), later = renderer.render(View::full, {}, 0.6);
+  const auto light = renderer.irradiance({0, 0.5, 0}, {0, -1, 0});
+  EXPECT_NE(start.pixels, later.pixels);
+  EXPECT_EQ(later.metadata.at("time"), "0.6");
+  EXPECT_EQ(other.render(View::full, {}, 0.6).pixels, later.pixels) << "each renderer has its own instant";
+  EXPECT_EQ(renderer.render().pixels, start.pixels);
+  EXPECT_NE(renderer.irradiance({0, 0.5, 0}, {0, -1, 0}), light) << "of the last frame";
+  EXPECT_THROW(renderer.render(View::full, {}, NAN), Error);
+  EXPECT_THROW(renderer.render(View::full, {}, 1e9), Error);
 }
 
 TEST(Door, ImagesAreSavedByTheirExtension) {

@@ -152,6 +152,7 @@ void add_render(CLI::App& app, Shared& shared) {
       app.add_subcommand("render", "Render a scene with indirect light from light propagation volumes");
   auto options = std::make_shared<Options>();
   add_render_request(*command, options->request);
+  add_shown_options(*command, options->request);
   command
       ->add_option("-o,--output", options->output,
                    "image: .exr (linear) or .png (tone-mapped, sRGB); options in its metadata")

@@ -15,12 +15,15 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
   command.add_option("--model", request.model, "replaces the scene file's model")->type_name("PATH");
   command.add_option("--camera", request.camera, "camera by name; default: the scene's first")
       ->type_name("NAME");
+  command.add_flag("--no-tune", request.no_tune, "leave what clpv tune found aside");
+  add_frame_options(command, request.frame);
+}
+
+void add_shown_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--exposure", request.exposure, "brightness of a PNG [EV]; default: the scene's")
       ->type_name("EV");
   command.add_option("--tonemap", request.tonemap, "tone curve of a PNG: none|reinhard|aces")
       ->capture_default_str();
-  command.add_flag("--no-tune", request.no_tune, "leave what clpv tune found aside");
-  add_frame_options(command, request.frame);
 }
 
 void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {

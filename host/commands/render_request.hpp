@@ -24,8 +24,11 @@ struct RenderRequest {
   float exposure_of(const Scene& shown) const { return exposure.value_or(shown.exposure); }
 };
 
-/// The scene and all options of a RenderRequest, which must outlive the parse.
+/// The scene, its camera and all options of frames; the request must outlive the parse, as below.
 void add_render_request(CLI::App& command, RenderRequest& request);
+
+/// How images show it.
+void add_shown_options(CLI::App& command, RenderRequest& request);
 
 /// The scene's notes, and what was chosen of cascades in place of the user and what will come of it.
 void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);

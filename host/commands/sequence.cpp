@@ -243,6 +243,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
   command->add_option("--video", options->video, "all frames as a film too, through ffmpeg")
       ->type_name("FILE.mp4");
+  add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(
       "Frame i shows FROM + i / RATE seconds, with the pixels of `clpv render --time` of that instant. A "

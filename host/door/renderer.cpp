@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "clpv/renderer.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "door/scene_contents.hpp"
+#include "evaluate/light_field.hpp"
 #include "image/image.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/given_options.hpp"
+#include "scene/bounds.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
@@ -37,18 +41,33 @@ Show shown(View view) {
 }  // namespace
 
 struct Renderer::State {
-  SceneFile scene;
+  SceneFile file;
+  std::optional<MovingScene> posed;  ///< a copy of its own, where something moves
   RenderOptions options;
   Session session;
   Tuning tuning;
   Frame frame;
+  std::optional<LightField> light;  ///< of the last frame, once it is asked for
 
-  State(const SceneFile& file, const Options& given, const std::string& device)
-      : scene(file),
-        options(resolve_options(given.given(), file.contents().scene)),
+  State(const SceneFile& scene, const Options& given, const std::string& device)
+      : file(scene),
+        posed(scene.moves() ? std::optional(scene.contents().moving) : std::nullopt),
+        options(resolve_options(given.given(), shown())),
         session(choose_device(device), ProgramCache::of_user()),
         tuning(tuning_for(session.device(), options, !given.given().contains("layout"))),
-        frame(session, scene.contents().scene, options, tuning) {}
+        frame(session, shown(), options, tuning) {}
+
+  const Scene& shown() const { return posed ? posed->scene() : file.contents().moving.scene(); }
+
+  void show(double seconds) {
+    if (!(std::abs(seconds) <= bounds::kSeconds)) {  // NaN is not
+      throw Error(ExitCode::usage, "seconds: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
+                  bounds::kSeconds);
+    }
+    if (!posed) return;
+    posed->pose(seconds);
+    frame.scene_moved();
+  }
 };
 
 Renderer::Renderer(const SceneFile& scene, const Options& options, const std::string& device)
@@ -66,15 +85,33 @@ Renderer::~Renderer() {
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Image Renderer::render(View view, const std::string& camera) {
+Image Renderer::render(View view, const std::string& camera, double seconds) {
   const Show wanted = shown(view);
-  const Camera& seen_by = state_->scene.contents().scene.camera(camera);
+  state_->light.reset();
+  state_->show(seconds);
+  const Camera& seen_by = state_->shown().camera(camera);
   state_->frame.render(seen_by);
   Image image = make_image(state_->options.width, state_->options.height, {"R", "G", "B", "A"});
   image.pixels = state_->frame.read(wanted);
   for (const OptionInfo& option : list_options(state_->options)) image.metadata[option.name] = option.value;
   image.metadata["camera"] = seen_by.name;
+  image.metadata["time"] = fmt::format("{}", seconds);
   return image;
+}
+
+std::array<double, 3> Renderer::irradiance(const std::array<double, 3>& position,
+                                           const std::array<double, 3>& normal) {
+  const glm::dvec3 at(position[0], position[1], position[2]), n(normal[0], normal[1], normal[2]);
+  const double length = glm::length(n);
+  if (!(length > 0 && std::isfinite(length)) || !std::isfinite(at.x + at.y + at.z)) {
+    throw Error(
+        ExitCode::usage,
+        "irradiance: found ({}, {}, {}) and normal ({}, {}, {}), allowed: finite numbers, and a direction",
+        at.x, at.y, at.z, n.x, n.y, n.z);
+  }
+  if (!state_->light) state_->light.emplace(state_->session, state_->frame);
+  const glm::dvec3 e = state_->light->irradiance(at, n / length);
+  return {e.x, e.y, e.z};
 }
 
 }  // namespace clpv

@@ -2,21 +2,24 @@
 #include "clpv/scene.hpp"
 
 #include "door/scene_contents.hpp"
-#include "scene/load.hpp"
 
 namespace clpv {
 
 SceneFile::SceneFile(const std::filesystem::path& path, const std::filesystem::path& model)
-    : contents_(std::make_shared<const Contents>(Contents{load_scene(path, {model})})) {}
+    : contents_(std::make_shared<const Contents>(Contents{MovingScene(path, {model})})) {}
 
 std::vector<std::string> SceneFile::cameras() const {
   std::vector<std::string> names;
-  for (const Camera& camera : contents_->scene.cameras) names.push_back(camera.name);
+  for (const Camera& camera : contents_->moving.scene().cameras) names.push_back(camera.name);
   return names;
 }
 
+bool SceneFile::moves() const {
+  return contents_->moving.moves();
+}
+
 std::vector<std::string> SceneFile::notes() const {
-  return {contents_->scene.notes.begin(), contents_->scene.notes.end()};
+  return contents_->moving.scene().notes;
 }
 
 }  // namespace clpv

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "clpv/scene.hpp"
-#include "scene/scene.hpp"
+#include "scene/load.hpp"
 
 namespace clpv {
 
 struct SceneFile::Contents {
-  Scene scene;
+  MovingScene moving;  ///< at 0 s
 };
 
 }  // namespace clpv

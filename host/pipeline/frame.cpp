@@ -301,11 +301,9 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   // A sweep takes what comes in at a cascade's border from the next coarser one. Steps do in any order.
   for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
   if (late_carrier_) carry_late_light();
-  std::vector<const Volume*> accumulated;
-  for (const auto& volume : accumulated_) accumulated.push_back(volume.get());
   {
     const StageScope scope(session_, {Pass::gather});
-    gatherer_.gather(*camera_surface_, grids_, accumulated, irradiance_, light_scale_);
+    gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);
@@ -313,6 +311,12 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   shader_.light(*camera_surface_, shadowed);
   shader_.show(Show::full, *camera_surface_, irradiance_, image_);
   shown_ = Show::full;
+}
+
+GatheredLight Frame::light() const {
+  GatheredLight light{grids_, {}, light_scale_};
+  for (const auto& volume : accumulated_) light.accumulated.push_back(volume.get());
+  return light;
 }
 
 std::vector<float> Frame::read(Show view) {

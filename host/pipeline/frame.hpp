@@ -37,6 +37,13 @@ struct CascadeVolumes {
 };
 using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 
+/// What a render left in its volumes to be gathered, finest cascade first.
+struct GatheredLight {
+  std::vector<ClpvGrid> grids;
+  std::vector<const Volume*> accumulated;
+  float scale;  ///< they hold so many times the light
+};
+
 /// Holds all device memory a frame needs; render() may be called again and again, for one camera or many.
 class Frame {
  public:
@@ -52,6 +59,9 @@ class Frame {
   /// Enqueues all stages, marked on the session's timeline; shaded views are there once the queue is finished.
   /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).
   void render(const Camera& camera, const CascadeObserver& observer = {});
+
+  /// Empty before the first render.
+  GatheredLight light() const;
 
   /// One view of the last render, as RGBA float, row 0 on top.
   std::vector<float> read(Show view);

@@ -7,6 +7,7 @@
 //   clpv::save_image("cornell.png", image);
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -33,9 +34,17 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// One frame through the camera of that name; empty: the scene's first. Linear, channels R, G, B, A, row 0 on top;
-  /// metadata holds every option. Throws Error(usage) for a camera that is not there.
-  Image render(View view = View::full, const std::string& camera = {});
+  /// One frame through the camera of that name (empty: the scene's first) at an instant, of a scene that moves. Linear,
+  /// channels R, G, B, A, row 0 on top; metadata holds every option. Any instant's frame is the same whatever came before it.
+  /// Throws Error: usage (a camera that is not there, seconds out of range), bad_input (what moves leads out of bounds).
+  Image render(View view = View::full, const std::string& camera = {}, double seconds = 0);
+
+  /// Irradiance of indirect light [W/m^2] of red, green, blue on a surface at `position` [m] with `normal` (of any length),
+  /// whether the camera sees it or not: by the light of the last frame; 0 outside its cascades, which stand round its camera.
+  /// The first point after a frame waits for the volumes to be read back. Throws Error(usage) before the first frame, and for
+  /// what is no position or direction.
+  std::array<double, 3> irradiance(const std::array<double, 3>& position,
+                                   const std::array<double, 3>& normal);
 
  private:
   struct State;

@@ -18,6 +18,7 @@ class SceneFile {
   explicit SceneFile(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
   std::vector<std::string> cameras() const;  ///< names; at least one
+  bool moves() const;                        ///< whether it differs from instant to instant
   std::vector<std::string> notes() const;    ///< what was left out or added while reading, a sentence each
 
   struct Contents;

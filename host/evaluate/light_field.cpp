@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "evaluate/light_field.hpp"
+
+#include <algorithm>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+Transport gathered_transport(const Frame& frame) {
+  return frame.options().transport == TransportKind::sweep
+             ? make_transport(TransportKind::sweep, frame.gathered())
+             : frame.transport();
+}
+
+reference::Volume read_light(Session& session, const Volume& volume, double scale) {
+  const std::vector<float> values = volume.read(session);
+  reference::Volume made;
+  made.n = volume.shape().n;
+  made.coefficients = volume.shape().coefficients;
+  made.values.reserve(values.size());
+  for (const float value : values) made.values.push_back(value / scale);
+  return made;
+}
+
+}  // namespace
+
+LightField::LightField(Session& session, const Frame& frame)
+    : basis_(frame.gathered()),
+      form_(basis_, gathered_transport(frame)),
+      options_(gather_options(frame.options())) {
+  const GatheredLight light = frame.light();
+  if (light.grids.empty())
+    throw Error(ExitCode::usage, "irradiance: no frame was rendered; allowed: after a render");
+  volumes_.reserve(light.grids.size());
+  for (std::size_t c = 0; c < light.grids.size(); ++c) {
+    volumes_.push_back(read_light(session, *light.accumulated[c], light.scale));
+    cascades_.push_back({light.grids[c], &volumes_.back()});
+  }
+}
+
+glm::dvec3 LightField::irradiance(const glm::dvec3& position, const glm::dvec3& normal) const {
+  return reference::gather(basis_, form_, options_, cascades_, position, normal);
+}
+
+bool LightField::reaches(const glm::dvec3& position) const {
+  const ClpvGrid& grid = cascades_.back().grid;
+  const glm::dvec3 at =
+      (position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell};
+  const double cells = options_.grid;
+  return glm::all(glm::greaterThan(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(cells)));
+}
+
+}  // namespace clpv

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// Light at points that no camera sees: the frame's own where it does see them; files of points, good and bad; `clpv query`.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "evaluate/light_field.hpp"
+#include "evaluate/points_file.hpp"
+#include "pipeline/view.hpp"
+#include "reference/view.hpp"
+#include "scene/load.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace clpv::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
+
+RenderOptions small_options(const Scene& scene) {
+  RenderOptions options;
+  options.width = 48;
+  options.height = 27;
+  options.grid = 16;
+  options.rsm_size = 64;
+  options.cascade_size = scene.cascade_size.value_or(options.cascade_size);
+  return options;
+}
+
+struct PixelOfFrame {
+  glm::dvec3 position, normal, irradiance;
+};
+
+/// Every seventh surface that the frame's camera sees, as its images tell.
+std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
+  const int width = frame.options().width, height = frame.options().height;
+  const ClpvView view = camera_view(camera, width, height);
+  const std::vector<float> depth = frame.read(Show::depth), normal = frame.read(Show::normal),
+                           light = frame.read(Show::irradiance);
+  const auto rgb = [](const std::vector<float>& image, std::size_t pixel) {
+    return glm::dvec3(image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]);
+  };
+  std::vector<PixelOfFrame> pixels;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(height); i += 7) {
+    if (depth[4 * i] <= 0) continue;
+    const auto x = static_cast<double>(i % static_cast<std::size_t>(width)),
+               y = static_cast<double>(i / static_cast<std::size_t>(width));
+    pixels.push_back({reference::surface_position(view, x, y, depth[4 * i]), rgb(normal, i), rgb(light, i)});
+  }
+  return pixels;
+}
+
+TEST(LightField, IsWhatTheCameraSeesWhereItSees) {
+  const Scene scene = load_scene(kCornell);
+  const Camera& camera = scene.camera("");
+  for (const TransportKind transport :
+       {TransportKind::semi_lagrangian, TransportKind::sampled, TransportKind::sweep}) {
+    RenderOptions options = small_options(scene);
+    options.transport = transport;
+    Session& session = test_session();
+    Frame frame(session, scene, options);
+    EXPECT_THROW(LightField(session, frame), Error) << "there is no light before a frame";
+    frame.render(camera);
+    const LightField light(session, frame);
+    const std::vector<PixelOfFrame> pixels = pixels_of(frame, camera);
+    ASSERT_GT(pixels.size(), 100u);
+    double brightest = 0, worst = 0;
+    for (const PixelOfFrame& pixel : pixels) {
+      const glm::dvec3 e = light.irradiance(pixel.position, pixel.normal);
+      brightest = std::max(brightest, pixel.irradiance.x);
+      worst = std::max(worst, glm::length(e - pixel.irradiance));
+      EXPECT_TRUE(light.reaches(pixel.position));
+    }
+    EXPECT_GT(brightest, 0.1) << name_of(transport);
+    // Positions and weights are rounded to floats on the device; light changes by much over a cell.
+    EXPECT_LT(worst, 1e-3 * brightest) << name_of(transport);
+  }
+}
+
+TEST(LightField, FillsTheRoomAndEndsWithItsCascades) {
+  const Scene scene = load_scene(kCornell);
+  RenderOptions options = small_options(scene);
+  Session& session = test_session();
+  Frame frame(session, scene, options);
+  frame.render(scene.camera(""));
+  const LightField light(session, frame);
+  // In mid-air: a surface that faces the red wall (at x = .55 m) is lit redder than one that faces the green one.
+  const glm::dvec3 middle = glm::dvec3(scene.lower + scene.upper) / 2.0;
+  const glm::dvec3 left = light.irradiance(middle, {1, 0, 0}), right = light.irradiance(middle, {-1, 0, 0});
+  EXPECT_GT(std::max(left.x / left.y, right.x / right.y), 1.2 * std::min(left.x / left.y, right.x / right.y));
+  const glm::dvec3 far(1000, 0, 0);
+  EXPECT_FALSE(light.reaches(far));
+  EXPECT_EQ(light.irradiance(far, {0, 1, 0}), glm::dvec3(0));
+}
+
+struct PointsFile : ::testing::Test {
+  TemporaryFolder folder;
+  std::vector<SurfacePoint> read(const std::string& text) { return read_points(folder.write("p.csv", text)); }
+  std::string refused(const std::string& text) {
+    try {
+      read(text);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_THAT(error.what(), HasSubstr("p.csv"));
+      return error.what();
+    }
+    ADD_FAILURE() << text << " was accepted";
+    return {};
+  }
+};
+
+TEST_F(PointsFile, LinesOfSixNumbers) {
+  const auto points = read("x,y,z,nx,ny,nz\r\n1,2,3,0,0,2\r\n\n# a remark\n -1.5e1 , .5 ,0,\t-1,0,0");
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(points[0].normal, glm::dvec3(0, 0, 1)) << "made unit";
+  EXPECT_EQ(points[1].position, glm::dvec3(-15, 0.5, 0));
+  EXPECT_THAT(read(""), IsEmpty());
+  EXPECT_THAT(read("x,y,z,nx,ny,nz\n"), IsEmpty());
+}
+
+TEST_F(PointsFile, BadLinesAreNamed) {
+  for (const std::string bad : {"1,2,3,0,0", "1,2,3,0,0,1,7", "1,2,3,0,0,", "1,2,three,0,0,1", "1 2 3 0 0 1",
+                                "nan,2,3,0,0,1", "inf,2,3,0,0,1", "1,2,3,0,nan,1", "1,2,3,0,0,1e999", ","}) {
+    EXPECT_THAT(refused("0,0,0,0,0,1\n" + bad + "\n"),
+                AllOf(HasSubstr("line 2"), HasSubstr("six finite numbers")))
+        << bad;
+  }
+  EXPECT_THAT(refused("nan,2,3,0,0,1"), HasSubstr("line 1"));
+  EXPECT_THAT(refused("x,y,z,nx,ny,nz\nx,y,z,nx,ny,nz\n"), HasSubstr("line 2"));
+  EXPECT_THAT(refused("1,2,3,0,0,0"),
+              AllOf(HasSubstr("line 1"), HasSubstr("normal of length 0"), HasSubstr("a direction")));
+  EXPECT_THAT(refused("1e8,2,3,0,0,1"), AllOf(HasSubstr("line 1"), HasSubstr("within +-10000000 m")));
+  EXPECT_THAT(refused(std::string("1,2,3,0,0,1\n\0\0", 14)), HasSubstr("line 2"));
+  EXPECT_THROW(read_points(folder / "none.csv"), Error);
+  EXPECT_THROW(read_points(folder.path()), Error);
+}
+
+TEST_F(PointsFile, QueryAddsLightToEachPoint) {
+  folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n900,0,0,0,1,0\n");
+  const std::string command = "cd " + folder.path().string() + " && " CLPV_PROGRAM " query " + kCornell +
+                              " --points p.csv --width 48 --height 27 --grid 16 --rsm-size 64 --no-tune";
+  const Outcome outcome = run(command);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 2 points lie outside the cascades"));
+  EXPECT_THAT(outcome.out,
+              AllOf(::testing::StartsWith("x,y,z,nx,ny,nz,red,green,blue\n0.28,0.27,0.3,0,-1,0,"),
+                    ::testing::EndsWith("900,0,0,0,1,0,0,0,0\n")));
+  const double red = std::atof(outcome.out.c_str() + outcome.out.find("0,-1,0,") + 7);
+  EXPECT_GT(red, 0.01);
+  EXPECT_EQ(run(command + " -o out.csv").out, "");
+  EXPECT_EQ(test::read_file(folder / "out.csv"), outcome.out);
+  EXPECT_EQ(run(command + " -o none/out.csv").exit_code, 1);
+  EXPECT_EQ(run(command + " --time nan").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace clpv::test
