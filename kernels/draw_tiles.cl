@@ -19,63 +19,133 @@ typedef struct {
   __global const uint* texels;
 } Scene;
 
-static inline float8 blended(const Vec w, const float a, const float b, const float c) {
+// A triangle of a masked material: what its holes are looked up by.
+typedef struct {
+  Face face;
+  Weights weights;
+  Uv a, b, c;  // of its corners
+  float8 alpha_a, alpha_b, alpha_c;
+  Level level;
+  float base_alpha, cutoff;
+} Mask;
+
+CLPV_INLINE void mask_corner(__global const ClpvVertex* vertex, Vec* position, Uv* uv, float8* alpha) {
+  *position = vec_load(vertex->position);
+  uv->u = (float8)(vertex->uv[0]);
+  uv->v = (float8)(vertex->uv[1]);
+  *alpha = (float8)(vertex->colour[3]);
+}
+
+CLPV_INLINE void mask_of(const ClpvView view, const uint triangle, const Scene scene, Mask* mask) {
+  const ClpvTriangle t = scene.triangles[triangle];
+  __global const ClpvMaterial* material = scene.materials + t.material;
+  Vec a, b, c;
+  mask_corner(scene.vertices + t.vertex[0], &a, &mask->a, &mask->alpha_a);
+  mask_corner(scene.vertices + t.vertex[1], &b, &mask->b, &mask->alpha_b);
+  mask_corner(scene.vertices + t.vertex[2], &c, &mask->c, &mask->alpha_c);
+  mask->face = clpv_face(view, a, b, c);
+  mask->weights = clpv_weights(mask->face);
+  clpv_level_for_all(scene.textures, material->texture * CLPV_TEXTURE_LEVELS, &mask->level);
+  mask->base_alpha = material->base_colour[3];
+  mask->cutoff = material->alpha_cutoff;
+}
+
+static inline float8 blended(const Vec w, const float8 a, const float8 b, const float8 c) {
   return w.x * a + w.y * b + w.z * c;
 }
 
-// In which lanes the surface of a triangle of a masked material, `depth` behind the pixels from (px, py) on, is there
-// rather than a hole.
-CLPV_INLINE int8 solid(const ClpvView view, const uint triangle, const float px, const float py,
-                       const float8 depth, const Scene scene) {
-  const ClpvTriangle t = scene.triangles[triangle];
-  __global const ClpvMaterial* material = scene.materials + t.material;
-  __global const ClpvVertex* a = scene.vertices + t.vertex[0];
-  __global const ClpvVertex* b = scene.vertices + t.vertex[1];
-  __global const ClpvVertex* c = scene.vertices + t.vertex[2];
-  const Face face = clpv_face(view, vec_load(a->position), vec_load(b->position), vec_load(c->position));
+// In which lanes its surface, `depth` behind the pixels from (px, py) on, is there rather than a hole.
+CLPV_INLINE int8 solid(const ClpvView view, const Mask* mask, const float px, const float py, const float8 depth,
+                       __global const uint* texels) {
   const float8 x = px + (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
-  const Vec w = clpv_weights_at(view, face, clpv_weights(face), x, (float8)(py), depth);
-  const Uv uv = {blended(w, a->uv[0], b->uv[0], c->uv[0]), blended(w, a->uv[1], b->uv[1], c->uv[1])};
-  const uint8 finest = (uint8)(material->texture * CLPV_TEXTURE_LEVELS);
-  const float8 alpha = material->base_colour[3] * blended(w, a->colour[3], b->colour[3], c->colour[3]) *
-                       clpv_bilinear_alpha(scene.textures, scene.texels, finest, uv);
-  return alpha >= material->alpha_cutoff;
+  const Vec w = clpv_weights_at(view, mask->face, mask->weights, x, (float8)(py), depth);
+  const Uv uv = {blended(w, mask->a.u, mask->b.u, mask->c.u), blended(w, mask->a.v, mask->b.v, mask->c.v)};
+  const float8 alpha = mask->base_alpha * blended(w, mask->alpha_a, mask->alpha_b, mask->alpha_c) *
+                       clpv_level_alpha(mask->level, texels, uv);
+  return alpha >= mask->cutoff;
 }
 
-// Which pixels of a tile's rows `top` to `bottom` a triangle covers; (px, py) is the tile's first pixel. Out of line:
-// large triangles are few, and this would take the registers that small ones need.
-__attribute__((noinline)) void cover_by_large(__global const ClpvRasterTriangle* r, const int px,
-                                              const int py, const int top, const int bottom, int8* covered) {
-  const long8 lane = (long8)(0, 1, 2, 3, 4, 5, 6, 7);
-  const Edge e0 = edge_at(r, 0, px, py + top), e1 = edge_at(r, 1, px, py + top),
-             e2 = edge_at(r, 2, px, py + top);
-  long8 v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
-  for (int row = top; row <= bottom; ++row) {
-    covered[row] = convert_int8((v0 | v1 | v2) >= 0L);
-    v0 += e0.step_y;
-    v1 += e1.step_y;
-    v2 += e2.step_y;
-  }
-}
+// The edge functions of a triangle in a tile, in steps of whole pixels: a centre is inside where none is negative. Of
+// an Edge all that counts is its sign, which its 256th part has as well, since steps are multiples of 256. Values far
+// from 0 keep their sign throughout the tile: bounded, they fit 32 bits.
+typedef struct {
+  int8 e0, e1, e2;        // at eight pixels of a row
+  int step0, step1, step2;  // to the row below
+} Edges;
 
-// The same for a small triangle: 32 bits do, and the three edges are set up together.
-static inline void cover_by_small(__global const ClpvRasterTriangle* r, const int px, const int py,
-                                  const int top, const int bottom, int8* covered) {
+#define CLPV_FAR_OUT 0x40000000L  // beyond 2 x 7 steps of a triangle that is not CLPV_TRIANGLE_GIANT
+
+// At the row of eight pixels from (px, py) on.
+CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, const int py, Edges* edges) {
   const int8 lane = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
   const int4 x = vload4(0, r->x), y = vload4(0, r->y);
   const int4 dx = x.yzwx - x, dy = y.yzwx - y;
   const int4 top_left = (dy < 0) | ((dy == 0) & (dx > 0));
-  const int4 to_x = px * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - x;
-  const int4 to_y = (py + top) * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - y;
-  const int4 value = dx * to_y - dy * to_x - 1 - top_left;
-  const int4 step_x = -dy * CLPV_SUBPIXELS, step_y = dx * CLPV_SUBPIXELS;
-  int8 v0 = value.x + step_x.x * lane, v1 = value.y + step_x.y * lane, v2 = value.z + step_x.z * lane;
+  const int4 to_x = px * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - x, to_y = py * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - y;
+  const long4 exact = convert_long4(dx) * convert_long4(to_y) - convert_long4(dy) * convert_long4(to_x) - 1L -
+                      convert_long4(top_left);
+  const int4 at = convert_int4(min(max(exact >> 8, (long4)(-CLPV_FAR_OUT)), (long4)(CLPV_FAR_OUT)));
+  edges->e0 = at.x - dy.x * lane, edges->step0 = dx.x;
+  edges->e1 = at.y - dy.y * lane, edges->step1 = dx.y;
+  edges->e2 = at.z - dy.z * lane, edges->step2 = dx.z;
+}
+
+// Which of eight pixels from (px, py) on a giant covers. Out of line: these are few, and this would take the registers
+// that others need.
+__attribute__((noinline)) int8 covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
+  const long8 lane = (long8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const Edge e0 = edge_at(r, 0, px, py), e1 = edge_at(r, 1, px, py), e2 = edge_at(r, 2, px, py);
+  const long8 v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
+  return convert_int8((v0 | v1 | v2) >= 0L);
+}
+
+// A tile, and where it is in the view.
+typedef struct {
+  __global float8* keys;
+  __global uint8* seen;
+  int x, y;  // of its first pixel
+  float far_key;
+} Tile;
+
+// Draws into a tile what a triangle shows there.
+CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
+                      const Mask* mask, __global const uint* texels) {
+  const float8 column = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
+  const uint triangle = kind & CLPV_TRIANGLE_INDEX;
+  const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
+  const int top = max(first_y - tile.y, 0), bottom = min((int)(r->last >> 16) - tile.y, CLPV_TILE - 1);
+  Edges edges;
+  edges_at(r, tile.x, tile.y + top, &edges);
+  const float8 key_left = r->key + r->key_x * (column + (float)(tile.x - first_x));
+  const float8 nearest = (float8)(r->nearest), farthest = (float8)(r->farthest);
+  const float key_y = r->key_y;
   for (int row = top; row <= bottom; ++row) {
-    covered[row] = (v0 | v1 | v2) >= 0;
-    v0 += step_y.x;
-    v1 += step_y.y;
-    v2 += step_y.z;
+    int8 closer = (edges.e0 | edges.e1 | edges.e2) >= 0;
+    edges.e0 += edges.step0, edges.e1 += edges.step1, edges.e2 += edges.step2;
+    if (kind & CLPV_TRIANGLE_GIANT) closer = covered_by_giant(r, tile.x, tile.y + row);
+    float8 key = key_left + key_y * (float)(tile.y + row - first_y);
+    key = key > nearest ? key : nearest;
+    key = key < farthest ? key : farthest;
+    const float8 old = tile.keys[row];
+    const uint8 old_seen = tile.seen[row];
+    closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
+    if (mask) {
+      if (none(closer)) continue;
+      const float8 depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+      closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
+    }
+    tile.keys[row] = select(old, key, closer);
+    tile.seen[row] = select(old_seen, (uint8)(triangle), closer);
   }
+}
+
+// Out of line, as above.
+__attribute__((noinline)) void draw_masked(const ClpvView view, const Tile tile,
+                                           __global const ClpvRasterTriangle* r, const uint kind,
+                                           const Scene scene) {
+  Mask mask;
+  mask_of(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
+  draw(view, tile, r, kind, &mask, scene.texels);
 }
 
 // The farthest key of a tile's pixels.
@@ -94,53 +164,28 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
                          __global const uint* texels, __global float8* keys, __global uint8* seen) {
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0), y = get_global_id(1);
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
-  const uint tile = y * tiles_x + x;
-  const int tile_x = (int)x * CLPV_TILE, tile_y = (int)y * CLPV_TILE;
+  const uint at = y * tiles_x + x;
   const Scene scene = {vertices, triangles, materials, textures, texels};
-  const float far_key = CLPV_ORTHOGRAPHIC ? view.far_depth : -1.0f / view.far_depth;
-  __global float8* tile_keys = keys + tile * CLPV_TILE;
-  __global uint8* tile_seen = seen + tile * CLPV_TILE;
+  const Tile tile = {keys + at * CLPV_TILE, seen + at * CLPV_TILE, (int)x * CLPV_TILE, (int)y * CLPV_TILE,
+                     CLPV_ORTHOGRAPHIC ? view.far_depth : -1.0f / view.far_depth};
   if (fresh) {
     for (int row = 0; row < CLPV_TILE; ++row) {
-      tile_keys[row] = (float8)(INFINITY);
-      tile_seen[row] = (uint8)(UINT_MAX);
+      tile.keys[row] = (float8)(INFINITY);
+      tile.seen[row] = (uint8)(UINT_MAX);
     }
   }
-  const float8 column = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
-  int8 covered[CLPV_TILE];
-  const uint end = starts[tile + 1];
-  float hidden = farthest_of(tile_keys);  // what lies beyond is not seen
-  for (uint i = starts[tile]; i < end; ++i) {
+  const uint end = starts[at + 1];
+  float hidden = farthest_of(tile.keys);  // what lies beyond is not seen
+  for (uint i = starts[at]; i < end; ++i) {
     if (as_float(binned[i].y) > hidden) continue;
     __global const ClpvRasterTriangle* r = list + binned[i].x;
-    const uint triangle = r->triangle & CLPV_TRIANGLE_INDEX;
-    const bool masked = (r->triangle & CLPV_TRIANGLE_MASKED) != 0;
-    const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
-    const int top = max(first_y - tile_y, 0), bottom = min((int)(r->last >> 16) - tile_y, CLPV_TILE - 1);
-    if (r->triangle & CLPV_TRIANGLE_SMALL) {
-      cover_by_small(r, tile_x, tile_y, top, bottom, covered);
+    const uint kind = r->triangle;
+    if (kind & CLPV_TRIANGLE_MASKED) {
+      draw_masked(view, tile, r, kind, scene);
     } else {
-      cover_by_large(r, tile_x, tile_y, top, bottom, covered);
+      draw(view, tile, r, kind, 0, texels);
     }
-    const float8 key_left = r->key + r->key_x * (column + (float)(tile_x - first_x));
-    const float8 nearest = (float8)(r->nearest), farthest = (float8)(r->farthest);
-    const float key_y = r->key_y;
-    for (int row = top; row <= bottom; ++row) {
-      float8 key = key_left + key_y * (float)(tile_y + row - first_y);
-      key = key > nearest ? key : nearest;
-      key = key < farthest ? key : farthest;
-      const float8 old = tile_keys[row];
-      const uint8 old_seen = tile_seen[row];
-      int8 closer = covered[row] & (key <= far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
-      if (masked) {
-        if (none(closer)) continue;
-        const float8 depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
-        closer &= solid(view, triangle, (float)tile_x, (float)(tile_y + row), depth, scene);
-      }
-      tile_keys[row] = select(old, key, closer);
-      tile_seen[row] = select(old_seen, (uint8)(triangle), closer);
-    }
-    hidden = farthest_of(tile_keys);
+    hidden = farthest_of(tile.keys);
   }
 }
 

@@ -24,7 +24,7 @@ typedef struct {
 // Pixels that triangles may cover: those whose centres lie in the box about their corners.
 typedef struct {
   int8 left, right, top, bottom;
-  int8 small;  // no side longer than CLPV_SMALL_PIXELS
+  int8 small, giant;  // no side longer than CLPV_SMALL_PIXELS; one longer than CLPV_GIANT_PIXELS
 } Box;
 
 static inline int8 least(const int8 a, const int8 b, const int8 c) { return min(a, min(b, c)); }
@@ -42,8 +42,9 @@ static inline Box box_of(const ClpvView view, const Eight t) {
   box.right = min(last_centre(most_x), (int8)((int)view.width - 1));
   box.top = max(first_centre(least_y), (int8)(0));
   box.bottom = min(last_centre(most_y), (int8)((int)view.height - 1));
-  box.small = (most_x - least_x <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS) &
-              (most_y - least_y <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS);
+  const int8 longest = max(most_x - least_x, most_y - least_y);
+  box.small = longest <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS;
+  box.giant = longest > CLPV_GIANT_PIXELS * CLPV_SUBPIXELS;
   return box;
 }
 
@@ -89,7 +90,7 @@ CLPV_INLINE void write_words(const ClpvView view, const Eight t, const Box box, 
   const Vec plane = clpv_key_plane(view, t.face, convert_float8(box.left), convert_float8(box.top));
   const int8 edge_on = ~(isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z));
   const float8 none = (float8)(0.0f);
-  const uint8 kinds = (as_uint8(box.small) & CLPV_TRIANGLE_SMALL) |
+  const uint8 kinds = (as_uint8(box.giant) & CLPV_TRIANGLE_GIANT) |
                       ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uint8)(CLPV_TRIANGLE_MASKED) : (uint8)(0u));
   vstore8(t.a.x, 0, words->word[0]);
   vstore8(t.b.x, 0, words->word[1]);

@@ -28,6 +28,15 @@ CLPV_INLINE void clpv_level(__global const float4* table, const uint8 entry, Lev
   level->wrap = as_uint8(CLPV_COLUMN(rows, w));
 }
 
+// The same entry for all lanes.
+CLPV_INLINE void clpv_level_for_all(__global const float4* table, const uint entry, Level* level) {
+  const uint4 row = as_uint4(table[entry]);
+  level->offset = (uint8)(row.x);
+  level->width = (uint8)(row.y);
+  level->height = (uint8)(row.z);
+  level->wrap = (uint8)(row.w);
+}
+
 // A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two ends
 // then clamp. A coordinate that is no number, or beyond the integers, reads 0.
 static inline float8 clpv_fold(const float8 u, const uint8 wrap) {
@@ -109,17 +118,21 @@ CLPV_INLINE void clpv_bilinear(__global const float4* table, __global const uint
 #undef CLPV_CHANNEL
 }
 
-// The same, of alpha: 0..1.
-CLPV_INLINE float8 clpv_bilinear_alpha(__global const float4* table, __global const uint* texels,
-                                       const uint8 entry, const Uv uv) {
-  Level level;
-  clpv_level(table, entry, &level);
+// The same in a level, of alpha: 0..1.
+CLPV_INLINE float8 clpv_level_alpha(const Level level, __global const uint* texels, const Uv uv) {
   Four f;
   clpv_four(level, texels, uv, &f);
 #define CLPV_ALPHA(texel) (convert_float8(as_int8((texel) >> 24)) * (1.0f / 255.0f))
   return clpv_filter(f, CLPV_ALPHA(f.texel00), CLPV_ALPHA(f.texel01), CLPV_ALPHA(f.texel10),
                      CLPV_ALPHA(f.texel11));
 #undef CLPV_ALPHA
+}
+
+CLPV_INLINE float8 clpv_bilinear_alpha(__global const float4* table, __global const uint* texels,
+                                       const uint8 entry, const Uv uv) {
+  Level level;
+  clpv_level(table, entry, &level);
+  return clpv_level_alpha(level, texels, uv);
 }
 
 // The mip level, 0 being the texture itself, for steps of `square` squared texels from pixel to pixel: log2 of the

@@ -23,12 +23,14 @@
 #define CLPV_OUT_OF_SIGHT (CLPV_LEFT | CLPV_RIGHT | CLPV_ABOVE | CLPV_BELOW | CLPV_BEYOND | CLPV_BEHIND)
 #define CLPV_NEEDS_CLIPPING (CLPV_BEHIND | CLPV_OUT_OF_GUARD)
 
-// Up to this size the edge functions of a triangle fit 32 bits, as far as a tile beside it.
+// Up to this size the edge functions of a triangle fit 32 bits, near it.
 #define CLPV_SMALL_PIXELS 64
+// And up to this one their 256th part does, within a tile (draw_tiles.cl).
+#define CLPV_GIANT_PIXELS 131072
 
 // In `triangle`, beside its index in the scene:
 #define CLPV_TRIANGLE_MASKED 0x80000000u  // its material has holes
-#define CLPV_TRIANGLE_SMALL 0x40000000u   // no side longer than CLPV_SMALL_PIXELS along x or y
+#define CLPV_TRIANGLE_GIANT 0x40000000u   // a side longer than CLPV_GIANT_PIXELS along x or y
 #define CLPV_TRIANGLE_INDEX 0x3fffffffu
 
 typedef struct {
