@@ -1,31 +1,35 @@
 // SPDX-License-Identifier: MIT
-// What a light sends to a point in space, before anything stands in its way (kernels/shared/light.h).
+// What a light sends to points in space, before anything stands in its way (kernels/shared/light.h).
 // The one home of cone, range and distance: direct light, RSMs and their twins must agree on them.
 #ifndef CLPV_LIGHTING_H
 #define CLPV_LIGHTING_H
 
+#include "lanes.h"
 #include "shared/light.h"
+#include "vec.h"
 
 // Irradiance [W/m^2] at `position` [m] on a plane across the light's ray; `towards`: unit, from there to the light. A
 // kind that is none gives no light.
-static inline float3 clpv_light_irradiance(const ClpvLight light, const float3 position, float3* towards) {
-  const float3 intensity = (float3)(light.intensity[0], light.intensity[1], light.intensity[2]);
-  const float3 direction = (float3)(light.direction[0], light.direction[1], light.direction[2]);
+static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
+  const Vec intensity = vec_of(light.intensity), direction = vec_of(light.direction);
   if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
-    *towards = -direction;
+    *towards = vec(-direction.x, -direction.y, -direction.z);
     return intensity;
   }
-  const float3 offset = (float3)(light.position[0], light.position[1], light.position[2]) - position;
-  const float distance = fmax(length(offset), CLPV_LIGHT_LEAST_DISTANCE);
-  *towards = offset / distance;
-  if (light.kind != CLPV_LIGHT_SPOT && light.kind != CLPV_LIGHT_POINT) return (float3)(0.0f);
-  if (light.range > 0.0f && distance > light.range) return (float3)(0.0f);
-  float attenuation = 1.0f / (distance * distance);
+  const Vec offset = vec_minus(vec_of(light.position), position);
+  const float8 none = (float8)(0.0f), all = (float8)(1.0f), least = (float8)(CLPV_LIGHT_LEAST_DISTANCE);
+  float8 distance = sqrt(vec_dot_unfused(offset, offset));
+  distance = distance > least ? distance : least;
+  *towards = vec(offset.x / distance, offset.y / distance, offset.z / distance);
+  if (light.kind != CLPV_LIGHT_SPOT && light.kind != CLPV_LIGHT_POINT) return vec(none, none, none);
+  float8 attenuation = 1.0f / (distance * distance);
   if (light.kind == CLPV_LIGHT_SPOT) {
-    const float cone = clamp(light.cone_offset - light.cone_scale * dot(*towards, direction), 0.0f, 1.0f);
+    const float8 in_cone = light.cone_offset - light.cone_scale * vec_dot_unfused(*towards, direction);
+    const float8 cone = in_cone > none ? (in_cone < all ? in_cone : all) : none;
     attenuation *= cone * cone;
   }
-  return intensity * attenuation;
+  if (light.range > 0.0f) attenuation = distance > light.range ? none : attenuation;
+  return vec_times(intensity, attenuation);
 }
 
 #endif

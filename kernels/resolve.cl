@@ -8,6 +8,7 @@
 // resolve_rsm, 0: resolve_camera. Every material has textures: white ones where the scene has none for it.
 #include "lanes.h"
 #include "lighting.h"
+#include "surface_row.h"
 #include "texture.h"
 #include "tile_row.h"
 #include "triangle.h"
@@ -143,20 +144,6 @@ CLPV_INLINE void look(const ClpvView view, const Eight p, const float8 depth, co
 #endif
 }
 
-// Lane by lane: a vector, or 0 where nothing is seen.
-typedef struct {
-  float x[CLPV_LANES], y[CLPV_LANES], z[CLPV_LANES];
-} Unpacked;
-
-static inline Unpacked unpack(const int8 hit, const Vec v) {
-  const float8 none = (float8)(0.0f);
-  Unpacked lanes;
-  vstore8(hit ? v.x : none, 0, lanes.x);
-  vstore8(hit ? v.y : none, 0, lanes.y);
-  vstore8(hit ? v.z : none, 0, lanes.z);
-  return lanes;
-}
-
 // What these pixels see, and which of them see anything; stores their depths.
 CLPV_INLINE void resolve(const ClpvView view, const Eight p, __global const float8* keys,
                          __global const uint8* triangles_seen, CLPV_SCENE, __global float* depths,
@@ -199,14 +186,6 @@ __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
 
 #else
 
-// What the light sends through a pixel [W].
-static inline float3 incident_flux(const ClpvView view, const ClpvLight light, const float px, const float py,
-                                   const float depth) {
-  float3 towards;
-  return clpv_footprint(view, px, py, depth) *
-         clpv_light_irradiance(light, clpv_position(view, px, py, depth), &towards);
-}
-
 // `colour_scale`: Surface::colour_scale.
 __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const float8* keys,
                           __global const uint8* triangles_seen, CLPV_SCENE, __global float* depths,
@@ -217,13 +196,15 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
   int8 hit;
   Seen seen;
   resolve(view, p, keys, triangles_seen, CLPV_PASS_SCENE, depths, &hit, &seen);
-  const Unpacked normal = unpack(hit, seen.normal), albedo = unpack(hit, seen.albedo);
+  const float8 depth = stored_depth(view, keys[p.row]);
+  Vec towards;
+  const Vec sent = vec_times(clpv_light_irradiance(light, positions(view, p, depth), &towards),
+                             footprints(view, p, depth));
+  const Unpacked normal = unpack(hit, seen.normal), flux = unpack(hit, vec_product(seen.albedo, sent));
   for (uint i = 0; i < p.count; ++i) {
     const uint pixel = p.py * view.width + p.px + i;
-    const float3 sent = incident_flux(view, light, (float)(p.px + i), (float)p.py, depths[pixel]);
     clpv_store_normal(normals, pixel, normal.x[i], normal.y[i], normal.z[i]);
-    clpv_store_colour(fluxes, pixel, albedo.x[i] * sent.x, albedo.y[i] * sent.y, albedo.z[i] * sent.z,
-                      colour_scale);
+    clpv_store_colour(fluxes, pixel, flux.x[i], flux.y[i], flux.z[i], colour_scale);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "lanes.h"
 #include "shared/raster.h"
 #include "surface.h"
+#include "vec.h"
 
 #ifndef CLPV_ORTHOGRAPHIC
 #define CLPV_ORTHOGRAPHIC 0
@@ -36,11 +37,30 @@ static inline float8 hit_depth(const float8 key) {
   return CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
 }
 
-static inline void store_depth(const ClpvView view, const Eight p, const float8 key, __global float* depths) {
+// What is kept of it; 0 where there is none.
+static inline float8 stored_depth(const ClpvView view, const float8 key) {
   const float8 depth = hit_depth(key), near = (float8)(view.near_depth);
+  return key == (float8)(INFINITY) ? (float8)(0.0f) : depth > near ? depth : near;
+}
+
+static inline void store_depth(const ClpvView view, const Eight p, const float8 key, __global float* depths) {
   float stored[CLPV_LANES];
-  vstore8(key == (float8)(INFINITY) ? (float8)(0.0f) : depth > near ? depth : near, 0, stored);
+  vstore8(stored_depth(view, key), 0, stored);
   for (uint i = 0; i < p.count; ++i) depths[p.py * view.width + p.px + i] = stored[i];
+}
+
+// Lane by lane: a vector, or 0 where nothing is seen.
+typedef struct {
+  float x[CLPV_LANES], y[CLPV_LANES], z[CLPV_LANES];
+} Unpacked;
+
+static inline Unpacked unpack(const int8 hit, const Vec v) {
+  const float8 none = (float8)(0.0f);
+  Unpacked lanes;
+  vstore8(hit ? v.x : none, 0, lanes.x);
+  vstore8(hit ? v.y : none, 0, lanes.y);
+  vstore8(hit ? v.z : none, 0, lanes.z);
+  return lanes;
 }
 
 #endif

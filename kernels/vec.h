@@ -38,6 +38,12 @@ static inline Real vec_dot(const Vec a, const Vec b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+// The same, each product rounded whether a device could fuse or not.
+static inline Real vec_dot_unfused(const Vec a, const Vec b) {
+#pragma OPENCL FP_CONTRACT OFF
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
 // a + s b
 static inline Vec vec_add_scaled(const Vec a, const Real s, const Vec b) {
   return vec(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);

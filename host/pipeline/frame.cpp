@@ -186,7 +186,7 @@ void Frame::prepare_lights(const Camera& camera) {
 void Frame::rasterize_camera(const Camera& camera) {
   const StageScope scope(session_, {Pass::rasterize_camera});
   const ClpvView view = camera_view(camera, options_.width, options_.height);
-  if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, true);
+  if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, buffers_.emissive);
   camera_surface_->view = view;
   rasterizer_.rasterize_camera(*camera_surface_);
 }

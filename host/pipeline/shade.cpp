@@ -8,7 +8,8 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kLocal = 64;  // pixels of a row a group
+constexpr std::size_t kLocal = 64, kLanes = 8;  // pixels a group shades; a work-item lights
+const cl::NDRange kRow(8, 1);                   // work-items that light side by side
 constexpr unsigned kLeastShadowTexels = CLPV_SHADOW_TAPS;
 
 const ProgramSource kSource{"shade.cl", {}, {}};
@@ -42,22 +43,25 @@ void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& ligh
     pixels_ = pixels_of(camera);
     session_.reserve(direct_, pixels_ * sizeof(cl_float4), "direct light");
   }
-  session_.fill_zero(direct_, pixels_ * sizeof(cl_float4));
+  if (lights.empty()) session_.fill_zero(direct_, pixels_ * sizeof(cl_float4));
+  bool fresh = true;
   for (const ShadowedLight& shadowed : lights) {
     require_fit(shadowed);
-    add(camera, shadowed);
+    add(camera, shadowed, fresh);
+    fresh = false;
   }
 }
 
-void Shader::add(const Surface& camera, const ShadowedLight& shadowed) {
+void Shader::add(const Surface& camera, const ShadowedLight& shadowed, bool fresh) {
   const std::size_t count = shadowed.views.size();
   session_.reserve(views_, count * sizeof(ClpvView), "a light's views");
   session_.write(views_, shadowed.views);
   for (std::size_t which = 0; which < std::max<std::size_t>(count, 1); ++which) {
     light_
         .set(camera.view, camera.depth, camera.normal, shadowed.light, views_, static_cast<cl_uint>(count),
-             static_cast<cl_uint>(which), count > 0 ? shadowed.depths[which] : Buffer(), direct_)
-        .launch(cl::NDRange(camera.view.width, camera.view.height), cl::NDRange(kLocal, 1));
+             static_cast<cl_uint>(which), count > 0 ? shadowed.depths[which] : Buffer(),
+             static_cast<cl_uint>(fresh && which == 0 ? 1 : 0), direct_)
+        .launch(cl::NDRange((camera.view.width + kLanes - 1) / kLanes, camera.view.height), kRow);
   }
 }
 

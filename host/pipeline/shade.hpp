@@ -38,7 +38,7 @@ class Shader {
   void show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image);
 
  private:
-  void add(const Surface& camera, const ShadowedLight& shadowed);
+  void add(const Surface& camera, const ShadowedLight& shadowed, bool fresh);
 
   Session& session_;
   Kernel light_, shade_;
