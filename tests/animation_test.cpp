@@ -155,6 +155,19 @@ TEST_F(AnimationTest, OnTheDeviceMovedPartsAreWhatAFreshUploadHas) {
   EXPECT_EQ(followed.bounds.lower.x, -8);
 }
 
+TEST_F(AnimationTest, WhatIsFittedToASceneGoesByItsFirstInstant) {
+  animate<float>(0, "translation", {0, 1}, {0, 0, 0, 500, 0, 0});
+  MovingScene moving = load();
+  const double reach = moving.scene().reach();
+  const glm::vec3 eye = moving.scene().cameras[0].eye;
+  EXPECT_GT(reach, 0.5);
+  EXPECT_LT(reach, 20);
+  moving.pose(1);
+  EXPECT_EQ(moving.scene().lower.x, 500);
+  EXPECT_EQ(moving.scene().reach(), reach);
+  EXPECT_EQ(moving.scene().cameras[0].eye, eye) << "of the camera that was added";
+}
+
 TEST_F(AnimationTest, OfSeveralThatMoveTheSameTheFirstDoes) {
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
   model.add("animations", {{"samplers", json::array()}, {"channels", json::array()}});

@@ -10,6 +10,7 @@
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
 #include "commands/quality_subjects.hpp"
+#include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
 #include "evaluate/quality_report.hpp"
 #include "support/error.hpp"
@@ -131,6 +132,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
   const Device& device = session.device();
   nlohmann::json json = {
       {"schema", 1},
+      {"time", options.subjects.time},
       {"version", CLPV_VERSION},
       {"view", options.view},
       {"frames", options.frames},
@@ -186,6 +188,7 @@ void add_options(CLI::App& command, Options& options) {
       .add_option("--camera", options.subjects.cameras,
                   "by name, repeatable (default: all cameras of all scenes)")
       ->type_name("NAME");
+  add_seconds(command, "--time", options.subjects.time, "the instant of scenes that move [s]");
   command
       .add_option(
           "--vary", options.varied,

@@ -49,7 +49,9 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
   std::vector<Subject> subjects;
   for (const std::string& path : given.scenes) {
     Subject& subject = subjects.emplace_back();
-    subject.scene = load_scene(path, {model_for(path, given)});
+    MovingScene moving(path, {model_for(path, given)});
+    moving.pose(given.time);
+    subject.scene = std::move(moving).take();
     for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
     for (const Camera& camera : subject.scene.cameras) {
       const bool chosen = given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;

@@ -16,6 +16,7 @@ struct QualitySubjects {
   std::vector<std::string> scenes;   ///< files
   std::vector<std::string> models;   ///< "STEM=PATH", STEM that of a scene's file; one scene: "PATH" does
   std::vector<std::string> cameras;  ///< names; none: all there are
+  double time = 0;                   ///< the instant shown [s]
 };
 
 /// A scene, the cameras chosen, and the truth of what each of them sees.
@@ -32,7 +33,7 @@ std::filesystem::path quality_cache(const std::string& given);
 /// Throws Error(usage) for a model that belongs to none of the scenes.
 void check_models(const QualitySubjects& given);
 
-/// Loads the scenes, without truths. Throws like load_scene, and Error(usage) for a camera that no scene has.
+/// Loads the scenes as they are at that instant, without truths. Throws like load_scene, and Error(usage) for a camera that no scene has.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
 /// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced.

@@ -42,8 +42,8 @@ void run(const Options& options, const Shared& shared) {
   const std::vector<SurfacePoint> points = read_points(options.points);
   const RenderRequest& request = options.request;
   MovingScene moving(request.scene, {request.model});
-  RenderOptions resolved = resolve_options(request.frame, moving.scene());  // at 0 s
   moving.pose(options.time);
+  RenderOptions resolved = resolve_options(request.frame, moving.scene());
   const Camera& camera = moving.scene().camera(request.camera);
   tell_of_scene(moving.scene(), camera, resolved);
   Session session(choose_device(shared.device), ProgramCache::of_user());

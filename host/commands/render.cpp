@@ -107,8 +107,8 @@ void run(const Options& options, const Shared& shared) {
   const RenderRequest& request = options.request;
   MovingScene moving(request.scene, {request.model});
   const Scene& scene = moving.scene();
-  RenderOptions resolved = resolve_options(request.frame, scene);  // at 0 s, whatever instant is shown
   moving.pose(options.time);
+  RenderOptions resolved = resolve_options(request.frame, scene);
   const Camera& camera = scene.camera(request.camera);
   tell_of_scene(scene, camera, resolved);
   progress.advance();

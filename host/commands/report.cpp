@@ -11,6 +11,7 @@
 #include "commands/drawing.hpp"
 #include "commands/frame_options.hpp"
 #include "commands/quality_subjects.hpp"
+#include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
@@ -188,6 +189,7 @@ void add_report(CLI::App& app, Shared& shared) {
       ->type_name("[STEM=]PATH");
   command->add_option("--camera", options->subjects.cameras, "by name, repeatable (default: all)")
       ->type_name("NAME");
+  add_seconds(*command, "--time", options->subjects.time, "the instant of scenes that move [s]");
   command->add_option("--quality", options->quality, "figures made by clpv quality --json, repeatable")
       ->type_name("FILE.json");
   command

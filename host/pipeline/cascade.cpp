@@ -16,16 +16,6 @@ constexpr double kFarTooLarge = 4;  // times the edge that just holds the scene:
 
 constexpr double kAligned = 1e-2;  // [finer cells]: rounding of origins in float32, some hundred cells away
 
-/// How far the bounding box reaches from the eye of any camera, along any axis [m].
-double reach_of(const Scene& scene) {
-  double reach = 0;
-  for (const Camera& camera : scene.cameras) {
-    const glm::vec3 away = glm::max(glm::abs(scene.lower - camera.eye), glm::abs(scene.upper - camera.eye));
-    reach = std::max<double>({reach, away.x, away.y, away.z});
-  }
-  return reach;
-}
-
 }  // namespace
 
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells) {
@@ -45,7 +35,7 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
 }
 
 double fitting_cascade_size(const Scene& scene, int count, double size) {
-  const double just = std::ldexp(2 * reach_of(scene) * kRoom, 1 - count);
+  const double just = std::ldexp(2 * scene.reach() * kRoom, 1 - count);
   return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
 }
 

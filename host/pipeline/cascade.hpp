@@ -23,7 +23,7 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
 std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer);
 
 /// The finest edge [m] that suits `scene`: `size`, where the coarsest of `count` cascades then holds the scene's bounding
-/// box as seen from each of its cameras and is not far too large for it; else the edge with which it just holds the box.
+/// box as seen from each of its cameras (of a scene that moves, at 0 s) and is not far too large for it; else the edge with which it just holds the box.
 double fitting_cascade_size(const Scene& scene, int count, double size);
 
 /// Whether some triangle may lie in the coarsest of such cascades about `eye`: none does, and there is no indirect light.

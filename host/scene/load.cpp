@@ -101,6 +101,7 @@ MovingScene::MovingScene(const std::filesystem::path& path, const LoadOptions& o
   find_bounds(scene_);
   add_defaults(scene_, description_.lights.has_value(), notes);
   check_camera_lights(scene_);
+  if (moves()) scene_.start_reach = scene_.reach();
   scene_.name = path.stem().string();
   scene_.notes = notes.take();
 }

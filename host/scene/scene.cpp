@@ -3,9 +3,21 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "support/error.hpp"
 
 namespace clpv {
+
+double Scene::reach() const {
+  if (start_reach) return *start_reach;
+  double reach = 0;
+  for (const Camera& camera : cameras) {
+    const glm::vec3 away = glm::max(glm::abs(lower - camera.eye), glm::abs(upper - camera.eye));
+    reach = std::max<double>({reach, away.x, away.y, away.z});
+  }
+  return reach;
+}
 
 const Camera& Scene::camera(const std::string& name) const {
   std::vector<std::string> names;

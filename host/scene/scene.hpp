@@ -60,11 +60,15 @@ struct Scene {
   std::vector<Camera> cameras;  ///< at least one after loading
   std::vector<Light> lights;
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
+  std::optional<double> start_reach;  ///< reach() at 0 s, of a scene that moves
   float exposure = 0;                 ///< [EV]: the shown image is radiance x 2^exposure
   std::optional<float> cascade_size;  ///< the scene file's wish for the finest cascade's edge [m]
   std::optional<int> cascades;
   std::vector<std::string>
       notes;  ///< what the loader decided and a user should be told ("no light: added a sun")
+
+  /// How far the bounding box reaches from the eye of any camera, along any axis [m]; of a scene that moves, at 0 s.
+  double reach() const;
 
   /// The camera of that name; empty: the first. Throws Error(usage) that lists the names there are.
   const Camera& camera(const std::string& name) const;
