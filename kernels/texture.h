@@ -159,6 +159,8 @@ CLPV_INLINE void clpv_trilinear(__global const float4* table, __global const uin
   const float8 weight = level - convert_float8(fine);
   Vec a, b;
   clpv_bilinear(table, texels, finest + as_uint8(fine), uv, &a);
+  *colour = a;
+  if (none(weight > (float8)(0.0f))) return;  // seen from so near that there is no finer level
   clpv_bilinear(table, texels, finest + as_uint8(coarse), uv, &b);
   colour->x = clpv_mix(a.x, b.x, weight);
   colour->y = clpv_mix(a.y, b.y, weight);

@@ -26,6 +26,7 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const in
                                                 const int z, const CLPV_VOLUME_CELL cell) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
 #if CLPV_LANES == 8
+#if CLPV_VOLUME_N % 8  // (a dead branch would still be compiled, into a thousand instructions on PoCL)
   if (x + 8 > CLPV_VOLUME_N) {  // the row's end: what lies beyond is not this one's
     for (int lane = 0; lane < CLPV_VOLUME_N - x; ++lane) {
 #define CLPV_DO(i) CLPV_WRITE(volume, at + lane * CLPV_LANE + i * CLPV_NEXT, ((const float*)&cell.c##i)[lane]);
@@ -34,6 +35,7 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const in
     }
     return;
   }
+#endif
   CLPV_BEFORE_STORE
   CLPV_VOLUME_EACH(CLPV_STORE_LANES)
   CLPV_AFTER_STORE
