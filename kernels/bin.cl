@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Sorts what rasterize.cl entered by tile: a counting sort whose counting it has done.
+// Sorts what rasterize.cl entered by the slices of tiles: a counting sort whose counting it has done.
 //
-//   sum_places       what chunks of CLPV_TILE_CHUNK tiles hold in all
-//   start_places     counts of entries become where each tile's first one goes; one more tells where the last ones end
+//   sum_places       what chunks of CLPV_SLICE_CHUNK slices hold in all
+//   start_places     counts of entries become where each slice's first one goes; one more tells where the last ones end
 //   bin_entries      entries -> binned: two words each, a triangle's place in the list and its least key
 #include "shared/raster.h"
 
-__kernel void sum_places(const uint tiles, __global const uint* places, __global uint* totals) {
-  const uint chunk = get_global_id(0), first = chunk * CLPV_TILE_CHUNK;
-  if (first >= tiles) return;
-  const uint end = min(first + CLPV_TILE_CHUNK, tiles);
+__kernel void sum_places(const uint slices, __global const uint* places, __global uint* totals) {
+  const uint chunk = get_global_id(0), first = chunk * CLPV_SLICE_CHUNK;
+  if (first >= slices) return;
+  const uint end = min(first + CLPV_SLICE_CHUNK, slices);
   uint sum = 0;
-  for (uint tile = first; tile < end; ++tile) sum += places[tile];
+  for (uint slice = first; slice < end; ++slice) sum += places[slice];
   totals[chunk] = sum;
 }
 
-__kernel void start_places(const uint tiles, __global uint* places, __global const uint* totals) {
-  const uint chunk = get_global_id(0), first = chunk * CLPV_TILE_CHUNK;
-  if (first >= tiles) return;
-  const uint end = min(first + CLPV_TILE_CHUNK, tiles);
+__kernel void start_places(const uint slices, __global uint* places, __global const uint* totals) {
+  const uint chunk = get_global_id(0), first = chunk * CLPV_SLICE_CHUNK;
+  if (first >= slices) return;
+  const uint end = min(first + CLPV_SLICE_CHUNK, slices);
   uint at = 0;
   for (uint before = 0; before < chunk; ++before) at += totals[before];
-  for (uint tile = first; tile < end; ++tile) {
-    const uint count = places[tile];
-    places[tile] = at;
+  for (uint slice = first; slice < end; ++slice) {
+    const uint count = places[slice];
+    places[slice] = at;
     at += count;
   }
-  if (end == tiles) places[tiles] = at;
+  if (end == slices) places[slices] = at;
 }
 
 // A work-group takes CLPV_ENTRY_GROUP entries, so that there need not be a work-item for each that there is room for.
@@ -38,9 +38,9 @@ __kernel void bin_entries(__global const uint* counts, const uint most_listed, c
   if (counts[CLPV_LISTED] > most_listed) return;
   const uint stop = min(group + CLPV_ENTRY_GROUP, end);
   for (uint i = group + get_local_id(0); i < stop; i += get_local_size(0)) {
-    const uint tile = entries[CLPV_ENTRY_WORDS * i];
-    if (tile == CLPV_NO_TILE) continue;
-    binned[places[tile] + entries[CLPV_ENTRY_WORDS * i + 1]] =
+    const uint slice = entries[CLPV_ENTRY_WORDS * i];
+    if (slice == CLPV_NO_SLICE) continue;
+    binned[places[slice] + entries[CLPV_ENTRY_WORDS * i + 1]] =
         (uint2)(entries[CLPV_ENTRY_WORDS * i + 2], entries[CLPV_ENTRY_WORDS * i + 3]);
   }
 }

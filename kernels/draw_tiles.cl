@@ -174,9 +174,9 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       tile.seen[row] = (uint8)(UINT_MAX);
     }
   }
-  const uint end = starts[at + 1];
+  const uint end = starts[(at + 1) * CLPV_SLICES];
   float hidden = farthest_of(tile.keys);  // what lies beyond is not seen
-  for (uint i = starts[at]; i < end; ++i) {
+  for (uint i = starts[at * CLPV_SLICES]; i < end; ++i) {
     if (as_float(binned[i].y) > hidden) continue;
     __global const ClpvRasterTriangle* r = list + binned[i].x;
     const uint kind = r->triangle;

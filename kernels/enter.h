@@ -29,11 +29,21 @@ static inline Tiles tiles_of(const Words* words, const int lane) {
   return tiles;
 }
 
-// An entry of triangle `index` of the list, as the next one of a tile.
-static inline void enter(__global uint* entry, const uint tile, const uint index, const uint nearest,
+// The slice that a triangle of this least key is in: equal ones along parallel rays, else one for each doubling of the
+// depth.
+static inline uint slice_of(const ClpvView view, const float nearest) {
+#if CLPV_ORTHOGRAPHIC
+  return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
+#else
+  return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0, CLPV_SLICES - 1);
+#endif
+}
+
+// An entry of triangle `index` of the list, as the next one of a tile's slice.
+static inline void enter(__global uint* entry, const uint slice, const uint index, const uint nearest,
                          volatile __global uint* places) {
-  entry[0] = tile;
-  entry[1] = atomic_inc(places + tile);
+  entry[0] = slice;
+  entry[1] = atomic_inc(places + slice);
   entry[2] = index;
   entry[3] = nearest;
 }
@@ -42,9 +52,11 @@ static inline void enter(__global uint* entry, const uint tile, const uint index
 static inline uint enter_all(const ClpvView view, const Words* words, const int lane, const uint index, uint at,
                              __global uint* entries, volatile __global uint* places) {
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, nearest = (uint)words->word[11][lane];
+  const uint slice = slice_of(view, as_float(nearest));
   const Tiles tiles = tiles_of(words, lane);
+#define CLPV_SLICE_AT(x, y) (((uint)(y) * tiles_x + (uint)(x)) * CLPV_SLICES + slice)
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
-    enter(entries + 4 * at, (uint)tiles.top * tiles_x + (uint)tiles.left, index, nearest, places);
+    enter(entries + CLPV_ENTRY_WORDS * at, CLPV_SLICE_AT(tiles.left, tiles.top), index, nearest, places);
     return at + 1;
   }
   long at_left[3], step_x[3], step_y[3];
@@ -58,11 +70,14 @@ static inline uint enter_all(const ClpvView view, const Words* words, const int 
   for (int y = tiles.top; y <= tiles.bottom; ++y) {
     long e0 = at_left[0], e1 = at_left[1], e2 = at_left[2];
     for (int x = tiles.left; x <= tiles.right; ++x) {
-      if ((e0 | e1 | e2) >= 0) enter(entries + 4 * at++, (uint)y * tiles_x + (uint)x, index, nearest, places);
+      if ((e0 | e1 | e2) >= 0) {
+        enter(entries + CLPV_ENTRY_WORDS * at++, CLPV_SLICE_AT(x, y), index, nearest, places);
+      }
       e0 += step_x[0], e1 += step_x[1], e2 += step_x[2];
     }
     at_left[0] += step_y[0], at_left[1] += step_y[1], at_left[2] += step_y[2];
   }
+#undef CLPV_SLICE_AT
   return at;
 }
 
@@ -95,7 +110,7 @@ CLPV_INLINE void list_lanes(const ClpvView view, const Words* words, const int8 
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];
     at = enter_all(view, words, lane, index++, at, entries, places);
   }
-  for (; at < end; ++at) entries[4 * at] = CLPV_NO_TILE;
+  for (; at < end; ++at) entries[CLPV_ENTRY_WORDS * at] = CLPV_NO_SLICE;
 }
 
 #endif

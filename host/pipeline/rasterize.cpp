@@ -24,6 +24,9 @@ unsigned tiles_along(unsigned pixels) {
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
 }
+unsigned slice_count(const ClpvView& view) {
+  return tile_count(view) * CLPV_SLICES;
+}
 /// A work-item a row of pixels of a tile.
 cl::NDRange rows_of_tiles(const ClpvView& view) {
   return {tiles_along(view.width), view.height};
@@ -106,11 +109,11 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
 }
 
 void Rasterizer::find_visible(const Pass& pass) {
-  const std::size_t pixels = padded_pixels(pass.view), tiles = tile_count(pass.view);
+  const std::size_t pixels = padded_pixels(pass.view), slices = slice_count(pass.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
-  session_.reserve(places_, (tiles + 1) * sizeof(cl_uint), "tiles");
-  session_.reserve(totals_, (tiles / CLPV_TILE_CHUNK + 1) * sizeof(cl_uint), "tiles by chunks");
+  session_.reserve(places_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
+  session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
   draw(pass, 0, scene_.triangle_count, true);
 }
 
@@ -119,7 +122,7 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   Drawing& kernels = drawing(pass.view);
   const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
-  session_.fill_zero(places_, tile_count(pass.view) * sizeof(cl_uint));
+  session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
   kernels.set_up
       .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
@@ -133,10 +136,10 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
 
 /// Sorts what set_up() entered by tile.
 void Rasterizer::bin(const ClpvView& view) {
-  const unsigned tiles = tile_count(view);
-  const std::size_t chunks = (tiles + CLPV_TILE_CHUNK - 1) / CLPV_TILE_CHUNK;
-  sum_places_.set(tiles, places_, totals_).launch(chunks, kGroup);
-  start_places_.set(tiles, places_, totals_).launch(chunks, kGroup);
+  const unsigned slices = slice_count(view);
+  const std::size_t chunks = (slices + CLPV_SLICE_CHUNK - 1) / CLPV_SLICE_CHUNK;
+  sum_places_.set(slices, places_, totals_).launch(chunks, kGroup);
+  start_places_.set(slices, places_, totals_).launch(chunks, kGroup);
   const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
   bin_entries_.set(counts_, list_room(), entry_room(), entries_, places_, binned_)
       .launch(groups * kGroup, kGroup);

@@ -52,11 +52,15 @@ typedef struct {
 #define CLPV_ENTERED_TOO_MANY 3
 #define CLPV_RASTER_COUNTERS 4
 
-// An entry is four words: a tile or CLPV_NO_TILE, which one of the tile's it is, the triangle's place in the list, and
-// its least key. Sorted by tile, the last two are left.
-#define CLPV_NO_TILE 0xffffffffu
+// A tile's triangles are sorted into slices of depth, nearest first: most of what lies behind others is then met when
+// they are drawn.
+#define CLPV_SLICES 8
+
+// An entry is four words: a tile's slice or CLPV_NO_SLICE, which one of the slice's it is, the triangle's place in the
+// list, and its least key. Sorted by slice, the last two are left.
+#define CLPV_NO_SLICE 0xffffffffu
 #define CLPV_ENTRY_WORDS 4
 #define CLPV_ENTRY_GROUP 1024u  // a work-group sorts
-#define CLPV_TILE_CHUNK 256u    // tiles that a work-item adds up
+#define CLPV_SLICE_CHUNK 256u   // slices that a work-item adds up
 
 #endif
