@@ -85,10 +85,13 @@ CLPV_INLINE void clpv_four(const Level level, __global const uint* texels, const
   const uint8 upper = level.offset + y.first * level.width, lower = level.offset + y.second * level.width;
   const uint8 at00 = upper + x.first, at01 = upper + x.second, at10 = lower + x.first,
               at11 = lower + x.second;
-  four->texel00 = (uint8)CLPV_GATHER(texels, at00);
-  four->texel01 = (uint8)CLPV_GATHER(texels, at01);
-  four->texel10 = (uint8)CLPV_GATHER(texels, at10);
-  four->texel11 = (uint8)CLPV_GATHER(texels, at11);
+  // Volatile, or else LLVM makes gather instructions of these loads: slower than loads one by one on processors whose
+  // gathers were mended (resolve_camera: 1.19 times the time).
+  volatile __global const uint* each = texels;
+  four->texel00 = (uint8)CLPV_GATHER(each, at00);
+  four->texel01 = (uint8)CLPV_GATHER(each, at01);
+  four->texel10 = (uint8)CLPV_GATHER(each, at10);
+  four->texel11 = (uint8)CLPV_GATHER(each, at11);
   four->x = x.weight;
   four->y = y.weight;
 }
