@@ -81,9 +81,9 @@ std::optional<Tuned> best_shape(Bench& bench, const Variant& variant, const Tune
 SuiteOptions TuneOptions::rendering() {
   const RenderOptions rendered;
   SuiteOptions suite;
-  suite.settings.transport = rendered.transport, suite.settings.state = rendered.state;
+  suite.settings.transport = TransportKind::sampled;
   suite.settings.storage = rendered.storage, suite.settings.occlusion = rendered.occlusion;
-  suite.bases = {rendered.basis};
+  suite.bases = {"sh2"};
   return suite;
 }
 

@@ -15,7 +15,7 @@ struct TuneOptions {
   std::vector<Layout> layouts;       ///< to choose from; empty: all
   int repetitions = 7;
 
-  /// What frames propagate by default.
+  /// What frames of the published scheme propagate, in a frame's storage: a sweep takes no steps to tune.
   static SuiteOptions rendering();
 };
 

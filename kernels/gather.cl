@@ -26,6 +26,10 @@
 #define CLPV_FLOORED 0  // 1: E is at least what clpv_floor_weights() give
 #endif
 
+#ifndef CLPV_VISIBLE
+#define CLPV_VISIBLE 0  // 1: cells that are hidden from a surface do not light it (see.cl)
+#endif
+
 #if CLPV_PACKED
 #include "gather_packed.h"
 #else

@@ -2,10 +2,10 @@
 // Light swept through a cascade: for each direction once through the grid, upstream to downstream, plane by plane across
 // the axis it is most along (discrete ordinates by short characteristics; docs/method.md, 'The sweep').
 //
-//   D = I + sum_k t_k [ I_k + T_k (D_k - I_k) ],   k the four cells of the plane before that light comes from
+//   D = I + sum_k t_k T_k D_k,   k the four cells of the plane before that light comes from
 //
-// D [W/sr] is all light along the direction, I what was injected, T the transmittance of the way: the first hop is not
-// blocked. T_k D_k + (1 - T_k) I_k is the bracket. Outside the grid I is 0 and D the coarser cascade's light.
+// D [W/sr] is all light along the direction, I what was injected, T the transmittance of the way. Outside the grid D is the
+// coarser cascade's light.
 //
 // In: `sources` (I of each bin), `ways` (T), `border` (D round the grid, sweep_border.cl). Out: `sums`, for each bin the sum
 // of its directions by their shares; `shell`, D in the cells that a finer cascade's border is made of.
@@ -33,28 +33,19 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
                                   const int from_next, __global float* to, CLPV_BUFFER_OUT sums, const int plane,
                                   const int row, const int column) {
   const int at = clpv_sweep_at(bin, plane, row, column), here = clpv_live_at(row, column);
-  const int before = at - bin.plane_sign * bin.plane_step;
-  const int rows = bin.row_sign * bin.row_step, columns = bin.column_sign;
-  const int live_rows = bin.row_sign * CLPV_SWEEP_PITCH;
+  const int columns = bin.column_sign, live_rows = bin.row_sign * CLPV_SWEEP_PITCH;
 #if CLPV_BLOCKING
   const CLPV_REAL t0 = CLPV_SWEEP_LOAD(ways + bin.ways[0] * CLPV_SWEEP_VOLUME, at);
   const CLPV_REAL t1 = CLPV_SWEEP_LOAD(ways + bin.ways[1] * CLPV_SWEEP_VOLUME, at);
   const CLPV_REAL t2 = CLPV_SWEEP_LOAD(ways + bin.ways[2] * CLPV_SWEEP_VOLUME, at);
   const CLPV_REAL t3 = CLPV_SWEEP_LOAD(ways + bin.ways[3] * CLPV_SWEEP_VOLUME, at);
-#endif
-  for (int channel = 0; channel < 3; ++channel) {
-    const int volume = (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME;
-    CLPV_BUFFER_IN source = sources + volume;
-    const CLPV_REAL injected = CLPV_SWEEP_LOAD(source, at);
-#if CLPV_BLOCKING
-    const CLPV_REAL i0 = CLPV_SWEEP_LOAD(source, before) * (1.0f - t0);
-    const CLPV_REAL i1 = CLPV_SWEEP_LOAD(source, before - columns) * (1.0f - t1);
-    const CLPV_REAL i2 = CLPV_SWEEP_LOAD(source, before - rows) * (1.0f - t2);
-    const CLPV_REAL i3 = CLPV_SWEEP_LOAD(source, before - rows - columns) * (1.0f - t3);
-#define CLPV_CARRIED(k, d) fma(t##k, d, i##k)
+#define CLPV_CARRIED(k, d) (t##k * (d))
 #else
 #define CLPV_CARRIED(k, d) (d)
 #endif
+  for (int channel = 0; channel < 3; ++channel) {
+    const int volume = (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME;
+    const CLPV_REAL injected = CLPV_SWEEP_LOAD(sources + volume, at);
     CLPV_REAL sum = 0.0f;
 #define CLPV_TAP(k) ((CLPV_REAL)(direction[part].taps[k]))
 #pragma unroll

@@ -94,7 +94,8 @@ TEST(Frame, SponzaLooksAsItDid) {
 
 TEST(Frame, RedLightFallsNearTheRedWallAndGreenNearTheGreenOne) {
   const Scene scene = load_scene(scene_path("cornell.json"));
-  for (const TransportKind transport : {TransportKind::sampled, TransportKind::upwind}) {
+  for (const TransportKind transport :
+       {TransportKind::sampled, TransportKind::upwind, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
     const Image light = render(scene, options, Show::irradiance);
@@ -138,8 +139,10 @@ TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
     device.memory_bytes = session.most_device_bytes() * 3 / 2;
   }
   Session session(device);
-  for (options.iterations = 2; options.iterations < 6; ++options.iterations)
+  for (const Directions directions : {Directions::of24, Directions::of96}) {
+    options.coarser_directions = directions;
     Frame(session, scene, options).render(scene.cameras.front());
+  }
   EXPECT_EQ(session.device_bytes(), 0u);
 }
 
@@ -181,6 +184,7 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   RenderOptions options = small_options(scene);
   options.occlusion = false;
+  options.transport = TransportKind::upwind;
   options.iterations = 0;  // what stands inside both grids is then the same; light from outside has no way in
   const auto cell = static_cast<float>(options.cascade_size / options.grid);
   const glm::vec3 eye = (glm::floor(scene.camera("").eye / cell) + 0.25f) * cell;

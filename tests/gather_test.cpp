@@ -11,8 +11,11 @@
 #include <numbers>
 #include <random>
 
+#include "pipeline/see.hpp"
+#include "reference/see.hpp"
 #include "support/error.hpp"
 #include "tests/support/gather_fields.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace clpv {
 namespace {
@@ -179,6 +182,66 @@ TEST(Gather, IsotropicLightStandsOnItsOwnFloor) {
   const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, kTilted);
   expect_all(gather(*basis, upwind, {.floor = 1}, {uniform(basis->constant())}, image),
              kKappa * pi / (kCell * kCell));
+}
+
+/// Light in front of a wall across x through the origin, none behind it.
+struct Walled {
+  reference::Volume light;
+  std::vector<std::uint8_t> hidden;
+};
+
+Walled walled(const Basis& basis) {
+  Scene wall;
+  test::add_quad(wall, {0, -9, -9}, {0, 20, 0}, {0, 0, 20}, test::add_material(wall));
+  return {volume_of(4,
+                    [&](int channel, const glm::dvec3& centre) {
+                      const bool in_front = centre.x < kGrid / 2.0;
+                      return times(in_front ? (channel + 1) * 2.0 : 0.0, basis.constant());
+                    }),
+          reference::see(wall, grid_of(0)).least};
+}
+
+TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
+  const auto basis = make_basis("sh2");
+  const Walled scene = walled(*basis);
+  const double lit = 4 * 2.0 / (kCell * kCell);
+  const auto on_wall = [&](double side, Gathering gathering) {
+    const SurfaceImage image = walk({side * 1e-4, -1.3, -1}, {side * 1e-4, 1.2, 1}, {side, 0, 0});
+    return gather(*basis, intensity_transport(), {.gather = gathering, .gather_offset = 0.25}, {scene.light},
+                  image, scene.hidden);
+  };
+  const auto is = [](double e) { return [e](std::size_t) { return e; }; };
+  expect_all(on_wall(-1, Gathering::visible), is(lit), 3 * lit, kFloat);
+  expect_all(on_wall(1, Gathering::visible), is(0), 3 * lit, kFloat);
+  // Else a quarter of a cell off the wall three quarters are from its own side, and a quarter is from beyond.
+  const double own = 0.75 + 1e-4 / kCell;
+  expect_all(on_wall(-1, Gathering::all), is(own * lit), 3 * lit, kFloat);
+  expect_all(on_wall(1, Gathering::all), is((1 - own) * lit), 3 * lit, kFloat);
+}
+
+TEST(Gather, WhereNothingIsSeenAllCellsCount) {
+  const auto basis = make_basis("sh2");
+  const SurfaceImage image = walk({-1, 0.1, 0.3}, {1, -0.2, 0.1}, kTilted);
+  const std::vector<std::uint8_t> nothing(SceneSight::bytes(kGrid), 0xff);
+  const Both both = gather(*basis, intensity_transport(), {.gather = Gathering::visible},
+                           {uniform(times(1.75, basis->constant()))}, image, nothing);
+  expect_all(both, 4 * 1.75 / (kCell * kCell));
+}
+
+TEST(Gather, LightIsContinuousWhereCellsGoOutOfSight) {
+  const auto basis = make_basis("sh2");
+  Scene wall;  // ends within the grid: behind its edge cells come into sight
+  test::add_quad(wall, {0, -9, -9}, {0, 9, 0}, {0, 0, 20}, test::add_material(wall));
+  const std::vector<std::uint8_t> hidden = reference::see(wall, grid_of(0)).least;
+  const SurfaceImage image = walk({0.1, -0.4, 0.13}, {0.1, 0.4, 0.13}, {0, 0, 1});
+  const Both both =
+      gather(*basis, intensity_transport(), {.gather = Gathering::visible, .gather_offset = 0.25},
+             {walled(*basis).light}, image, hidden);
+  const double lit = 4 * 2.0 / (kCell * kCell), step = 0.8 / kCell / kPixels;  // [cells]
+  EXPECT_LT(both.device.front().x, 0.05 * lit);
+  EXPECT_GT(both.device.back().x, 0.2 * lit);
+  for (std::size_t pixel = 1; pixel < kPixels; ++pixel)
+    ASSERT_LT(std::abs(both.device[pixel].x - both.device[pixel - 1].x), 12 * step * lit) << pixel;
 }
 
 TEST(Gather, TwoRunsAreIdentical) {

@@ -177,32 +177,35 @@ TEST(Sweep, EveryPlaneCarriesAllLightUntilTheBorder) {
 // A wall blocks sum_a |k_a| / |k| of what passes it k cells aside: all along its axis, and what it should of the rest.
 TEST(Sweep, AWallLetsThroughWhatItsWaysDo) {
   constexpr int kGrid = 11, kWall = 6;
-  for (int axis = 0; axis < 3; ++axis) {
-    reference::Volume geometry(kGrid + 1, 3, 1);
-    for (int i = 0; i < (kGrid + 1) * (kGrid + 1); ++i) {
-      glm::ivec3 p;
-      p[axis] = kWall, p[(axis + 1) % 3] = i % (kGrid + 1), p[(axis + 2) % 3] = i / (kGrid + 1);
-      geometry.at(0, axis, p.x, p.y, p.z) = 1;
-    }
-    const glm::ivec3 source = glm::ivec3(5) + (kWall - 3 - 5) * glm::ivec3(axis == 0, axis == 1, axis == 2);
-    const reference::Volume light = swept(
-        kGrid, 1, [&](int, const glm::ivec3& p) { return p == source ? 1.0 : 0.0; }, &geometry);
-    const std::vector<SweepBin> bins = sweep_bins(1);
-    for (int b = 0; b < kSweepBins; ++b) {
-      const SweepBin& bin = bins[static_cast<std::size_t>(b)];
-      if (bin.axis != axis || bin.sign[axis] < 0) continue;
-      double before = 0, behind = 0, open = 0;
-      for (int i = 0; i < kGrid * kGrid; ++i) {
+  for (const int distance : {1, 3}) {  // from the source on, the first cell's way included
+    for (int axis = 0; axis < 3; ++axis) {
+      reference::Volume geometry(kGrid + 1, 3, 1);
+      for (int i = 0; i < (kGrid + 1) * (kGrid + 1); ++i) {
         glm::ivec3 p;
-        p[bin.u] = i % kGrid, p[bin.v] = i / kGrid;
-        p[axis] = kWall - 1, before += light.value(0, b, p.x, p.y, p.z);
-        p[axis] = kWall, behind += light.value(0, b, p.x, p.y, p.z);
+        p[axis] = kWall, p[(axis + 1) % 3] = i % (kGrid + 1), p[(axis + 2) % 3] = i / (kGrid + 1);
+        geometry.at(0, axis, p.x, p.y, p.z) = 1;
       }
-      const SweepDirection& d = bin.directions[0];
-      for (std::size_t k = 0; k < d.taps.size(); ++k)
-        open += d.taps[k] * (1 - 1 / glm::length(glm::dvec3(bin.offset[k])));
-      EXPECT_GT(before, 0.5) << axis << ' ' << b;
-      EXPECT_NEAR(behind, open * before, kExact) << axis << ' ' << b;
+      const glm::ivec3 source =
+          glm::ivec3(5) + (kWall - distance - 5) * glm::ivec3(axis == 0, axis == 1, axis == 2);
+      const reference::Volume light = swept(
+          kGrid, 1, [&](int, const glm::ivec3& p) { return p == source ? 1.0 : 0.0; }, &geometry);
+      const std::vector<SweepBin> bins = sweep_bins(1);
+      for (int b = 0; b < kSweepBins; ++b) {
+        const SweepBin& bin = bins[static_cast<std::size_t>(b)];
+        if (bin.axis != axis || bin.sign[axis] < 0) continue;
+        double before = 0, behind = 0, open = 0;
+        for (int i = 0; i < kGrid * kGrid; ++i) {
+          glm::ivec3 p;
+          p[bin.u] = i % kGrid, p[bin.v] = i / kGrid;
+          p[axis] = kWall - 1, before += light.value(0, b, p.x, p.y, p.z);
+          p[axis] = kWall, behind += light.value(0, b, p.x, p.y, p.z);
+        }
+        const SweepDirection& d = bin.directions[0];
+        for (std::size_t k = 0; k < d.taps.size(); ++k)
+          open += d.taps[k] * (1 - 1 / glm::length(glm::dvec3(bin.offset[k])));
+        EXPECT_GT(before, 0.5) << axis << ' ' << b;
+        EXPECT_NEAR(behind, open * before, kExact) << axis << ' ' << b;
+      }
     }
   }
 }
@@ -284,7 +287,7 @@ TEST(Sweep, RefusesGridsThatAreNotNested) {
 /// A small frame of the Cornell box, swept; `change` of its options.
 struct Lit {
   std::vector<std::vector<float>> volumes;  // of what is accumulated and blocks, a cascade, coarsest first
-  std::vector<int> blocked;                 // cascades whose blockers were made
+  std::vector<int> blocked, seen;           // cascades whose blockers were made, and what is hidden in them
   double irradiance = 0;                    // sum over all pixels
 };
 
@@ -303,6 +306,7 @@ class SweptFrame {
     });
     for (const StageTime& time : test_session().timeline().times()) {
       if (time.mark.pass == Pass::block) lit.blocked.push_back(time.mark.cascade.value());
+      if (time.mark.pass == Pass::see) lit.seen.push_back(time.mark.cascade.value());
     }
     const std::vector<float> pixels = frame_.read(Show::irradiance);
     for (std::size_t i = 0; i < pixels.size(); ++i) lit.irradiance += i % 4 == 3 ? 0.0 : double{pixels[i]};
@@ -332,7 +336,8 @@ TEST(SweptFrame, LightDoesNotDependOnWhereTheCameraLooks) {
   camera.forward = glm::normalize(glm::vec3(1, 0.2f, -0.3f));
   camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, camera.up), camera.forward));
   const Lit aside = frame.render(camera);
-  EXPECT_TRUE(aside.blocked.empty()) << "nothing moved that blocks";
+  EXPECT_EQ(ahead.seen, ahead.blocked);
+  EXPECT_TRUE(aside.blocked.empty() && aside.seen.empty()) << "nothing moved that blocks";
   ASSERT_EQ(ahead.volumes.size(), 6u);
   for (std::size_t i = 0; i < ahead.volumes.size(); ++i)
     EXPECT_TRUE(aside.volumes[i] == ahead.volumes[i]) << i;

@@ -80,9 +80,10 @@ TEST(TuneProgram, RenderUsesWhatWasFoundUnlessToldNotTo) {
       user.run("tune --basis sh2 --grid 8 --layout soa --occlusion off --repetitions 1 --json");
   ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
   EXPECT_THAT(tuned.out, HasSubstr("\"chosen\": true"));
-  const std::string render = std::string(" render ") + CLPV_SOURCE_DIR +
-                             "/scenes/cornell.json --basis sh2 --grid 8 --width 32 --height 24 -o " +
-                             (user.home.path() / "a.exr").string();
+  const std::string render =
+      std::string(" render ") + CLPV_SOURCE_DIR +
+      "/scenes/cornell.json --basis sh2 --transport sampled --grid 8 --width 32 --height 24 -o " +
+      (user.home.path() / "a.exr").string();
   const auto used = user.run("-v" + render);
   ASSERT_EQ(used.exit_code, 0) << used.err;
   EXPECT_THAT(used.err, HasSubstr("tuned: layout"));
@@ -109,7 +110,8 @@ TEST(TuneProgram, EveryLayoutIsTried) {
 TEST(TuneProgram, RefusesBadUsage) {
   const User user;
   EXPECT_EQ(user.run("tune --basis sh17").exit_code, 2);
-  EXPECT_EQ(user.run("tune --state fluxes").exit_code, 2);
+  EXPECT_EQ(user.run("tune --transport upwind --state fluxes").exit_code, 2);
+  EXPECT_EQ(user.run("tune --transport sweep").exit_code, 2);
   EXPECT_EQ(user.run("tune --grid 0").exit_code, 2);
 }
 

@@ -19,6 +19,8 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
       return check_sweep(session, scope);
     case Stage::carry_late:
       return check_carry_late(session);
+    case Stage::see:
+      return check_see(session);
     case Stage::gather:
       return check_gather(session, scope);
     case Stage::shade:

@@ -3,6 +3,7 @@
 // them.
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <memory>
 #include <random>
 
@@ -11,6 +12,7 @@
 #include "checks/tolerances.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"
+#include "pipeline/see.hpp"
 #include "reference/gather.hpp"
 
 namespace clpv::reference {
@@ -34,7 +36,15 @@ struct Variant {
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};
   bool filtered = true;  ///< images alone
+  Gathering gather = Gathering::all;
 };
+
+/// A byte for each point between cells of all cascades: each cell hidden from half of them.
+std::vector<std::uint8_t> random_hidden(std::mt19937& random) {
+  std::vector<std::uint8_t> hidden(kCascades * SceneSight::bytes(kGrid));
+  for (std::uint8_t& bits : hidden) bits = static_cast<std::uint8_t>(random() % 256);
+  return hidden;
+}
 
 /// One cascade's sums, on the device and for the twin.
 struct Lit {
@@ -47,6 +57,11 @@ struct Lit {
   }
 };
 
+std::string_view compared_as(const Variant& variant) {
+  if (variant.gather == Gathering::visible) return "gather-visible";
+  return sampled_by_device(variant.format) && variant.filtered ? "gather-filter" : "gather";
+}
+
 CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
                       const Variant& variant) {
   std::mt19937 random(11);
@@ -56,6 +71,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   }
   const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
   const GatherOptions options{.grid = kGrid,
+                              .gather = variant.gather,
                               .floor = variant.floor,
                               .lobes = variant.lobes,
                               .table = variant.table,
@@ -69,16 +85,21 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
     volumes.push_back(&lit[c].device);
     cascades.push_back({grids[c], &lit[c].twin});
   }
+  const bool visible = variant.gather == Gathering::visible;
+  const std::vector<std::uint8_t> hidden = visible ? random_hidden(random) : std::vector<std::uint8_t>(4);
+  const Buffer hidden_on_device = session.upload(hidden, "check: hidden cells");
+  for (std::size_t c = 0; c < grids.size(); ++c)
+    cascades[c].hidden = hidden.data() + (visible ? c * SceneSight::bytes(kGrid) : 0);
   const Surface camera = upload_surface(session, image);
   Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
-  Gatherer(session, basis, transport, options).gather(camera, grids, volumes, irradiance);
+  Gatherer(session, basis, transport, options)
+      .gather(camera, grids, volumes, irradiance, 1, visible ? &hidden_on_device : nullptr);
   std::vector<glm::dvec4> twin;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
   CheckResult result =
       compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
                      "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport.kind), variant.name));
-  const bool by_filter = sampled_by_device(variant.format) && variant.filtered;
-  result.allowed = tolerance_in(by_filter ? "gather-filter" : "gather", variant.format);
+  result.allowed = tolerance_in(compared_as(variant), variant.format);
   return result;
 }
 
@@ -95,6 +116,10 @@ void check_formats(Session& session, CheckResults& results) {
       variant.filtered = false;
     }
     results.push_back(check_one(session, *basis, transport, variant));
+    variant.gather = Gathering::visible;
+    variant.name += " visible";
+    results.push_back(check_one(session, *basis, transport, variant));
+    variant = {.name = format_name(format), .format = format};
     if (!sampled_by_device(format)) continue;
     // More coefficients than irradiance needs are packed, from images too.
     const std::unique_ptr<Basis> large = make_basis("bins24");
@@ -112,6 +137,10 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
     results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"plain"}));
     results.push_back(
         check_one(session, *basis, make_transport(TransportKind::upwind, *basis), {"floor", 0.15}));
+    if (scope.thorough || name == "bins24") {
+      results.push_back(check_one(session, *basis, make_transport(TransportKind::upwind, *basis),
+                                  {.name = "visible", .gather = Gathering::visible}));
+    }
     if (basis->centres().empty()) continue;  // no table
     const LobeOptions functions{.table_functions = true};
     results.push_back(

@@ -34,6 +34,7 @@ inline constexpr Tolerance kTolerances[] = {
      "shares of samples outside what rounding can decide (reference/block.hpp); 64ths are exact in any "
      "format"},
     {"block-half", 0, "as block"},
+    {"see", 0, "hidden cells of a point, apart from those that rounding can decide (reference/see.hpp)"},
     {"propagate", 2e-5,
      "float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14)"},
     {"propagate-run-time-lobes", 2e-4,
@@ -55,6 +56,8 @@ inline constexpr Tolerance kTolerances[] = {
     {"sweep-half", 4e-3,
      "numbers of 11 bits: injected light, transmittance, the sums, and what is made of them; light on its "
      "way is float32"},
+    {"gather-visible", 1e-3, "as gather, over the share of weight that is seen, 1/64 at least"},
+    {"gather-visible-half", 2e-2, "as gather-half, over that share"},
     {"carry-late", 5e-6,
      "sums of nine float32 numbers; the twin weighs by where the float32 origins put the centres; measured "
      "2e-7"},

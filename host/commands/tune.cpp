@@ -60,6 +60,8 @@ void print_json(const std::vector<bench::Tuned>& tuned) {
 
 void run(const Options& options, const Shared& shared) {
   const RenderOptions& settings = options.tune.suite.settings;
+  if (settings.transport == TransportKind::sweep)
+    throw Error(ExitCode::usage, "--transport sweep: it takes no steps to tune; allowed: all others");
   for (const std::string& basis : options.tune.suite.bases) {
     const Transport transport = make_transport(settings, *make_basis(basis));
     if (settings.state == State::fluxes && !std::holds_alternative<FaceTransport>(transport.scheme))

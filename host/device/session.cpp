@@ -199,21 +199,22 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
   timeline_.add(event);
 }
 
-void Session::fill_zero(const Buffer& buffer, std::size_t bytes) {
-  if (oclgrind()) return fill_by_kernel(buffer, bytes);
+void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from) {
+  if (oclgrind()) return fill_by_kernel(buffer, bytes, from);
   cl::Event event;
   // By bytes: PoCL then calls memset, and is five times as fast as with words or with a kernel.
-  queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, 0, bytes, nullptr, &event);
+  queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
   timeline_.add(event);
 }
 
 // Oclgrind 21.10 does not take a fill for an initialisation, and a write to a part of a buffer makes it lose track of
 // the rest: its memory checker would report what is sound.
-void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes) {
-  const auto words = static_cast<cl_uint>(bytes / sizeof(cl_uint));
+void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from) {
+  const auto words = static_cast<cl_uint>(bytes / sizeof(cl_uint)),
+             first = static_cast<cl_uint>(from / sizeof(cl_uint));
   constexpr std::size_t kGroup = 64;
   Kernel(*this, {.file = "zero.cl", .literals = {}, .generated = {}}, "zero")
-      .set(buffer, words)
+      .set(buffer, first, words)
       .launch(cl::NDRange(words), cl::NDRange(kGroup));
 }
 

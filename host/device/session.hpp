@@ -68,7 +68,8 @@ class Session {
   /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current
   /// mark.
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
-  void fill_zero(const Buffer& buffer, std::size_t bytes);  ///< the first `bytes`, a multiple of 4
+  /// `bytes` from byte `from` on, both multiples of 4.
+  void fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from = 0);
   void copy(const Buffer& from, const Buffer& to, std::size_t bytes);
 
   template <typename T>
@@ -116,7 +117,7 @@ class Session {
   bool load(Program& program);
 
   void require_room(std::size_t bytes, const std::string& what) const;
-  void fill_by_kernel(const Buffer& buffer, std::size_t bytes);
+  void fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from);
 
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
 

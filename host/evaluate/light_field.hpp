@@ -2,6 +2,7 @@
 // The light that a frame's volumes hold, at points that no camera need see.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -32,6 +33,7 @@ class LightField {
   GatherForm form_;
   GatherOptions options_;
   std::vector<reference::Volume> volumes_;
+  std::vector<std::uint8_t> hidden_;  ///< empty where all cells light a surface
   std::vector<reference::Cascade> cascades_;
 };
 

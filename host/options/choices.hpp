@@ -129,6 +129,34 @@ constexpr std::string_view name_of(Blockers blockers) {
   return {};
 }
 
+/// Which of the eight cells round a point light a surface.
+enum class Gathering {
+  all,
+  visible,  ///< those that the scene's triangles do not hide from it
+};
+
+constexpr std::string_view name_of(Gathering gathering) {
+  switch (gathering) {
+    case Gathering::all:
+      return "all";
+    case Gathering::visible:
+      return "visible";
+  }
+  return {};
+}
+
+/// How far off a surface it looks volumes up [cells]: half a cell, so that it is not lit by those behind it; closer where
+/// those are told apart.
+constexpr double usual_gather_offset(Gathering gathering) {
+  switch (gathering) {
+    case Gathering::all:
+      return 0.5;
+    case Gathering::visible:
+      return 0.25;
+  }
+  return {};
+}
+
 /// Directions that light is swept along: 24 bins in so many parts (basis/sweep.hpp).
 enum class Directions { of24, of96, of216, of384 };
 

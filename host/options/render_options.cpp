@@ -87,6 +87,9 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("blocker-stride", o.blocker_stride, "of the camera's pixels every so many each way become blockers",
         Range{1, kMostStride});
   visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight", Named{});
+  visit("gather", o.gather,
+        "cells that a surface is lit by, of the eight round it: all, or those that no triangle hides",
+        Named{});
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
   visit("gather-floor", o.gather_floor, "least irradiance, as a share of its mean over all normals",
         Range{0, 1});

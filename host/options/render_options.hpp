@@ -28,9 +28,9 @@ struct RenderOptions {
   int table_size = 256;
   TableStorage table = TableStorage::buffer;
   Evaluation evaluate = Evaluation::exact;
-  TransportKind transport = TransportKind::semi_lagrangian;
+  TransportKind transport = TransportKind::sweep;
   Directions directions = Directions::of96;
-  Directions coarser_directions = Directions::of24;
+  Directions coarser_directions = Directions::of96;
   State state = State::coefficients;
   Layout layout = Layout::soa;
   Storage storage = Storage::float16;
@@ -42,11 +42,12 @@ struct RenderOptions {
   RsmFormat rsm_format = RsmFormat::float32;
   int shadow_size = 1024;
   bool occlusion = true;
-  Blockers blockers = Blockers::seen;
+  Blockers blockers = Blockers::scene;
   Blocking blocking = Blocking::areas;
   int blocker_stride = 3;
   Injection injection = Injection::nearest;
-  double gather_offset = 0.5;
+  Gathering gather = Gathering::visible;
+  double gather_offset = usual_gather_offset(Gathering::visible);
   double gather_floor = 0;
   bool late_light = true;
   int width = 960, height = 540;

@@ -31,6 +31,7 @@ SweepOptions sweep_options(const RenderOptions& options) {
 
 GatherOptions gather_options(const RenderOptions& options) {
   return {.grid = options.grid,
+          .gather = options.gather,
           .gather_offset = options.gather_offset,
           .floor = options.gather_floor,
           .lobes = options.lobes(),

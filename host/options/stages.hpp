@@ -9,7 +9,7 @@ namespace clpv {
 
 /// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
 /// that both sides share, is none of a frame's: it is checked before all others.
-enum class Stage { sizes, rasterize, inject, block, propagate, sweep, carry_late, gather, shade };
+enum class Stage { sizes, rasterize, inject, block, propagate, sweep, carry_late, see, gather, shade };
 
 constexpr std::string_view name_of(Stage stage) {
   switch (stage) {
@@ -27,6 +27,8 @@ constexpr std::string_view name_of(Stage stage) {
       return "sweep";
     case Stage::carry_late:
       return "carry-late";
+    case Stage::see:
+      return "see";
     case Stage::gather:
       return "gather";
     case Stage::shade:
@@ -46,6 +48,7 @@ enum class Pass {
   block,
   propagate,  ///< in steps, or by a sweep
   carry_late,
+  see,  ///< a cascade
   gather,
   shade,
   whole,
@@ -69,6 +72,8 @@ constexpr std::string_view name_of(Pass pass) {
       return "propagate";
     case Pass::carry_late:
       return "carry-late";
+    case Pass::see:
+      return "see";
     case Pass::gather:
       return "gather";
     case Pass::shade:

@@ -2,6 +2,7 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "basis/sweep.hpp"
 #include "pipeline/light_scale.hpp"
@@ -48,8 +49,11 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
                     carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
   const double masks =
       options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
+  const double sight = options.gather == Gathering::visible
+                           ? static_cast<double>(SceneSight::bytes(grid)) * options.cascades
+                           : 0;
   if (sweeps(options)) {
-    return bytes(lit) + options.cascades * bytes({grid, kSweepBins, 3}) +
+    return sight + bytes(lit) + options.cascades * bytes({grid, kSweepBins, 3}) +
            geometry_volumes(options) * bytes(blocking) + masks + Sweeper::bytes(sweep_options(tried));
   }
   // What adding takes besides: steps, and what is carried down, add to light; injection adds to its cells.
@@ -59,7 +63,7 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   const auto cells = [&](const VolumeShape& shape) {
     return static_cast<double>(Accumulator::cells_bytes(options.format(), shape));
   };
-  return bytes(lit) * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) +
+  return sight + bytes(lit) * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) +
          3 * bytes(carried) + (1 + geometry_volumes(options)) * bytes(blocking) + masks + 2 * spare(lit) +
          spare(carried) + cells(lit) + cells(blocking);
 }
@@ -150,7 +154,9 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   }
   if (options.occlusion && options.blockers == Blockers::scene)
     blocker_.emplace(session, buffers_, options.grid, options.format());
+  if (options.gather == Gathering::visible) sight_.emplace(session, buffers_, options.grid, options.cascades);
   blocked_.resize(static_cast<std::size_t>(options.cascades));
+  seen_.resize(blocked_.size());
   const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
@@ -159,8 +165,10 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
 
 void Frame::scene_moved() {
   upload_moving(session_, scene_, buffers_);
-  // The scene's own triangles block anew where some of them may have moved.
-  if (!scene_.moving.empty()) std::fill(blocked_.begin(), blocked_.end(), std::nullopt);
+  // The scene's own triangles block and hide anew where some of them may have moved.
+  if (scene_.moving.empty()) return;
+  std::fill(blocked_.begin(), blocked_.end(), std::nullopt);
+  std::fill(seen_.begin(), seen_.end(), std::nullopt);
 }
 
 /// Lights as the scene has them now. Their buffers are kept as long as the same ones shine.
@@ -236,17 +244,26 @@ void Frame::inject_geometry(int cascade) {
   injector_.inject_geometry(*camera_surface_, grid, geometry, options_.blocker_stride);
 }
 
+/// Whether what is known of a cascade is known of the grid it has now; from here on it is.
+bool Frame::stands(std::vector<std::optional<ClpvGrid>>& known, int cascade) const {
+  const auto c = static_cast<std::size_t>(cascade);
+  const ClpvGrid& now = grids_[c];
+  const std::optional<ClpvGrid> before = std::exchange(known[c], now);
+  return before && std::equal(now.origin, now.origin + 3, before->origin) && before->cell == now.cell;
+}
+
 /// Whether anything had to be done: a scene blocks as before while the grid stands.
 bool Frame::block(int cascade) {
-  const auto c = static_cast<std::size_t>(cascade);
-  const auto same = [](const ClpvGrid& a, const ClpvGrid& b) {
-    return std::equal(a.origin, a.origin + 3, b.origin) && a.cell == b.cell;
-  };
-  if (blocked_[c] && same(*blocked_[c], grids_[c])) return false;
+  if (stands(blocked_, cascade)) return false;
   const StageScope scope(session_, {Pass::block, cascade});
-  blocker_->block(grids_[c], geometry_of(cascade));
-  blocked_[c] = grids_[c];
+  blocker_->block(grids_[static_cast<std::size_t>(cascade)], geometry_of(cascade));
   return true;
+}
+
+void Frame::see(int cascade) {
+  if (!sight_ || stands(seen_, cascade)) return;
+  const StageScope scope(session_, {Pass::see, cascade});
+  sight_->see(static_cast<std::size_t>(cascade), grids_[static_cast<std::size_t>(cascade)]);
 }
 
 void Frame::propagate(int cascade) {
@@ -275,6 +292,7 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
   rasterize_rsms(cascade);
   inject(cascade);
   propagate(cascade);
+  see(cascade);
   if (!observer) return;
   const auto c = static_cast<std::size_t>(cascade);
   observer({cascade, grids_[c], injected_, geometry_.empty() ? nullptr : &geometry_of(cascade),
@@ -303,7 +321,7 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   if (late_carrier_) carry_late_light();
   {
     const StageScope scope(session_, {Pass::gather});
-    gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_);
+    gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_, light().hidden);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);
@@ -314,7 +332,7 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
 }
 
 GatheredLight Frame::light() const {
-  GatheredLight light{grids_, {}, light_scale_};
+  GatheredLight light{grids_, {}, sight_ ? &sight_->hidden() : nullptr, light_scale_};
   for (const auto& volume : accumulated_) light.accumulated.push_back(volume.get());
   return light;
 }

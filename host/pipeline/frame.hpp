@@ -19,6 +19,7 @@
 #include "pipeline/propagate.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
+#include "pipeline/see.hpp"
 #include "pipeline/shade.hpp"
 #include "pipeline/sweep.hpp"
 #include "pipeline/tuning.hpp"
@@ -41,6 +42,7 @@ using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;
+  const Buffer* hidden;  ///< SceneSight::hidden(); null where all cells light a surface
   float scale;  ///< they hold so many times the light
 };
 
@@ -86,7 +88,9 @@ class Frame {
   void rasterize_rsms(int cascade);
   void inject(int cascade);
   void inject_geometry(int cascade);
+  bool stands(std::vector<std::optional<ClpvGrid>>& known, int cascade) const;
   bool block(int cascade);
+  void see(int cascade);
   void propagate(int cascade);
   Volume& geometry_of(int cascade) { return *geometry_[blocker_ ? static_cast<std::size_t>(cascade) : 0]; }
   void carry_late_light();
@@ -103,6 +107,7 @@ class Frame {
   std::optional<Propagator> propagator_;  ///< one of the two
   std::optional<Sweeper> sweeper_;
   std::optional<LateCarrier> late_carrier_;  ///< none: no late light, or no coarser cascade
+  std::optional<SceneSight> sight_;          ///< none: all cells light a surface
   Gatherer gatherer_;
   Shader shader_;
   std::optional<Surface> camera_surface_;
@@ -113,8 +118,8 @@ class Frame {
   Volume injected_;
   std::vector<std::unique_ptr<Volume>>
       geometry_;  ///< none without occlusion; what the scene blocks, a cascade; else one
-  std::vector<std::optional<ClpvGrid>>
-      blocked_;  ///< the grid that a cascade's volume of what the scene blocks is of
+  std::vector<std::optional<ClpvGrid>> blocked_,
+      seen_;  ///< the grids that what the scene blocks, and hides, is known of
   std::vector<std::unique_ptr<Volume>> accumulated_;
   std::vector<std::unique_ptr<Volume>> late_;  ///< a cascade; null for the finest, and without late light
   Buffer irradiance_;                          ///< float4 a pixel, as is image_

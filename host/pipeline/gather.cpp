@@ -31,6 +31,7 @@ ProgramSource source_of(const GatherForm& form, const GatherOptions& options, bo
   source.file = "gather.cl";
   source.literals.integer("CLPV_GRID", options.grid)
       .flag("CLPV_PACKED", packed)
+      .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
       .integer("CLPV_PAIRS", packed_pairs(form))
       .real("CLPV_GATHER_OFFSET", options.gather_offset)
       .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells)
@@ -122,8 +123,10 @@ void Gatherer::pack(const Volume& volume, std::size_t slot) {
 }
 
 void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                      const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale) {
+                      const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale,
+                      const Buffer* hidden) {
   require_fit(camera, grids, accumulated);
+  if (sees() && hidden == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is hidden");
   reserve(grids.size());
   session_.write(grids_, grids);
   Kernel& kernel = gather_kernel(grids.size());
@@ -132,6 +135,7 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   if (packs()) {
     for (std::size_t c = 0; c < grids.size(); ++c) pack(*accumulated[c], c);
     kernel.add(packed_);
+    if (sees()) kernel.add(*hidden);
   } else {
     for (const Volume* volume : accumulated) kernel.add(volume->memory());
   }

@@ -36,12 +36,15 @@ class Gatherer {
   /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
   /// there is no surface. `scale`: the volumes hold so many times the light (light_scale.hpp). Throws Error(run_time) where counts or shapes do not fit, or the device's memory
   /// does not suffice.
+  /// `hidden`: SceneSight::hidden() of these grids, where GatherOptions::gather is `visible`.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-              const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1);
+              const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1,
+              const Buffer* hidden = nullptr);
 
  private:
-  /// Images are sampled as they are, unless they hold more than irradiance needs.
-  bool packs() const { return !sampled_by_device(options_.format) || form_.projects(); }
+  bool sees() const { return options_.gather == Gathering::visible; }
+  /// Images are sampled as they are, unless they hold more than irradiance needs, or cells are chosen one by one.
+  bool packs() const { return !sampled_by_device(options_.format) || form_.projects() || sees(); }
   Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;

@@ -19,6 +19,7 @@ RenderOptions resolve_options(const GivenOptions& given, const Scene& scene) {
   for (const auto& [name, value] : given) {
     if (name != "preset") set_option(options, name, value);
   }
+  if (!given.contains("gather-offset")) options.gather_offset = usual_gather_offset(options.gather);
   if (is_bare_model(scene) && !given.contains("cascade-size"))
     options.cascade_size = fitting_cascade_size(scene, options.cascades, options.cascade_size);
   if (!options.centres.empty()) options.basis = make_basis(options)->name();

@@ -19,26 +19,75 @@ struct Between {
 
 Between between(double at, int n) {
   const double p = std::clamp(at, 0.0, n - 1.0);
-  const int lower = static_cast<int>(std::floor(p));
+  const int lower = std::min(static_cast<int>(std::floor(p)), std::max(n - 2, 0));
   return {lower, std::min(lower + 1, n - 1), p - lower};
 }
 
-/// Coefficients of a channel, trilinear at `at`, in samples from the first.
-std::vector<double> sample(const Volume& volume, int channel, const glm::dvec3& at) {
-  const std::array<Between, 3> axes = {between(at.x, volume.n), between(at.y, volume.n),
-                                       between(at.z, volume.n)};
-  std::vector<double> c(static_cast<std::size_t>(volume.coefficients), 0.0);
-  for (int corner = 0; corner < 8; ++corner) {
-    int cell[3];
-    double weight = 1;
+/// The eight samples round a point.
+struct Around {
+  std::array<glm::ivec3, 8> cell;
+  std::array<double, 8> weight;
+};
+
+Around around(const glm::dvec3& at, int n) {
+  const std::array<Between, 3> axes = {between(at.x, n), between(at.y, n), between(at.z, n)};
+  Around found{};
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    found.weight[corner] = 1;
     for (int axis = 0; axis < 3; ++axis) {
       const Between& b = axes[static_cast<std::size_t>(axis)];
       const bool upper = (corner >> axis & 1) != 0;
-      cell[axis] = upper ? b.upper : b.lower;
+      found.cell[corner][axis] = upper ? b.upper : b.lower;
+      found.weight[corner] *= upper ? b.t : 1 - b.t;
+    }
+  }
+  return found;
+}
+
+constexpr int kPoints = 4;                 // of a cube between centres, along each axis
+constexpr double kLeastSeen = 1.0 / 64.0;  // of all weight; where less is seen nothing is known
+
+/// How much of each cell is seen from a point: bits of the points of its cube, trilinearly.
+std::array<double, 8> seen_from(const glm::dvec3& t, const std::uint8_t* points) {
+  std::array<Between, 3> axes;
+  for (int axis = 0; axis < 3; ++axis)
+    axes[static_cast<std::size_t>(axis)] = between(kPoints * t[axis] - 0.5, kPoints);
+  std::array<double, 8> seen{};
+  for (int i = 0; i < 8; ++i) {
+    int point = 0;
+    double weight = 1;
+    for (int axis = 2; axis >= 0; --axis) {
+      const Between& b = axes[static_cast<std::size_t>(axis)];
+      const bool upper = (i >> axis & 1) != 0;
+      point = kPoints * point + (upper ? b.upper : b.lower);
       weight *= upper ? b.t : 1 - b.t;
     }
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      seen[corner] += (points[point] >> corner & 1) != 0 ? 0 : weight;
+  }
+  return seen;
+}
+
+/// Takes the weight of the cells that are hidden from `at`.
+void hide(Around& around, const glm::dvec3& at, int n, const std::uint8_t* hidden) {
+  const glm::ivec3 cube = around.cell[0];
+  const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
+  const int number = ((cube.z * n + cube.y) * n + cube.x) * kPoints * kPoints * kPoints;
+  const std::array<double, 8> seen = seen_from(t, hidden + number);
+  double total = 0;
+  for (std::size_t corner = 0; corner < 8; ++corner) total += seen[corner] * around.weight[corner];
+  if (total <= kLeastSeen) return;
+  for (std::size_t corner = 0; corner < 8; ++corner) around.weight[corner] *= seen[corner] / total;
+}
+
+/// Coefficients of a channel.
+std::vector<double> sample(const Volume& volume, int channel, const Around& around) {
+  std::vector<double> c(static_cast<std::size_t>(volume.coefficients), 0.0);
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const glm::ivec3& cell = around.cell[corner];
     for (int i = 0; i < volume.coefficients; ++i) {
-      c[static_cast<std::size_t>(i)] += weight * volume.value(channel, i, cell[0], cell[1], cell[2]);
+      c[static_cast<std::size_t>(i)] +=
+          around.weight[corner] * volume.value(channel, i, cell.x, cell.y, cell.z);
     }
   }
   return c;
@@ -59,11 +108,11 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// E s^2 of one volume, clamped and floored.
-glm::dvec3 irradiance(const Volume& volume, const glm::dvec3& at, const std::vector<double>& weights,
+glm::dvec3 irradiance(const Volume& volume, const Around& around, const std::vector<double>& weights,
                       const std::vector<double>& floor) {
   glm::dvec3 e(0);
   for (int channel = 0; channel < 3; ++channel) {
-    const std::vector<double> c = sample(volume, channel, at);
+    const std::vector<double> c = sample(volume, channel, around);
     const double least = std::max(0.0, dot(floor, c));
     e[channel] = std::max(least, dot(weights, c));
   }
@@ -95,7 +144,9 @@ glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOption
     const double share = share_of(at, options.grid, options.blend_cells);
     const glm::dvec3 point = at + options.gather_offset * normal - 0.5;  // the first cell's centre is at 0.5
     const double area = double{grid.cell} * grid.cell;
-    e += share * left / area * irradiance(*cascade.accumulated, point, weights, floor);
+    Around cells = around(point, options.grid);
+    if (options.gather == Gathering::visible) hide(cells, point, options.grid, cascade.hidden);
+    e += share * left / area * irradiance(*cascade.accumulated, cells, weights, floor);
     left *= 1 - share;
   }
   return e;

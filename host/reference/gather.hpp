@@ -2,6 +2,7 @@
 // Stage `gather` in double: the twin of kernels/gather.cl.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace clpv::reference {
 struct Cascade {
   ClpvGrid grid{};
   const Volume* accumulated = nullptr;
+  const std::uint8_t* hidden = nullptr;  ///< as SceneSight keeps it, where GatherOptions::gather is `visible`
 };
 
 /// Irradiance [W/m^2] of red, green, blue that the cascades, finest first, put on a surface at `position` [m]

@@ -74,11 +74,9 @@ class Sweep {
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
           const glm::ivec3 q = p - of.offset[k];
           const double open = open_[way_of(of.offset[k])].value(0, 0, p.x, p.y, p.z);
-          const bool inside = field.inside(q.x, q.y, q.z);
-          const double here = sources_.value(channel, bin, q.x, q.y, q.z);
-          const double carried =
-              inside ? field.value(channel, 0, q.x, q.y, q.z) - here : inflow(channel, bin, part, d, q);
-          value += d.taps[k] * (here + open * carried);
+          const double carried = field.inside(q.x, q.y, q.z) ? field.value(channel, 0, q.x, q.y, q.z)
+                                                             : inflow(channel, bin, part, d, q);
+          value += d.taps[k] * open * carried;
         }
         field.at(channel, 0, p.x, p.y, p.z) = value;
       }

@@ -101,9 +101,10 @@ struct Both {
   std::vector<cl_float4> raw;
 };
 
-/// Gathers `image` from volumes of grid_of(0), grid_of(1), ...
+/// Gathers `image` from volumes of grid_of(0), grid_of(1), ... `hidden`: bytes as SceneSight keeps them, for what is visible.
 inline Both gather(const Basis& basis, const Transport& transport, GatherOptions options,
-                   const std::vector<reference::Volume>& full, const SurfaceImage& image) {
+                   const std::vector<reference::Volume>& full, const SurfaceImage& image,
+                   const std::vector<std::uint8_t>& hidden = {}) {
   options.grid = kGrid;
   std::vector<Volume> device;
   device.reserve(full.size());
@@ -121,6 +122,7 @@ inline Both gather(const Basis& basis, const Transport& transport, GatherOptions
   for (std::size_t c = 0; c < full.size(); ++c) {
     grids.push_back(grid_of(static_cast<int>(c)));
     cascades.push_back({grids[c], &full[c]});
+    if (!hidden.empty()) cascades[c].hidden = hidden.data() + c * hidden.size() / full.size();
   }
   Surface camera;
   camera.view = image.view;
@@ -129,7 +131,10 @@ inline Both gather(const Basis& basis, const Transport& transport, GatherOptions
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Buffer e =
       test_session().upload(std::vector<cl_float4>(image.depth.size(), {{nan, nan, nan, nan}}), "test: E");
-  Gatherer(test_session(), basis, transport, options).gather(camera, grids, upload(full), e);
+  const bool visible = options.gather == Gathering::visible;
+  const Buffer bits = visible ? test_session().upload(hidden, "test: hidden cells") : Buffer();
+  Gatherer(test_session(), basis, transport, options)
+      .gather(camera, grids, upload(full), e, 1, visible ? &bits : nullptr);
   Both both{{},
             reference::gather(basis, transport, options, cascades, image),
             test_session().read<cl_float4>(e, image.depth.size())};

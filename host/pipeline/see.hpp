@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Stage `see`: what a scene's own triangles hide of the cells round a point (kernels/see.cl; docs/method.md, 'Gathering').
+#pragma once
+
+#include <cstddef>
+
+#include "device/kernel.hpp"
+#include "device/session.hpp"
+#include "kernels/shared/grid.h"
+#include "pipeline/scene_buffers.hpp"
+
+namespace clpv {
+
+/// Which of the eight cells round each of 64 points between them are hidden: a byte a point, of every cube between the
+/// centres of cells, as kernels/see.cl lays them out. Deterministic: bits are set in whatever order.
+class SceneSight {
+ public:
+  /// Of `cascades` cascades of `grid` cells along each axis. `scene` must stay as it is.
+  /// Throws Error(run_time) where the device's memory does not suffice.
+  SceneSight(Session& session, const SceneBuffers& scene, int grid, int cascades);
+
+  /// Makes what is known of a cascade anew.
+  void see(std::size_t cascade, const ClpvGrid& grid);
+
+  /// bytes() a cascade, finest first.
+  const Buffer& hidden() const { return hidden_; }
+
+  /// Of one cascade.
+  static std::size_t bytes(int grid);
+
+ private:
+  Session& session_;
+  SceneBuffers scene_;
+  int grid_;
+  Buffer hidden_;
+  Kernel triangles_;
+};
+
+}  // namespace clpv

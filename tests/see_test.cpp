@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// What a scene's triangles hide, held against what is known: walls hide what is behind them, from every point, and no more.
+#include "pipeline/see.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "checks/check.hpp"
+#include "reference/see.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 4;
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
+
+/// Bytes of all points, by the kernel; the twin must agree.
+std::vector<std::uint8_t> hidden(const Scene& scene, const ClpvGrid& grid = kCells) {
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  SceneSight sight(test_session(), buffers, static_cast<int>(grid.n), 1);
+  sight.see(0, grid);
+  auto found = test_session().read<std::uint8_t>(sight.hidden(), SceneSight::bytes(static_cast<int>(grid.n)));
+  const reference::Hidden twin = reference::see(scene, grid);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(twin.least[i] & ~unsigned{found[i]}, 0u) << i;
+    EXPECT_EQ(found[i] & ~unsigned{twin.most[i]}, 0u) << i;
+  }
+  return found;
+}
+
+/// Cube and point of a byte.
+glm::ivec3 cube_of(std::size_t at) {
+  const int cube = static_cast<int>(at / 64);
+  return {cube % kGrid, cube / kGrid % kGrid, cube / kGrid / kGrid};
+}
+glm::ivec3 point_of(std::size_t at) {
+  const int point = static_cast<int>(at % 64);
+  return {point % 4, point / 4 % 4, point / 16};
+}
+bool between_centres(std::size_t at) {
+  const glm::ivec3 cube = cube_of(at);
+  return std::max({cube.x, cube.y, cube.z}) < kGrid - 1;
+}
+
+constexpr unsigned kCornersWithX = 0b10101010;
+
+TEST(See, AWallHidesTheCellsBehindItFromEveryPointAndNoOthers) {
+  Scene scene;
+  add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
+           add_material(scene));  // between centres at 1.5 and 2.5
+  const std::vector<std::uint8_t> found = hidden(scene);
+  for (std::size_t at = 0; at < found.size(); ++at) {
+    unsigned expected = 0;
+    if (between_centres(at) && cube_of(at).x == 1)
+      expected = point_of(at).x < 2 ? kCornersWithX : 0xff & ~kCornersWithX;
+    ASSERT_EQ(found[at], expected) << at;
+  }
+}
+
+TEST(See, AWallThroughCentresHidesNothing) {
+  Scene scene;
+  add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+}
+
+TEST(See, ASpeckHidesWhatLiesBehindItAlone) {
+  Scene scene;
+  // On the way from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along each axis.
+  add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
+  std::vector<std::uint8_t> found = hidden(scene);
+  EXPECT_EQ(found[0] & 1, 1) << "the first point of the first cube does not see its first corner";
+  EXPECT_EQ(found[0] & ~1, 0);
+  for (std::size_t at = 64; at < found.size(); ++at) ASSERT_EQ(found[at], 0) << at;
+}
+
+TEST(See, TrianglesOfOneSurfaceLeaveNoGap) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j)
+      add_quad(scene, {2.0f, 0.1f * i, 0.1f * j}, {0, 0.1f, 0}, {0, 0, 0.1f}, material);
+  }
+  Scene whole;
+  add_quad(whole, {2.0f, 0, 0}, {0, 4, 0}, {0, 0, 4}, add_material(whole));
+  EXPECT_EQ(hidden(scene), hidden(whole));
+}
+
+TEST(See, MaskedMaterialsHideNothing) {
+  Scene scene;
+  add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
+           add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
+  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+}
+
+TEST(See, AwkwardTrianglesAndGrids) {
+  Scene none;
+  for (const std::uint8_t bits : hidden(none)) ASSERT_EQ(bits, 0);
+  Scene scene;
+  const unsigned material = add_material(scene);
+  add_triangle(scene, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, material);  // no area
+  add_triangle(scene, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, material);
+  add_triangle(scene, {50, 1, 1}, {60, 1, 1}, {50, 9, 9}, material);  // beside the grid
+  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+  for (const std::uint8_t bits : hidden(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);  // a single cell
+}
+
+TEST(See, TheOrderOfTrianglesDoesNotMatter) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  for (int i = 0; i < 60; ++i) {
+    const glm::vec3 at(i % 5, i / 5 % 4, i / 20);
+    add_triangle(scene, at, at + glm::vec3(0.9f, 0.3f, 0.1f), at + glm::vec3(0.2f, 0.8f, 0.5f), material);
+  }
+  const std::vector<std::uint8_t> before = hidden(scene);
+  std::reverse(scene.triangles.begin(), scene.triangles.end());
+  EXPECT_EQ(hidden(scene), before);
+  EXPECT_GT(std::count_if(before.begin(), before.end(), [](std::uint8_t bits) { return bits != 0; }), 500);
+}
+
+TEST(See, TheKernelAgreesWithItsTwin) {
+  expect_passed(reference::check_see(test_session()), 1);
+}
+
+}  // namespace
+}  // namespace clpv
