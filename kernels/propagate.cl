@@ -93,8 +93,7 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) vo
 #endif
 }
 
-// accumulated = base + the coefficients of a sum of gains: ends a propagation (base: the injected field), and adds the
-// late steps' sum to that of the early ones.
+// accumulated = base + the coefficients of a sum of gains: ends a propagation of fluxes; base is the injected field.
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) void propagate_expand(
     CLPV_VOLUME_IN base, CLPV_VOLUME_IN sum, CLPV_VOLUME_OUT accumulated) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1);

@@ -64,7 +64,7 @@ Errors errors(const Basis& basis, const Transport& transport, const std::vector<
 }
 
 constexpr const char* kLarge[] = {"srbf14", "sh4", "sh5", "bins24"};
-constexpr TransportKind kOperators[] = {TransportKind::upwind, TransportKind::semi_lagrangian};
+constexpr TransportKind kOperators[] = {TransportKind::upwind, TransportKind::sweep};
 
 TEST(GatherForm, NineNumbersStandForTheIrradianceOfALobe) {
   std::mt19937 random(3);
@@ -103,11 +103,11 @@ TEST(GatherForm, NineNumbersStandForTheIrradianceOfAMixture) {
 }
 
 TEST(GatherForm, UniformRadianceIsPiL) {
-  // Semi-Lagrangian light of radiance 1 is c = constant: E s^2 = pi, whatever the window.
+  // Swept light of radiance 1 is c = constant: E s^2 = pi, whatever the window.
   std::mt19937 random(5);
   for (const char* name : {"sh2", "sh3", "sh4", "sh5", "bins24"}) {
     const auto basis = make_basis(name);
-    const GatherForm form(*basis, make_transport(TransportKind::semi_lagrangian, *basis));
+    const GatherForm form(*basis, make_transport(TransportKind::sweep, *basis));
     for (int i = 0; i < 20; ++i)
       EXPECT_NEAR(with_window(form, basis->constant(), random_direction(random)), pi, 1e-9) << name;
   }

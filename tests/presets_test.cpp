@@ -44,7 +44,6 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["blocking"], "one-sided");
   EXPECT_EQ(json["blockers"], "seen");
   EXPECT_EQ(json["injection"], "nearest");
-  EXPECT_EQ(json["late-light"], false);
   EXPECT_EQ(json["gather"], "all");
   EXPECT_EQ(json["gather-offset"], 0.5);
   EXPECT_EQ(json["gather-floor"], 0);

@@ -165,27 +165,6 @@ TEST(Propagate, WhatIsLostIsWhatLeavesTheGrid) {
   EXPECT_GT(reference::leaving(*basis, transport, light)[0], 0.1);
 }
 
-TEST(Propagate, LateLightIsWhatTheSecondHalfOfTheStepsAdded) {
-  const auto basis = make_basis("srbf8v2");
-  for (const State state : {State::coefficients, State::fluxes}) {
-    const Transport transport = make_transport(TransportKind::sampled, *basis);
-    const auto light = one_source(*basis, 9, axis_lobe(*basis), {4, 4, 4});
-    Session& session = test_session();
-    const VolumeShape shape{light.n, basis->size(), 3};
-    Volume injected(session, shape, "injected"), early(session, shape, "early"), full(session, shape, "full"),
-        late(session, shape, "late");
-    injected.write(session, std::vector<float>(light.values.begin(), light.values.end()));
-    Propagator propagator(session, *basis, transport, {.grid = light.n, .state = state});
-    propagator.propagate({injected, nullptr, early}, 3);
-    propagator.propagate({injected, nullptr, full, &late}, 6);
-    const auto a = early.read(session), b = full.read(session), c = late.read(session);
-    double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      largest = std::max(largest, std::abs(static_cast<double>(b[i])));
-    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i] + c[i], b[i], 2e-6 * largest) << i;
-  }
-}
-
 TEST(Propagate, AnAlteredLiteralIsCaught) {
   // The twin takes its constants from the transport; so does the kernel. Alter one on the kernel's side
   // alone.

@@ -20,12 +20,6 @@ double upwind_weight(const glm::ivec3& k, const glm::dvec3& w) {
   return std::max(0.0, glm::dot(glm::dvec3(k), w)) / manhattan(w);
 }
 
-double trilinear_weight(const glm::ivec3& k, const glm::dvec3& w) {
-  double weight = 1;
-  for (int a = 0; a < 3; ++a) weight *= k[a] == 0 ? 1 - std::abs(w[a]) : std::max(0.0, k[a] * w[a]);
-  return weight;
-}
-
 // sum += weight b b^T. Direction bins have one function that is not 0.
 void add_outer(Matrix& sum, double weight, const std::vector<double>& b) {
   for (int i = 0; i < sum.rows(); ++i) {
@@ -93,16 +87,6 @@ OperatorTransport make_upwind(const Basis& basis, Matrix& inverse_norm) {
   inverse_norm = solve(m.gram, m.over_norm);
   drop_rounding(inverse_norm);
   return operators(m, offsets);
-}
-
-OperatorTransport make_semi_lagrangian(const Basis& basis) {
-  std::vector<glm::ivec3> offsets;
-  for (int z = -1; z <= 1; ++z) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) offsets.emplace_back(x, y, z);
-    }
-  }
-  return operators(moments(basis, offsets, trilinear_weight), offsets);
 }
 
 }  // namespace clpv

@@ -11,8 +11,4 @@ namespace clpv {
 /// `inverse_norm` receives K = A^-1 Int b b^T / |w|_1 dw.
 OperatorTransport make_upwind(const Basis& basis, Matrix& inverse_norm);
 
-/// R_k = A^-1 Int b b^T Prod_a (k_a = 0 ? 1 - |w_a| : max(0, k_a w_a)) dw, k in {-1, 0, 1}^3: a unit step
-/// against the light's direction, interpolated trilinearly.
-OperatorTransport make_semi_lagrangian(const Basis& basis);
-
 }  // namespace clpv

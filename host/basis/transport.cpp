@@ -55,10 +55,6 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
       transport.scheme = make_upwind(basis, transport.gather);
       transport.gathers_cosine = true;
       break;
-    case TransportKind::semi_lagrangian:
-      transport.scheme = make_semi_lagrangian(basis);
-      transport.gathers_cosine = true;
-      break;
     case TransportKind::sweep:
       transport.scheme = sweep_ways();
       transport.gathers_cosine = true;

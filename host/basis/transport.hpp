@@ -32,7 +32,7 @@ struct FaceTransport {
   Matrix lobes;  ///< N x 6: what 1 W through the face of normal +x -x +y -y +z -z adds to the coefficients
 };
 
-/// Linear operators: `upwind` and `semi-lagrangian`; and, without weights, the ways of `sweep`. c'(x) = sum_k (1 - B_k) R_k c(x - offset_k).
+/// A linear operator: `upwind`; and, without weights, the ways of `sweep`. c'(x) = sum_k (1 - B_k) R_k c(x - offset_k).
 struct OperatorTransport {
   struct Neighbour {
     glm::ivec3 offset;  ///< how far the light travels, in cells; zero: it stays
@@ -45,10 +45,9 @@ struct OperatorTransport {
 };
 
 enum class TransportKind {
-  sampled,          ///< the paper's: fluxes through faces, each seen along one direction
-  exact,            ///< fluxes through faces, integrated over each
-  upwind,           ///< an operator of finite volumes
-  semi_lagrangian,  ///< an operator that moves light along its own direction
+  sampled,  ///< the paper's: fluxes through faces, each seen along one direction
+  exact,    ///< fluxes through faces, integrated over each
+  upwind,   ///< an operator of finite volumes
   sweep,  ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its ways and gather
 };
 
@@ -60,8 +59,6 @@ constexpr std::string_view name_of(TransportKind kind) {
       return "exact";
     case TransportKind::upwind:
       return "upwind";
-    case TransportKind::semi_lagrangian:
-      return "semi-lagrangian";
     case TransportKind::sweep:
       return "sweep";
   }

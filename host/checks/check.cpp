@@ -17,8 +17,6 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
       return check_propagate(session, scope);
     case Stage::sweep:
       return check_sweep(session, scope);
-    case Stage::carry_late:
-      return check_carry_late(session);
     case Stage::see:
       return check_see(session);
     case Stage::gather:

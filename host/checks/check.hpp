@@ -48,7 +48,6 @@ CheckResults check_inject(Session& session, const CheckScope& scope = {});
 CheckResults check_block(Session& session);
 CheckResults check_propagate(Session& session, const CheckScope& scope = {});
 CheckResults check_sweep(Session& session, const CheckScope& scope = {});
-CheckResults check_carry_late(Session& session);
 CheckResults check_see(Session& session);
 CheckResults check_gather(Session& session, const CheckScope& scope = {});
 CheckResults check_shade(Session& session);

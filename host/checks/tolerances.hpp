@@ -58,10 +58,6 @@ inline constexpr Tolerance kTolerances[] = {
      "way is float32"},
     {"gather-visible", 1e-3, "as gather, over the share of weight that is seen, 1/64 at least"},
     {"gather-visible-half", 2e-2, "as gather-half, over that share"},
-    {"carry-late", 5e-6,
-     "sums of nine float32 numbers; the twin weighs by where the float32 origins put the centres; measured "
-     "2e-7"},
-    {"carry-late-half", 1e-3, "numbers of 11 bits: the light, the sum before and the sum after are rounded"},
     {"shade", 5e-6,
      "float32 light angles and distances; a shadow filter weighs texels by coordinates good to 1e-6 of its "
      "side"},

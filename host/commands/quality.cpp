@@ -47,7 +47,8 @@ std::vector<Variant> variants(const Options& options) {
   const bool preset = mentioned("preset");
   if (!preset && !mentioned("transport"))
     varied.insert(varied.begin(), {"transport", names_of<TransportKind>()});
-  if (!preset && !mentioned("basis")) varied.insert(varied.begin(), {"basis", basis_names()});
+  if (!preset && !mentioned("basis") && !mentioned("centres"))
+    varied.insert(varied.begin(), {"basis", basis_names()});
   return combinations(varied);
 }
 
@@ -190,11 +191,11 @@ void add_options(CLI::App& command, Options& options) {
       ->type_name("NAME");
   add_seconds(command, "--time", options.subjects.time, "the instant of scenes that move [s]");
   command
-      .add_option(
-          "--vary", options.varied,
-          "a render option and its values, repeatable: every combination is a variant. Bases and "
-          "transports vary\n"
-          "over all there are, unless --preset, --basis or --transport fixes them or --vary names them")
+      .add_option("--vary", options.varied,
+                  "a render option and its values, repeatable: every combination is a variant. Bases and "
+                  "transports vary\n"
+                  "over all there are, unless --preset, --basis, --centres or --transport fixes them or "
+                  "--vary names them")
       ->type_name("OPTION=a,b,c");
   command.add_option("--view", options.view, fmt::format("{}", fmt::join(names_of<Show>(), "|")))
       ->type_name("VIEW")

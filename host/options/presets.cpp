@@ -17,7 +17,7 @@ const std::vector<std::pair<std::string, std::string>>& paper_options() {
       {"evaluate", "table"},     {"table-size", "256"},    {"table", "image"},   {"transport", "sampled"},
       {"state", "coefficients"}, {"rsm-format", "paper"},  {"blockers", "seen"}, {"blocking", "one-sided"},
       {"blocker-stride", "1"},   {"injection", "nearest"}, {"gather", "all"},    {"gather-offset", "0.5"},
-      {"gather-floor", "0"},     {"late-light", "off"},    {"layout", "image"},  {"storage", "half"},
+      {"gather-floor", "0"},     {"layout", "image"},      {"storage", "half"},
   };
   return options;
 }

@@ -93,8 +93,6 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
   visit("gather-floor", o.gather_floor, "least irradiance, as a share of its mean over all normals",
         Range{0, 1});
-  visit("late-light", o.late_light,
-        "carry what later steps brought in coarser cascades down to finer ones; a sweep has none", OnOff{});
   visit("width", o.width, "image width [pixels]", Range{1, kMostPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMostPixels});
 }

@@ -49,7 +49,6 @@ struct RenderOptions {
   Gathering gather = Gathering::visible;
   double gather_offset = usual_gather_offset(Gathering::visible);
   double gather_floor = 0;
-  bool late_light = true;
   int width = 960, height = 540;
 
   VolumeFormat format() const { return {layout, storage}; }

@@ -9,7 +9,7 @@ namespace clpv {
 
 /// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
 /// that both sides share, is none of a frame's: it is checked before all others.
-enum class Stage { sizes, rasterize, inject, block, propagate, sweep, carry_late, see, gather, shade };
+enum class Stage { sizes, rasterize, inject, block, propagate, sweep, see, gather, shade };
 
 constexpr std::string_view name_of(Stage stage) {
   switch (stage) {
@@ -25,8 +25,6 @@ constexpr std::string_view name_of(Stage stage) {
       return "propagate";
     case Stage::sweep:
       return "sweep";
-    case Stage::carry_late:
-      return "carry-late";
     case Stage::see:
       return "see";
     case Stage::gather:
@@ -47,8 +45,7 @@ enum class Pass {
   inject_geometry,
   block,
   propagate,  ///< in steps, or by a sweep
-  carry_late,
-  see,  ///< a cascade
+  see,        ///< a cascade
   gather,
   shade,
   whole,
@@ -70,8 +67,6 @@ constexpr std::string_view name_of(Pass pass) {
       return "block";
     case Pass::propagate:
       return "propagate";
-    case Pass::carry_late:
-      return "carry-late";
     case Pass::see:
       return "see";
     case Pass::gather:

@@ -28,10 +28,6 @@ std::unique_ptr<Basis> swept_basis(const RenderOptions& options) {
   return sweeps(options) ? make_basis("bins24") : nullptr;
 }
 
-bool carries_late(const RenderOptions& options) {
-  return options.late_light && options.cascades > 1 && !sweeps(options);
-}
-
 /// Geometry volumes that a frame keeps.
 int geometry_volumes(const RenderOptions& options) {
   if (!options.occlusion) return 0;
@@ -63,9 +59,9 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   const auto cells = [&](const VolumeShape& shape) {
     return static_cast<double>(Accumulator::cells_bytes(options.format(), shape));
   };
-  return sight + bytes(lit) * (1 + options.cascades + (options.late_light ? options.cascades - 1 : 0)) +
-         3 * bytes(carried) + (1 + geometry_volumes(options)) * bytes(blocking) + masks + 2 * spare(lit) +
-         spare(carried) + cells(lit) + cells(blocking);
+  return sight + bytes(lit) * (1 + options.cascades) + 3 * bytes(carried) +
+         (1 + geometry_volumes(options)) * bytes(blocking) + masks + 2 * spare(lit) + spare(carried) +
+         cells(lit) + cells(blocking);
 }
 
 /// Refuses a grid whose volumes exceed the device, naming the largest that fits.
@@ -137,12 +133,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   for (int c = 0; c < options.cascades; ++c) {
     accumulated_.push_back(std::make_unique<Volume>(session, light_shape(options, gathered()),
                                                     "accumulated light", options.format()));
-    late_.push_back(
-        carries_late(options) && c > 0
-            ? std::make_unique<Volume>(session, light_shape(options, *basis_), "late light", options.format())
-            : nullptr);
   }
-  if (carries_late(options)) late_carrier_.emplace(session, light_shape(options, *basis_), options.format());
   if (swept_) {
     sweeper_.emplace(session, *basis_, transport_, sweep_options(options));
   } else {
@@ -281,7 +272,7 @@ void Frame::propagate(int cascade) {
   }
   const StageScope scope(session_, {Pass::propagate, cascade});
   if (propagator_) {
-    propagator_->propagate({injected_, geometry, *accumulated_[c], late_[c].get()}, options_.iterations);
+    propagator_->propagate({injected_, geometry, *accumulated_[c]}, options_.iterations);
     return;
   }
   if (changed) sweeper_->block(c, *geometry);
@@ -299,15 +290,6 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
             *accumulated_[c], light_scale_});
 }
 
-void Frame::carry_late_light() {
-  for (std::size_t c = accumulated_.size() - 1; c-- > 0;) {
-    const StageScope scope(session_, {Pass::carry_late, static_cast<int>(c)});
-    for (Volume* sum : {accumulated_[c].get(), late_[c].get()}) {
-      if (sum != nullptr) late_carrier_->carry(*late_[c + 1], grids_[c + 1], *sum, grids_[c]);
-    }
-  }
-}
-
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   prepare_lights(camera);
   grids_ = cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
@@ -318,7 +300,6 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   rasterize_shadows();
   // A sweep takes what comes in at a cascade's border from the next coarser one. Steps do in any order.
   for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
-  if (late_carrier_) carry_late_light();
   {
     const StageScope scope(session_, {Pass::gather});
     gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_, light().hidden);

@@ -12,7 +12,6 @@
 #include "device/session.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/block.hpp"
-#include "pipeline/carry_late.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"
 #include "pipeline/inject.hpp"
@@ -93,7 +92,6 @@ class Frame {
   void see(int cascade);
   void propagate(int cascade);
   Volume& geometry_of(int cascade) { return *geometry_[blocker_ ? static_cast<std::size_t>(cascade) : 0]; }
-  void carry_late_light();
 
   Session& session_;
   const Scene& scene_;
@@ -106,8 +104,7 @@ class Frame {
   std::optional<SceneBlocker> blocker_;   ///< none: what is seen blocks
   std::optional<Propagator> propagator_;  ///< one of the two
   std::optional<Sweeper> sweeper_;
-  std::optional<LateCarrier> late_carrier_;  ///< none: no late light, or no coarser cascade
-  std::optional<SceneSight> sight_;          ///< none: all cells light a surface
+  std::optional<SceneSight> sight_;  ///< none: all cells light a surface
   Gatherer gatherer_;
   Shader shader_;
   std::optional<Surface> camera_surface_;
@@ -121,8 +118,7 @@ class Frame {
   std::vector<std::optional<ClpvGrid>> blocked_,
       seen_;  ///< the grids that what the scene blocks, and hides, is known of
   std::vector<std::unique_ptr<Volume>> accumulated_;
-  std::vector<std::unique_ptr<Volume>> late_;  ///< a cascade; null for the finest, and without late light
-  Buffer irradiance_;                          ///< float4 a pixel, as is image_
+  Buffer irradiance_;  ///< float4 a pixel, as is image_
   Buffer image_;
   Show shown_ = Show::full;
 };

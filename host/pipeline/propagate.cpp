@@ -96,47 +96,26 @@ void Propagator::run_step(Form& form, bool first, const Volume& source, const Vo
   stencil_.launch(form.step, form.channels == 3 ? 1 : 3);
 }
 
-void Propagator::run_expand(Form& form, const Volume& base, const Volume& sum, const Volume& accumulated) {
-  form.expand.set(base.memory(), sum.memory(), accumulated.memory());
+Volume& Propagator::sum_of(const PropagateVolumes& volumes) {
+  return options_.state == State::coefficients ? volumes.accumulated : *sum_;
+}
+
+void Propagator::expand(Form& form, const PropagateVolumes& volumes) {
+  form.expand.set(volumes.injected.memory(), sum_->memory(), volumes.accumulated.memory());
   stencil_.launch(form.expand, 3);
 }
 
-Volume& Propagator::sum_of(const PropagateVolumes& volumes, bool late) {
-  if (options_.state == State::coefficients) return late ? *volumes.late : volumes.accumulated;
-  if (late && !late_sum_)
-    late_sum_ = std::make_unique<Volume>(session_, sum_->shape(), "late sum of fluxes", options_.format);
-  return late ? *late_sum_ : *sum_;
-}
-
-void Propagator::expand(Form& form, const PropagateVolumes& volumes, bool late) {
-  if (options_.state == State::fluxes) {
-    if (late) {
-      volumes.accumulated.clear(session_);
-      run_expand(form, volumes.accumulated, *late_sum_, *volumes.late);
-    }
-    run_expand(form, volumes.injected, *sum_, volumes.accumulated);
-  }
-  if (!late) return;
-  accumulator_.add(volumes.accumulated, [&](const Volume& early, const Volume& all) {
-    run_expand(form, early, sum_of(volumes, true), all);
-  });
-}
-
 void Propagator::propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step) {
-  // Late steps are t > n/2 but the first.
-  const int late_steps =
-      volumes.late == nullptr ? 0 : std::min((iterations + 1) / 2, std::max(iterations - 1, 0));
   const bool blocks = volumes.geometry != nullptr && iterations > 1;
   if (blocks) transmit(*volumes.geometry);
   if (options_.state == State::fluxes) sum_->clear(session_);
-  if (volumes.late != nullptr) (late_steps > 0 ? sum_of(volumes, true) : *volumes.late).clear(session_);
   if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);
 
+  Volume& sum = sum_of(volumes);
   const Volume* source = &volumes.injected;
   Form* last = nullptr;
   for (int step = 1; step <= iterations; ++step) {
     const Volume& target = *travelling_[static_cast<std::size_t>(step % 2)];
-    Volume& sum = sum_of(volumes, step > iterations - late_steps);
     last = &form(step == 1, blocks && reads_transmittance(step));
     const auto run = [&](const Volume& so_far, const Volume& next) {
       run_step(*last, step == 1, *source, target, so_far, next);
@@ -150,7 +129,7 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
     source = &target;
     if (after_step) after_step(step, target);
   }
-  if (last != nullptr) expand(*last, volumes, late_steps > 0);
+  if (last != nullptr && options_.state == State::fluxes) expand(*last, volumes);
 }
 
 }  // namespace clpv

@@ -26,7 +26,6 @@ struct PropagateVolumes {
   const Volume& injected;            ///< [W/sr], step 0
   const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
   Volume& accumulated;               ///< out: injected field plus every step's output [W/sr]
-  Volume* late = nullptr;            ///< out, where wanted: what steps after half of them added
 };
 
 /// Runs the steps of one basis and transport over volumes of one grid size.
@@ -62,10 +61,9 @@ class Propagator {
   void transmit(const Volume& geometry);
   void run_step(Form& form, bool first, const Volume& source, const Volume& target, const Volume& sum_so_far,
                 const Volume& sum);
-  /// What the early steps, or the late ones, add up in: light, or the fluxes it will come from.
-  Volume& sum_of(const PropagateVolumes& volumes, bool late);
-  void expand(Form& form, const PropagateVolumes& volumes, bool late);
-  void run_expand(Form& form, const Volume& base, const Volume& sum, const Volume& accumulated);
+  /// What steps add up in: light, or the fluxes it will come from.
+  Volume& sum_of(const PropagateVolumes& volumes);
+  void expand(Form& form, const PropagateVolumes& volumes);
 
   Session& session_;
   const Basis& basis_;
@@ -76,7 +74,7 @@ class Propagator {
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<Transmitter> transmitter_;
-  std::unique_ptr<Volume> sum_, late_sum_;  ///< of the six fluxes
+  std::unique_ptr<Volume> sum_;  ///< of the six fluxes
   Accumulator accumulator_;
 };
 
