@@ -60,7 +60,7 @@ TEST(LightField, IsWhatTheCameraSeesWhereItSees) {
   const Scene scene = load_scene(kCornell);
   const Camera& camera = scene.camera("");
   for (const TransportKind transport :
-       {TransportKind::semi_lagrangian, TransportKind::sampled, TransportKind::sweep}) {
+       {TransportKind::upwind, TransportKind::sampled, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
     Session& session = test_session();

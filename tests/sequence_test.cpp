@@ -43,7 +43,7 @@ struct SequenceTest : ::testing::Test {
 
 TEST_F(SequenceTest, EveryFrameIsTheOneRenderedAlone) {
   // The camera crosses cells of .25 m, a wall, a sun and a lamp move; both kinds of blockers and of transport.
-  for (const std::string options : {"", " --transport sweep --blockers scene"}) {
+  for (const std::string options : {"", " --transport upwind --blockers seen --gather all"}) {
     const Outcome outcome = sequence("--frames 4 --fps 3 --from 0.1" + options);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     for (int i = 0; i < 4; ++i) {

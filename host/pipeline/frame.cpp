@@ -302,7 +302,8 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
   {
     const StageScope scope(session_, {Pass::gather});
-    gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_, light().hidden);
+    gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_,
+                     light().hidden);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);

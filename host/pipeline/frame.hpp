@@ -42,7 +42,7 @@ struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;
   const Buffer* hidden;  ///< SceneSight::hidden(); null where all cells light a surface
-  float scale;  ///< they hold so many times the light
+  float scale;           ///< they hold so many times the light
 };
 
 /// Holds all device memory a frame needs; render() may be called again and again, for one camera or many.
