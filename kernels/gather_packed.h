@@ -39,23 +39,21 @@ CLPV_INLINE float8 clpv_corner_weights(const float3 t) {
 #if CLPV_VISIBLE
 #define CLPV_LEAST_SEEN (1.0f / 64.0f)  // of all weight
 
-// What a point sees of the eight corners: 1 or 0 each.
-CLPV_INLINE float8 clpv_seen(const uint hidden) {
-  const int8 bits = (int8)((int)hidden) & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-  return bits != 0 ? (float8)(0.0f) : (float8)(1.0f);
-}
-
-// The same trilinearly between the points of a cube, so that light is continuous; the outermost points hold beyond.
+// How much of the eight corners is seen: of each point's bits its weight, trilinearly between the points of a cube, so that
+// light is continuous; the outermost points hold beyond.
 CLPV_INLINE float8 clpv_seen_at(__global const uchar* hidden, const int cube, const float3 t) {
   const float3 p = clamp(t * 4.0f - 0.5f, 0.0f, 3.0f);
-  const float3 low = min(floor(p), 2.0f), f = p - low;
+  const float3 low = min(floor(p), 2.0f);
+  const float8 weights = clpv_corner_weights(p - low);
   const int3 point = convert_int3(low);
   __global const uchar* at = hidden + 64 * cube + (point.z * 4 + point.y) * 4 + point.x;
-#define CLPV_SEEN_X(first) mix(clpv_seen(at[first]), clpv_seen(at[first + 1]), (float8)(f.x))
-#define CLPV_SEEN_Y(first) mix(CLPV_SEEN_X(first), CLPV_SEEN_X(first + 4), (float8)(f.y))
-  return mix(CLPV_SEEN_Y(0), CLPV_SEEN_Y(16), (float8)(f.z));
-#undef CLPV_SEEN_X
-#undef CLPV_SEEN_Y
+  const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+  float8 seen = 0.0f;
+#define CLPV_ADD_SEEN(i, next) seen += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);
+  CLPV_ADD_SEEN(0, 0) CLPV_ADD_SEEN(1, 1) CLPV_ADD_SEEN(2, 4) CLPV_ADD_SEEN(3, 5)
+  CLPV_ADD_SEEN(4, 16) CLPV_ADD_SEEN(5, 17) CLPV_ADD_SEEN(6, 20) CLPV_ADD_SEEN(7, 21)
+#undef CLPV_ADD_SEEN
+  return seen;
 }
 
 // The weights of what is seen, their sum 1; where next to nothing is seen nothing is known, and they stay as they are.

@@ -62,8 +62,11 @@ static inline void clpv_hide(const float3 v0, const float3 v1, const float3 v2, 
   if (distance == 0.0f || clpv_reach(side * normal, c) < fabs(distance)) return;
   const Linear plane = {side * normal, -side * dot(normal, c) - fabs(distance)};
   const Linear e0 = clpv_edge(v0, v1, c, side), e1 = clpv_edge(v1, v2, c, side), e2 = clpv_edge(v2, v0, c, side);
+  // Points on the centre's side of the whole triangle are not behind it.
+  const float near_z = corner & 4 ? fmax(v0.z, fmax(v1.z, v2.z)) : fmin(v0.z, fmin(v1.z, v2.z));
   for (int layer = 0; layer < CLPV_SEE_LAYERS; ++layer) {
     const float z = CLPV_SEE_FIRST + 0.25f * (float)layer;
+    if (corner & 4 ? z > near_z + CLPV_SEE_SEAM : z < near_z - CLPV_SEE_SEAM) continue;
     const int16 crossed = (clpv_layer(plane, z) >= 0.0f) & (clpv_layer(e0, z) >= 0.0f) &
                           (clpv_layer(e1, z) >= 0.0f) & (clpv_layer(e2, z) >= 0.0f);
     hidden[layer] |= crossed & (1 << corner);
