@@ -46,7 +46,7 @@ CLPV_INLINE float8 clpv_seen_at(__global const uchar* hidden, const int cube, co
   const float3 low = min(floor(p), 2.0f);
   const float8 weights = clpv_corner_weights(p - low);
   const int3 point = convert_int3(low);
-  __global const uchar* at = hidden + 64 * cube + (point.z * 4 + point.y) * 4 + point.x;
+  __global const uchar* at = hidden + (size_t)cube * 64 + (point.z * 4 + point.y) * 4 + point.x;
   const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 seen = 0.0f;
 #define CLPV_ADD_SEEN(i, next) seen += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);

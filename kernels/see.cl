@@ -98,11 +98,11 @@ static inline float3 clpv_see_at(const ClpvGrid grid, __global const ClpvVertex*
   return clamp((position - origin) / grid.cell - 0.5f, -CLPV_SEE_FAR, CLPV_SEE_FAR);
 }
 
-// A work-item is a triangle; `first`: of those of the scene, the first of this launch.
+// A work-item is a triangle; `first`: of those of the scene, the first of this launch. `cascade`: whose bytes these are.
 __kernel void see_triangles(const ClpvGrid grid, const uint first, const uint count,
                             __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                             __global const ClpvMaterial* materials, __global uint* hidden,
-                            const uint first_word) {
+                            const uint cascade) {
   if (get_global_id(0) >= count) return;
   const ClpvTriangle triangle = triangles[first + get_global_id(0)];
   if ((materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) return;
@@ -119,7 +119,7 @@ __kernel void see_triangles(const ClpvGrid grid, const uint first, const uint co
         const float3 cube = (float3)((float)x, (float)y, (float)z);
         if (fabs(dot(normal, cube + 0.5f - v0)) > half_slab) continue;
         clpv_see_cube(v0 - cube, v1 - cube, v2 - cube, normal,
-                      hidden + first_word + 16 * ((z * CLPV_GRID + y) * CLPV_GRID + x));
+                      hidden + 16 * (((size_t)cascade * CLPV_GRID + z) * CLPV_GRID + y) * CLPV_GRID + 16 * x);
       }
     }
   }

@@ -34,6 +34,13 @@ int geometry_volumes(const RenderOptions& options) {
   return options.blockers == Blockers::scene ? options.cascades : 1;
 }
 
+/// Of what is hidden, in one buffer.
+std::size_t sight_bytes(const RenderOptions& options, int grid) {
+  return options.gather == Gathering::visible
+             ? SceneSight::bytes(grid) * static_cast<std::size_t>(options.cascades)
+             : 0;
+}
+
 /// Bytes of the volumes of a frame at this grid.
 double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) {
   RenderOptions tried = options;
@@ -45,9 +52,7 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
                     carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
   const double masks =
       options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
-  const double sight = options.gather == Gathering::visible
-                           ? static_cast<double>(SceneSight::bytes(grid)) * options.cascades
-                           : 0;
+  const auto sight = static_cast<double>(sight_bytes(options, grid));
   if (sweeps(options)) {
     return sight + bytes(lit) + options.cascades * bytes({grid, kSweepBins, 3}) +
            geometry_volumes(options) * bytes(blocking) + masks + Sweeper::bytes(sweep_options(tried));
@@ -69,7 +74,7 @@ void require_memory(const Session& session, const RenderOptions& options, const 
   const Device& device = session.device();
   const auto fits = [&](int grid) {
     const std::size_t one = stored_bytes(options.format(), {grid, std::max(6, basis.size()), 3});
-    return one <= device.max_alloc_bytes &&
+    return std::max(one, sight_bytes(options, grid)) <= device.max_alloc_bytes &&
            volume_bytes(options, basis, grid) <= static_cast<double>(device.memory_bytes);
   };
   if (fits(options.grid)) return;

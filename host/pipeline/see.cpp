@@ -34,11 +34,10 @@ SceneSight::SceneSight(Session& session, const SceneBuffers& scene, int grid, in
 void SceneSight::see(std::size_t cascade, const ClpvGrid& grid) {
   const std::size_t from = cascade * bytes(grid_);
   session_.fill_zero(hidden_, bytes(grid_), from);
-  const auto first_word = static_cast<cl_uint>(from / sizeof(cl_uint));
   for (unsigned first = 0; first < scene_.triangle_count; first += kMostTriangles) {
     const cl_uint count = std::min(scene_.triangle_count - first, kMostTriangles);
     triangles_.set(grid, cl_uint{first}, count, scene_.vertices, scene_.triangles, scene_.materials, hidden_,
-                   first_word);
+                   static_cast<cl_uint>(cascade));
     triangles_.launch(cl::NDRange(count), cl::NDRange(kGroup));
   }
 }
