@@ -46,7 +46,10 @@ RenderOptions timed_options() {
   RenderOptions options;
   options.transport = TransportKind::sampled;
   options.storage = Storage::float32;
+  options.blockers = Blockers::seen;
   options.blocking = Blocking::one_sided;
+  options.gather = Gathering::all;
+  options.gather_offset = usual_gather_offset(options.gather);
   options.occlusion = false;
   return options;
 }

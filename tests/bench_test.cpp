@@ -269,6 +269,15 @@ TEST(BenchProgram, RowsOfScalingSayWhatTheyArePointsOf) {
   EXPECT_EQ(row["value"], 4);
 }
 
+TEST(BenchProgram, GatheringIsTimedAndRight) {
+  const auto out = test::run("cd " CLPV_SOURCE_DIR " && " + kProgram +
+                             " bench table1 --repetitions 1 --filter 'gather/sh2/soa' --format json");
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const auto document = nlohmann::json::parse(out.out);
+  ASSERT_FALSE(document["benchmarks"].empty());
+  for (const auto& row : document["benchmarks"]) EXPECT_EQ(row["status"], "ok") << row["name"];
+}
+
 TEST(BenchProgram, Table1StandsBesideThePublishedTimes) {
   const std::string command = "cd " CLPV_SOURCE_DIR " && " + kProgram +
                               " bench table1 --repetitions 1 --filter 'inject-.*/sh2/image.*/cascade:0'";
