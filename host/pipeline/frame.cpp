@@ -307,8 +307,9 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
   {
     const StageScope scope(session_, {Pass::gather});
-    gatherer_.gather(*camera_surface_, grids_, light().accumulated, irradiance_, light_scale_,
-                     light().hidden);
+    const GatheredLight gathered = light();
+    gatherer_.gather(*camera_surface_, gathered.grids, gathered.accumulated, irradiance_, gathered.scale,
+                     gathered.hidden);
   }
   std::vector<ShadowedLight> shadowed;
   for (const LitLight& lit : lights_) shadowed.push_back(lit.shadow);
