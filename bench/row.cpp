@@ -96,7 +96,8 @@ nlohmann::json to_json(const Row& row, int index) {
                {"n", row.n > 0 ? nlohmann::json(row.n) : nlohmann::json(nullptr)},
                {"axis", text_or_null(row.axis)},
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
-               {"preset", text_or_null(row.preset)}});
+               {"preset", text_or_null(row.preset)},
+               {"anew", text_or_null(row.anew)}});
   json.update(row.variant ? variant_json(*row.variant) : no_variant_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},

@@ -50,6 +50,7 @@ struct Row {
   std::string axis;    ///< of suite scaling: what grows ("grid"), and its `value`
   double value = 0;
   std::string preset;  ///< of suite frame
+  std::string anew;  ///< of suite frame: what each repetition makes anew, "light", "everything" or "nothing"
 
   std::vector<double> samples_ms;
   Statistics times;    ///< of samples_ms

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `frame`: whole frames along a camera path, and what each stage of them takes.
+// Suite `frame`: whole frames along a camera path, of light made anew or kept, and what each stage of them takes.
 #include "pipeline/frame.hpp"
 
 #include <fmt/format.h>
@@ -18,15 +18,34 @@ namespace {
 constexpr int kPathFrames = 24;
 constexpr double kTurn = 0.6, kSway = 0.5;  // [rad], [m]: to either side, once along the path
 
+/// What of a frame each repetition makes anew, besides what the camera sees.
+enum class Anew {
+  light,       ///< as if the lights had changed; what blocks and hides where cascades moved
+  everything,  ///< from nothing
+  nothing,     ///< what a camera costs that looks round among things and lights at rest
+};
+
+constexpr std::string_view name_of(Anew anew) {
+  switch (anew) {
+    case Anew::light:
+      return "light";
+    case Anew::everything:
+      return "everything";
+    case Anew::nothing:
+      return "nothing";
+  }
+  return {};
+}
+
 /// A camera that looks round to either side and sways, back where it began after kPathFrames.
-Camera on_path(Camera camera, int frame) {
+Camera on_path(Camera camera, int frame, double sway) {
   const double phase = 2 * 3.14159265358979 * frame / kPathFrames;
   const glm::mat4 turn =
       glm::rotate(glm::mat4(1.0f), static_cast<float>(kTurn * std::sin(phase)), glm::vec3(0, 1, 0));
   camera.forward = glm::vec3(turn * glm::vec4(camera.forward, 0));
   camera.up = glm::vec3(turn * glm::vec4(camera.up, 0));
   const glm::vec3 right = glm::cross(camera.forward, camera.up);
-  camera.eye += right * static_cast<float>(kSway * std::sin(phase));
+  camera.eye += right * static_cast<float>(sway * std::sin(phase));
   return camera;
 }
 
@@ -34,14 +53,32 @@ Camera on_path(Camera camera, int frame) {
 struct Path {
   std::shared_ptr<const Scene> scene;
   Camera start;
+  Anew anew;
   Frame frame;
   int next = 0;
   bool warm = false;
   std::map<std::string, std::vector<double>> stage_ms;
 
   Path(Session& session, std::shared_ptr<const Scene> lit, const std::string& camera,
-       const RenderOptions& options)
-      : scene(std::move(lit)), start(scene->camera(camera)), frame(session, *scene, options) {}
+       const RenderOptions& options, Anew made_anew)
+      : scene(std::move(lit)),
+        start(scene->camera(camera)),
+        anew(made_anew),
+        frame(session, *scene, options) {}
+
+  /// Cascades stay where they are if nothing is to be made anew.
+  Camera at(int number) const { return on_path(start, number, anew == Anew::nothing ? 0 : kSway); }
+
+  void forget() {
+    switch (anew) {
+      case Anew::light:
+        return frame.forget_light();
+      case Anew::everything:
+        return frame.forget();
+      case Anew::nothing:
+        return;
+    }
+  }
 
   void add(const std::vector<StageTime>& times) {
     std::map<std::string, double> sums;  // over cascades and lights
@@ -55,7 +92,8 @@ struct Path {
 
 std::vector<Row> stage_rows(const Path& path, const Row& frame) {
   std::vector<Row> rows;
-  for (const auto& [stage, ms] : path.stage_ms) {
+  for (auto [stage, ms] : path.stage_ms) {
+    ms.resize(frame.samples_ms.size(), 0.0);  // a frame that did without took none
     Row row = frame;
     row.stage = stage;
     row.name = stage + frame.name.substr(frame.name.find('/'));
@@ -72,12 +110,12 @@ std::vector<Row> stage_rows(const Path& path, const Row& frame) {
   return rows;
 }
 
-/// The last frame again: the same bytes, whatever was rendered before it.
+/// The last frame again, from nothing: the same bytes, whatever was rendered before it.
 Deviation repeat(Path& path, Session& session) {
   const std::vector<float> timed = path.frame.read(Show::full);
-  const Camera camera = on_path(path.start, path.next - 1);
-  path.frame.render(on_path(path.start, path.next + kPathFrames / 2));
-  path.frame.render(camera);
+  path.frame.render(path.at(path.next + kPathFrames / 2));
+  path.frame.forget();
+  path.frame.render(path.at(path.next - 1));
   session.queue().finish();
   const std::vector<float> again = path.frame.read(Show::full);
   Deviation deviation{0, 0, {}};
@@ -94,18 +132,20 @@ Deviation repeat(Path& path, Session& session) {
   return deviation;
 }
 
-Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render) {
-  const auto path = std::make_shared<Path>(session, scene_of(options), options.camera, render);
+Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render, Anew anew) {
+  const auto path = std::make_shared<Path>(session, scene_of(options), options.camera, render, anew);
   Job job;
   job.own_stages = true;
-  job.run = [path] { path->frame.render(on_path(path->start, path->next++)); };
+  job.reset = [path] { path->forget(); };
+  job.run = [path] { path->frame.render(path->at(path->next++)); };
   job.after_run = [path](const std::vector<StageTime>& times) { path->add(times); };
   job.more_rows = [path](const Row& row) { return stage_rows(*path, row); };
   job.verify = [path, &session] { return repeat(*path, session); };
   return job;
 }
 
-Case frame_case(Session& session, const SuiteOptions& options, PresetName preset, const std::string& basis) {
+Case frame_case(Session& session, const SuiteOptions& options, PresetName preset, const std::string& basis,
+                Anew anew) {
   RenderOptions render;
   apply_preset(render, preset);
   render.basis = basis;
@@ -115,9 +155,11 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   variant.options.lobe = LobeKind::exact;  // the preset's name tells which they are
   variant.options.lobe_time = LobeTime::host;
   Case result;
-  result.row = make_row("frame", "frame", variant, fmt::format("/{}", name_of(preset)));
+  result.row =
+      make_row("frame", "frame", variant, fmt::format("/{}/anew:{}", name_of(preset), name_of(anew)));
   result.row.preset = name_of(preset);
-  result.make = [&session, options, render] { return frame_job(session, options, render); };
+  result.row.anew = name_of(anew);
+  result.make = [&session, options, render, anew] { return frame_job(session, options, render, anew); };
   return result;
 }
 
@@ -144,8 +186,10 @@ Suite frame_suite() {
         for (const PresetName preset : values_of<PresetName>()) {
           groups.push_back({[&session, options, bases, preset] {
             std::vector<Case> cases;
-            for (const std::string& basis : bases)
-              cases.push_back(frame_case(session, options, preset, basis));
+            for (const std::string& basis : bases) {
+              for (const Anew anew : values_of<Anew>())
+                cases.push_back(frame_case(session, options, preset, basis, anew));
+            }
             return cases;
           }});
         }

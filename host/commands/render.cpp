@@ -131,6 +131,7 @@ void run(const Options& options, const Shared& shared) {
   progress.advance();
   for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
     session.timeline().clear();
+    frame.forget_light();
     stats.begin_frame();
     frame.render(camera);
     stats.end_frame(session);
@@ -166,7 +167,9 @@ void add_render(CLI::App& app, Shared& shared) {
       ->delimiter(',')
       ->type_name("VIEW")
       ->default_str("full");
-  command->add_option("--stats", options->stats, "stage times, options and energies, as JSON")
+  command
+      ->add_option("--stats", options->stats,
+                   "stage times of frames whose light is made anew, options and energies, as JSON")
       ->type_name("FILE.json");
   command
       ->add_option("--frames", options->frames,

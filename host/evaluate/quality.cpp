@@ -56,6 +56,7 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
   std::vector<double> totals;
   for (int i = 0; i <= frames; ++i) {
     session.timeline().clear();
+    frame.forget_light();
     frame.render(camera);
     const Image image = shown(frame, show);
     if (i == 0) continue;  // a first launch compiles

@@ -13,8 +13,10 @@
 #include "options/render_options.hpp"
 #include "pipeline/block.hpp"
 #include "pipeline/cascade.hpp"
+#include "pipeline/frame_lights.hpp"
 #include "pipeline/gather.hpp"
 #include "pipeline/inject.hpp"
+#include "pipeline/made_of.hpp"
 #include "pipeline/propagate.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
@@ -54,12 +56,18 @@ class Frame {
   Frame(const Frame&) = delete;  // its stages refer to its other parts
   Frame& operator=(const Frame&) = delete;
 
-  /// To be called when the scene given shows another instant (MovingScene): the next frame is of that.
+  /// To be called when the scene given may show another instant (MovingScene): the next frame is of that.
   void scene_moved();
 
-  /// Enqueues all stages, marked on the session's timeline; shaded views are there once the queue is finished.
+  /// Enqueues the stages whose products are not there yet, marked on the session's timeline; shaded views are there once the
+  /// queue is finished. A frame is the same to the bit, whatever was rendered before it.
   /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).
   void render(const Camera& camera, const CascadeObserver& observer = {});
+
+  /// What benchmarks time: the next frame makes its light anew, from shadow maps on, as if all lights had changed; or all of
+  /// it, with what the scene's triangles block and hide.
+  void forget_light();
+  void forget();
 
   /// Empty before the first render.
   GatheredLight light() const;
@@ -74,24 +82,29 @@ class Frame {
   const Transport& transport() const { return transport_; }
 
  private:
-  struct LitLight {  ///< a light and what is rasterised for it
-    ClpvLight light;
-    int index;                  ///< in Scene::lights
-    std::vector<Surface> rsms;  ///< one, or six
-    ShadowedLight shadow;
+  /// A volume and what it holds: one a cascade, or one for all in turn.
+  struct KeptVolume {
+    std::unique_ptr<Volume> volume;
+    Kept kept;
   };
-  void prepare_lights(const Camera& camera);
-  void rasterize_camera(const Camera& camera);
-  void rasterize_shadows();
-  void light_cascade(int cascade, const CascadeObserver& observer);
-  void rasterize_rsms(int cascade);
+  std::vector<KeptVolume> volumes(int count, const VolumeShape& shape, const char* what) const;
+  static KeptVolume& of_cascade(std::vector<KeptVolume>& volumes, int cascade);
+
+  /// What a cascade's products are made of.
+  MadeOf injected_made_of(int cascade) const;
+  MadeOf geometry_made_of(int cascade) const;
+  MadeOf accumulated_made_of(int cascade) const;
+
+  /// Each brings a cascade's product to date, and what that is made of before it where it is not.
   void inject(int cascade);
-  void inject_geometry(int cascade);
-  bool stands(std::vector<std::optional<ClpvGrid>>& known, int cascade) const;
-  bool block(int cascade);
-  void see(int cascade);
+  void block(int cascade);
   void propagate(int cascade);
-  Volume& geometry_of(int cascade) { return *geometry_[blocker_ ? static_cast<std::size_t>(cascade) : 0]; }
+  void see(int cascade);
+
+  void rasterize_camera(const Camera& camera);
+  void inject_geometry(int cascade, Volume& geometry);
+  void light_cascade(int cascade, const CascadeObserver& observer);
+  const ClpvGrid& grid(int cascade) const { return grids_[static_cast<std::size_t>(cascade)]; }
 
   Session& session_;
   const Scene& scene_;
@@ -107,18 +120,14 @@ class Frame {
   std::optional<SceneSight> sight_;  ///< none: all cells light a surface
   Gatherer gatherer_;
   Shader shader_;
+  FrameLights lights_;
+  MadeOf triangles_;  ///< the scene's, as they are now
   std::optional<Surface> camera_surface_;
-  std::vector<LitLight> lights_;
-  std::string lit_by_;  ///< Camera::light that lights_ were prepared for
   std::vector<ClpvGrid> grids_;
-  float light_scale_ = 1;  ///< what volumes hold in place of 1 W/sr
-  Volume injected_;
-  std::vector<std::unique_ptr<Volume>>
-      geometry_;  ///< none without occlusion; what the scene blocks, a cascade; else one
-  std::vector<std::optional<ClpvGrid>> blocked_,
-      seen_;  ///< the grids that what the scene blocks, and hides, is known of
-  std::vector<std::unique_ptr<Volume>> accumulated_;
-  Buffer irradiance_;  ///< float4 a pixel, as is image_
+  std::vector<KeptVolume> injected_, accumulated_;
+  std::vector<KeptVolume> geometry_;  ///< none without occlusion
+  std::vector<Kept> ways_, seen_;     ///< of the sweeper and the sight, a cascade
+  Buffer irradiance_;                 ///< float4 a pixel, as is image_
   Buffer image_;
   Show shown_ = Show::full;
 };

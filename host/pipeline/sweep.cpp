@@ -52,6 +52,12 @@ std::size_t shell_numbers(int grid) {
   return 2 * side * (side + 8) + 8;
 }
 
+/// Of what a cascade keeps for the next finer one.
+std::size_t shell_bytes(const SweepOptions& options, std::size_t cascade) {
+  if (cascade == 0) return sizeof(float);
+  return 3 * 3 * directions_of(options.parts[cascade]) * shell_numbers(options.grid) * sizeof(float);
+}
+
 bool within(const ClpvSweepShell& shell, int grid) {
   return std::all_of(shell.first, shell.first + 3,
                      [&](int first) { return first >= 0 && first + shell.side <= grid; });
@@ -87,12 +93,13 @@ ProgramSource border_program(int grid, int parts, int coarser_parts) {
 double Sweeper::bytes(const SweepOptions& options) {
   const auto volume = static_cast<double>(sweep_volume_numbers(options.grid) * number_bytes(options.format));
   const auto plane = static_cast<double>(sweep_plane_numbers(options.grid) * sizeof(float));
-  double most = 0, shell = 0;
-  for (const int parts : options.parts) most = std::max(most, static_cast<double>(3 * directions_of(parts)));
-  if (options.parts.size() > 1)
-    shell = most * 3 * static_cast<double>(shell_numbers(options.grid) * sizeof(float));
+  double most = 0, shells = 0;
+  for (std::size_t c = 0; c < options.parts.size(); ++c) {
+    most = std::max(most, static_cast<double>(3 * directions_of(options.parts[c])));
+    shells += static_cast<double>(shell_bytes(options, c));
+  }
   const double ways = options.blocking ? static_cast<double>(options.parts.size()) * sweep_way_count() : 0;
-  return (2 * 3 * kSweepBins + ways) * volume + most * (2 + 3) * plane + shell;
+  return (2 * 3 * kSweepBins + ways) * volume + most * (2 + 3) * plane + shells;
 }
 
 Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transport,
@@ -112,9 +119,6 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   sums_ = zeroed(session, 3 * kSweepBins * volume, "light swept");
   live_ = zeroed(session, (whole_bins() ? 1 : 2) * swept * plane, "planes being swept");
   border_ = zeroed(session, 3 * swept * plane, "light at the border");
-  const bool nested = options.parts.size() > 1;
-  shell_ = zeroed(session, nested ? 3 * swept * shell_numbers(options.grid) * sizeof(float) : sizeof(float),
-                  "light for a finer cascade");
   if (options.blocking) {
     ways_.emplace(session, tiled_program("sweep_ways.cl", options, tile_, sweep_ways_text(basis, transport)),
                   "sweep_ways");
@@ -138,7 +142,8 @@ Sweeper::Pass Sweeper::make_pass(std::size_t cascade) {
                    "transmittance to sweep through"),
             Kernel(session_, sweep_program(options_, parts, whole_bins()),
                    whole_bins() ? "sweep_bin" : "sweep_plane"),
-            {}};
+            {},
+            zeroed(session_, shell_bytes(options_, cascade), "light for a finer cascade")};
   if (coarser > 0)
     pass.let_in.emplace(session_, border_program(options_.grid, parts, coarser), "sweep_border");
   return pass;
@@ -163,21 +168,27 @@ void Sweeper::let_in(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
     return;
   }
   const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
-  pass.let_in->set(bins_, pass.directions, shell_, shell_of(options_.grid, offset), offset[0], offset[1],
-                   offset[2], border_);
+  pass.let_in->set(bins_, pass.directions, passes_[cascade + 1].shell, shell_of(options_.grid, offset),
+                   offset[0], offset[1], offset[2], border_);
   const auto rows = static_cast<std::size_t>(options_.grid) + 2;
   pass.let_in->launch({(rows + 7) / 8, rows, faces}, {1, std::min(rows, kRowGroup), 1});
 }
 
+ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const {
+  if (cascade == 0) return {};
+  return shell_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
+}
+
 void Sweeper::sweep(Pass& pass, const ClpvSweepShell& shell) {
-  pass.sweep.set(bins_, pass.directions, sources_, pass.ways, border_, shell, live_, sums_, shell_);
+  pass.sweep.set(bins_, pass.directions, sources_, pass.ways, border_, shell, live_, sums_, pass.shell);
   if (whole_bins()) {
     pass.sweep.launch({kSweepBins}, {1});
     return;
   }
   const auto n = static_cast<std::size_t>(options_.grid);
   for (int plane = 0; plane < options_.grid; ++plane) {
-    pass.sweep.set(bins_, pass.directions, sources_, pass.ways, border_, shell, live_, sums_, shell_, plane);
+    pass.sweep.set(bins_, pass.directions, sources_, pass.ways, border_, shell, live_, sums_, pass.shell,
+                   plane);
     pass.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});
   }
 }
@@ -187,13 +198,11 @@ void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, con
   source_.set(injected.memory(), sources_);
   launch_tiles(source_, 3);
   let_in(cascade, grids);
-  ClpvSweepShell shell{};  // none: nothing finer
-  if (cascade > 0) {
-    shell = shell_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
-    // What lies beyond this grid is dark.
-    if (!within(shell, options_.grid)) session_.fill_zero(shell_, shell_.bytes());
-  }
-  sweep(passes_[cascade], shell);
+  Pass& pass = passes_[cascade];
+  const ClpvSweepShell kept = shell(cascade, grids);
+  // What lies beyond this grid is dark.
+  if (!within(kept, options_.grid)) session_.fill_zero(pass.shell, pass.shell.bytes());
+  sweep(pass, kept);
   collect_.set(sums_, accumulated.memory());
   launch_tiles(collect_, 3);
 }

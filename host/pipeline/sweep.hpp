@@ -35,6 +35,9 @@ class Sweeper {
   void sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
              Volume& accumulated);
 
+  /// The cells of a cascade whose light a sweep of it keeps for the next finer one; those of the finest are none.
+  ClpvSweepShell shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
+
   /// Device memory of all that a sweeper keeps [bytes].
   static double bytes(const SweepOptions& options);
 
@@ -45,6 +48,7 @@ class Sweeper {
     Buffer ways;        ///< transmittance
     Kernel sweep;
     std::optional<Kernel> let_in;  ///< none: nothing is beyond
+    Buffer shell;                  ///< light for the next finer cascade
   };
   Pass make_pass(std::size_t cascade);
   void launch_tiles(Kernel& kernel, int channels);
@@ -55,7 +59,7 @@ class Sweeper {
   Session& session_;
   SweepOptions options_;
   int tile_;  ///< cells along the edges of a tile
-  Buffer bins_, sources_, sums_, live_, border_, shell_;
+  Buffer bins_, sources_, sums_, live_, border_;
   Kernel source_, collect_;
   std::optional<Kernel> ways_;
   std::vector<Pass> passes_;

@@ -27,7 +27,8 @@ class Fingerprint {
     return add(std::as_bytes(std::span(&value, 1)));
   }
 
-  /// 16 hexadecimal digits.
+  std::uint64_t value() const { return state_; }
+  /// The same as 16 hexadecimal digits.
   std::string hex() const;
 
  private:

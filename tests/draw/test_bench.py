@@ -28,11 +28,14 @@ class Charts(unittest.TestCase):
         self.assertEqual([t.get_text() for t in plain.get_yticklabels()], ["image/half texels", "image/half"])
         self.assertEqual(shadowed.get_title(), "gather sh2, occlusion")
 
-    def test_frames_are_told_by_preset(self):
-        rows = [row("frame", stage, preset=p, median=m) for p in ("paper", "best")
-                for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0))]
+    def test_frames_are_told_by_preset_and_by_what_was_made_anew(self):
+        rows = [row("frame", stage, preset=p, anew=a, median=m)
+                for p, a in (("paper", "light"), ("best", "nothing"), ("best", "light"))
+                for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0)) if (a, stage) != ("nothing", "propagate")]
         axis, = bench.frame(rows).axes
-        self.assertEqual([t.get_text() for t in axis.get_yticklabels()], ["sh2 paper", "sh2 best"])
+        self.assertEqual([t.get_text() for t in axis.get_yticklabels()],
+                         ["sh2 paper, light anew", "sh2 best, nothing anew", "sh2 best, light anew"])
+        self.assertEqual(axis.patches[-2].get_width(), 0.0)
         self.assertEqual(axis.patches[-1].get_x() + axis.patches[-1].get_width(), 8.0)
 
     def test_logarithmic_axes_are_written_plainly(self):

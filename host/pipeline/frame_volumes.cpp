@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame_volumes.hpp"
+
+#include <algorithm>
+
+#include "basis/sweep.hpp"
+#include "options/stage_options.hpp"
+#include "pipeline/block.hpp"
+#include "pipeline/see.hpp"
+#include "pipeline/sweep.hpp"
+#include "support/error.hpp"
+#include "volume/accumulator.hpp"
+
+namespace clpv {
+namespace {
+
+bool sweeps(const RenderOptions& options) {
+  return options.transport == TransportKind::sweep;
+}
+
+/// Of what is hidden, in one buffer.
+std::size_t sight_bytes(const RenderOptions& options, int grid) {
+  return options.gather == Gathering::visible
+             ? SceneSight::bytes(grid) * static_cast<std::size_t>(options.cascades)
+             : 0;
+}
+
+/// Bytes of the volumes of a frame at this grid.
+double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) {
+  RenderOptions tried = options;
+  tried.grid = grid;
+  const auto bytes = [&](const VolumeShape& shape) {
+    return static_cast<double>(stored_bytes(options.format(), shape));
+  };
+  const VolumeShape lit = light_shape(tried, basis), blocking = geometry_shape(tried, basis),
+                    carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
+  const double masks =
+      options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
+  const auto sight = static_cast<double>(sight_bytes(options, grid));
+  if (sweeps(options)) {
+    return sight + injected_volumes(options) * bytes(lit) + options.cascades * bytes({grid, kSweepBins, 3}) +
+           geometry_volumes(options) * bytes(blocking) + masks + Sweeper::bytes(sweep_options(tried));
+  }
+  // What adding takes besides: steps, and what is carried down, add to light; injection adds to its cells.
+  const auto spare = [&](const VolumeShape& shape) {
+    return static_cast<double>(Accumulator::spare_bytes(options.format(), shape));
+  };
+  const auto cells = [&](const VolumeShape& shape) {
+    return static_cast<double>(Accumulator::cells_bytes(options.format(), shape));
+  };
+  return sight + bytes(lit) * (injected_volumes(options) + options.cascades) + 3 * bytes(carried) +
+         (1 + geometry_volumes(options)) * bytes(blocking) + masks + 2 * spare(lit) + spare(carried) +
+         cells(lit) + cells(blocking);
+}
+
+/// Refuses a grid whose volumes exceed the device, naming the largest that fits.
+void require_memory(const Session& session, const RenderOptions& options, const Basis& basis) {
+  const Device& device = session.device();
+  const auto fits = [&](int grid) {
+    const std::size_t one = stored_bytes(options.format(), {grid, std::max(6, basis.size()), 3});
+    return std::max(one, sight_bytes(options, grid)) <= device.max_alloc_bytes &&
+           volume_bytes(options, basis, grid) <= static_cast<double>(device.memory_bytes);
+  };
+  if (fits(options.grid)) return;
+  int grid = options.grid;
+  while (grid > 1 && !fits(grid)) --grid;
+  throw Error(ExitCode::run_time,
+              "grid {}: light volumes of {} need {:.0f} MiB; {} has {} MiB, {} MiB a buffer; the largest "
+              "grid that fits is {}",
+              options.grid, basis.name(), volume_bytes(options, basis, options.grid) / 1048576, device.name,
+              device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
+}
+
+/// Refuses what a sweep cannot do, and what the scene's triangles cannot.
+void require_compatible(const RenderOptions& options) {
+  if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
+    throw Error(ExitCode::usage,
+                "blocking: found '{}' with blockers 'scene', allowed: areas (or blockers 'seen')",
+                name_of(options.blocking));
+  }
+  if (!sweeps(options)) return;
+  if (options.state != State::coefficients) {
+    throw Error(ExitCode::usage, "state: found '{}' with transport 'sweep', allowed: coefficients",
+                name_of(options.state));
+  }
+  if (options.lobe_time != LobeTime::host) {
+    throw Error(ExitCode::usage,
+                "lobe-time: found '{}' with transport 'sweep', which has no lobes; allowed: host",
+                name_of(options.lobe_time));
+  }
+}
+
+}  // namespace
+
+VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
+  return {options.grid, basis.size(), 3};
+}
+
+VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis) {
+  return {options.grid + 1, blocking_size(options.blocking, basis), 1};
+}
+
+std::unique_ptr<Basis> swept_basis(const RenderOptions& options) {
+  return sweeps(options) ? make_basis("bins24") : nullptr;
+}
+
+bool blocked_by_view(const RenderOptions& options) {
+  return options.occlusion && options.blockers == Blockers::seen;
+}
+
+int injected_volumes(const RenderOptions& options) {
+  return blocked_by_view(options) ? options.cascades : 1;
+}
+
+int geometry_volumes(const RenderOptions& options) {
+  if (!options.occlusion) return 0;
+  return options.blockers == Blockers::scene ? options.cascades : 1;
+}
+
+const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis) {
+  require_compatible(options);
+  require_supported(session.device(), options.format(), light_shape(options, basis));
+  require_memory(session, options, basis);
+  return options;
+}
+
+}  // namespace clpv
