@@ -168,6 +168,25 @@ TEST_F(SequenceTest, FoldersThatCannotBe) {
   EXPECT_THAT(nowhere.err, HasSubstr("/proc/1/there"));
 }
 
+TEST_F(SequenceTest, StabilityIsToldOfEachFrameButTheFirst) {
+  ASSERT_EQ(sequence("--frames 3 --fps 10 --stability --traced 4").exit_code, 0);
+  const json told = json::parse(read_file(folder / "out/stability.json"));
+  EXPECT_EQ(told["schema"], 1);
+  EXPECT_EQ(told["options"]["grid"], 16);
+  ASSERT_EQ(told["frames"].size(), 2u);
+  for (const json& frame : told["frames"]) {
+    EXPECT_FALSE(frame["still"].get<bool>()) << "a sun moves";
+    EXPECT_GT(frame["change"].get<double>(), 0);
+    EXPECT_GT(frame["seen"].get<double>(), 0.3);
+    EXPECT_LE(frame["seen"].get<double>(), 1);
+    EXPECT_GT(frame["traced"].get<double>(), 0);
+  }
+  EXPECT_EQ(told["summary"]["across_cells"]["frames"], 0) << "of what stands still";
+  const Outcome refused = sequence("--frames 3 --fps 10 --traced 4");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--stability"));
+}
+
 TEST_F(SequenceTest, AStillSceneIsToldOf) {
   GltfBuilder still;
   still.triangle();

@@ -11,10 +11,12 @@
 #include "commands/commands.hpp"
 #include "commands/render_request.hpp"
 #include "commands/sequence_frames.hpp"
+#include "commands/sequence_stability.hpp"
 #include "commands/sequence_times.hpp"
 #include "commands/time_option.hpp"
 #include "commands/video.hpp"
 #include "image/image_io.hpp"
+#include "pathtracer/path_tracer.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -40,6 +42,8 @@ struct Options {
   double frames_per_second = 0, from = 0;
   Show view = Show::full;
   FrameFormat format = FrameFormat::exr;
+  bool stability = false;
+  std::uint32_t traced = 0;
 
   double instant(int frame) const { return from + frame / frames_per_second; }
 };
@@ -74,6 +78,10 @@ void check_outputs(const Options& options) {
   if (failed) throw Error(ExitCode::run_time, "--output {}: {}", options.output, failed.message());
   check_writable(frame_file(folder, 0, options.format));
   check_writable(folder / "times.json");
+  if (options.stability) check_writable(folder / "stability.json");
+  if (options.traced > 0 && !options.stability)
+    throw Error(ExitCode::usage, "--traced {}: found no --stability, whose noise it tells of; allowed: both",
+                options.traced);
 }
 
 double milliseconds(Clock::duration span) {
@@ -98,6 +106,7 @@ class Sequence {
   }
 
   void run();
+  void measure_stability();
   void film(Video& video);
 
  private:
@@ -106,6 +115,7 @@ class Sequence {
   nlohmann::json described(int frame) const;
   std::vector<int> missing();
   FrameTimes render(Session& session, Frame& frame, int number);
+  nlohmann::json about() const;
   void write_times() const;
 
   const Options& options_;
@@ -159,16 +169,18 @@ FrameTimes Sequence::render(Session& session, Frame& frame, int number) {
   return times;
 }
 
-void Sequence::write_times() const {
+nlohmann::json Sequence::about() const {
   nlohmann::json options = describe(options_.request, resolved_, moving_.scene(), camera(), options_.from);
   options.erase("time");
   options["view"] = name_of(options_.view);
-  const nlohmann::json about = {
-      {"device", {{"platform", device_.platform}, {"name", device_.name}, {"driver", device_.driver}}},
-      {"options", options},
-      {"fps", options_.frames_per_second},
-      {"from", options_.from}};
-  write_file(fs::path(options_.output) / "times.json", times_.to_json(about).dump(1) + "\n");
+  return {{"device", {{"platform", device_.platform}, {"name", device_.name}, {"driver", device_.driver}}},
+          {"options", options},
+          {"fps", options_.frames_per_second},
+          {"from", options_.from}};
+}
+
+void Sequence::write_times() const {
+  write_file(fs::path(options_.output) / "times.json", times_.to_json(about()).dump(1) + "\n");
 }
 
 void Sequence::run() {
@@ -195,6 +207,22 @@ void Sequence::run() {
   session.store_programs();
 }
 
+/// Of all frames, rendered once more: most of them may be of an earlier run.
+void Sequence::measure_stability() {
+  Progress progress("stability", static_cast<std::uint64_t>(options_.frames));
+  Session session(device_, ProgramCache::of_user());
+  Frame frame(session, moving_.scene(), resolved_, tuning_);
+  SequenceStability stability(session, frame, options_.traced);
+  for (int i = 0; i < options_.frames; ++i) {
+    moving_.pose(options_.instant(i));
+    frame.scene_moved();
+    frame.render(camera());
+    stability.add(i, options_.instant(i), moving_.scene(), camera());
+    progress.advance();
+  }
+  write_file(fs::path(options_.output) / "stability.json", stability.to_json(about()).dump(1) + "\n");
+}
+
 /// All frames, from their files: most of them may be of an earlier run.
 void Sequence::film(Video& video) {
   Progress progress("film", static_cast<std::uint64_t>(options_.frames));
@@ -215,6 +243,7 @@ void run(const Options& options, const Shared& shared) {
   if (!options.video.empty()) video = std::make_unique<Video>(options.video, options.frames_per_second);
   Sequence sequence(options, shared);
   sequence.run();
+  if (options.stability) sequence.measure_stability();
   if (video) sequence.film(*video);
 }
 
@@ -243,6 +272,14 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
   command->add_option("--video", options->video, "all frames as a film too, through ffmpeg")
       ->type_name("FILE.mp4");
+  command->add_flag(
+      "--stability", options->stability,
+      "stability.json: how light changes from frame to frame on surfaces that stay where they are");
+  command
+      ->add_option("--traced", options->traced,
+                   "with --stability: the same of path tracing by so many paths a pixel, its noise")
+      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples))
+      ->type_name("SPP");
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(

@@ -37,10 +37,7 @@ std::string FrameIdentity::of(const Scene& posed, const Camera& camera,
                               const nlohmann::json& described) const {
   Fingerprint print;
   print.add(still_).add(described.dump()).add(std::vector{camera_view(camera, width_, height_)});
-  for (const Part& part : posed.moving) {
-    print.add(std::as_bytes(std::span(posed.vertices).subspan(part.first_vertex, part.vertices)));
-    print.add(std::as_bytes(std::span(posed.triangles).subspan(part.first_triangle, part.triangles)));
-  }
+  add_moving(print, posed);
   for (const Light& light : posed.lights_for(camera)) print.add(std::vector{light.data});
   return print.hex();
 }

@@ -2,7 +2,6 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include "pipeline/frame_volumes.hpp"
 #include "pipeline/view.hpp"
@@ -19,10 +18,7 @@ PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
 /// What a scene's triangles are, as far as they can change.
 MadeOf triangles_of(const Scene& scene) {
   Fingerprint print;
-  for (const Part& part : scene.moving) {
-    print.add(std::as_bytes(std::span(scene.vertices).subspan(part.first_vertex, part.vertices)));
-    print.add(std::as_bytes(std::span(scene.triangles).subspan(part.first_triangle, part.triangles)));
-  }
+  add_moving(print, scene);
   return MadeOf().add(print.value());
 }
 
@@ -211,6 +207,15 @@ GatheredLight Frame::light() const {
   GatheredLight light{grids_, {}, sight_ ? &sight_->hidden() : nullptr, lights_.scale()};
   for (const KeptVolume& accumulated : accumulated_) light.accumulated.push_back(accumulated.volume.get());
   return light;
+}
+
+std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
+  const std::size_t numbers = surfaces.depth.size() * 4;
+  const Surface there = upload_surface(session_, {surfaces.view, surfaces.depth, surfaces.normal, {}, {}});
+  Buffer irradiance = session_.buffer(numbers * sizeof(float), "irradiance on given surfaces");
+  const GatheredLight gathered = light();
+  gatherer_.gather(there, gathered.grids, gathered.accumulated, irradiance, gathered.scale, gathered.hidden);
+  return session_.read<float>(irradiance, numbers);
 }
 
 std::vector<float> Frame::read(Show view) {

@@ -72,6 +72,12 @@ class Frame {
   /// Empty before the first render.
   GatheredLight light() const;
 
+  /// What the camera of the last render sees. None before it.
+  const Surface& seen() const { return *camera_surface_; }
+
+  /// Irradiance of the last render's light on surfaces that its camera need not see, as Gatherer gives it.
+  std::vector<float> irradiance_on(const SurfaceImage& surfaces);
+
   /// One view of the last render, as RGBA float, row 0 on top.
   std::vector<float> read(Show view);
 

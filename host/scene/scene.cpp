@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv {
 
@@ -35,6 +36,13 @@ std::vector<Light> Scene::lights_for(const Camera& camera) const {
     if (light.name == camera.light) chosen.push_back(light);
   }
   return chosen;
+}
+
+void add_moving(Fingerprint& print, const Scene& scene) {
+  for (const Part& part : scene.moving) {
+    print.add(std::as_bytes(std::span(scene.vertices).subspan(part.first_vertex, part.vertices)));
+    print.add(std::as_bytes(std::span(scene.triangles).subspan(part.first_triangle, part.triangles)));
+  }
 }
 
 }  // namespace clpv

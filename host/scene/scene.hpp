@@ -13,6 +13,8 @@
 
 namespace clpv {
 
+class Fingerprint;
+
 using Vertex = ClpvVertex;
 using Triangle = ClpvTriangle;
 using Material = ClpvMaterial;
@@ -76,5 +78,8 @@ struct Scene {
   /// The lights that shine when seen through `camera`: the one it names, or all.
   std::vector<Light> lights_for(const Camera& camera) const;
 };
+
+/// Adds what of a scene's triangles changes with time, as it is now.
+void add_moving(Fingerprint& print, const Scene& scene);
 
 }  // namespace clpv
