@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// How a sweep's numbers lie in memory: volumes of rows, one for each bin or way.
+// How a sweep's numbers lie in memory: volumes of planes, one for each bin or way.
 //
-// A volume has a border of one cell all round. Rows along x lie above each other along y and then z; in a turned volume, of
-// directions whose planes are across x, they are rows along y, above each other along x and then z: planes of every
-// direction then hold whole rows. The border of sources is zero.
+// A volume is of an axis: the planes across it follow each other, so that a direction walks through memory from one end to
+// the other. Rows of a plane lie along x, and above each other along y in planes across z, along z in those across y; in
+// planes across x they lie along y, above each other along z. There is a border of one cell all round.
 #ifndef CLPV_SWEEP_H
 #define CLPV_SWEEP_H
 
@@ -41,9 +41,12 @@
 #define CLPV_LIVE_STORE(to, at, value) (to)[at] = value
 #endif
 
-// Of cell (column, row) of slice z.
-CLPV_INLINE int clpv_row_of(const int column, const int row, const int z) {
-  return (z + 1) * CLPV_SWEEP_PLANE + (row + 1) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + column;
+// The volume's place of a cell, and a single plane's.
+CLPV_INLINE int clpv_live_at(const int row, const int column) {
+  return (row + 1) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + column;
+}
+CLPV_INLINE int clpv_sweep_at(const int plane, const int row, const int column) {
+  return (plane + 1) * CLPV_SWEEP_PLANE + clpv_live_at(row, column);
 }
 
 // A tile of CLPV_LANES x CLPV_LANES cells, its rows turned into columns.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a sweep leaves, as a light volume of the 24 bins of directions: radiance times s^2 (docs/method.md, 'The sweep').
+// What is kept of a sweep: a light volume of nine spherical harmonics, radiance times s^2 (docs/method.md, 'The sweep').
 //
-// In: `sums`, a volume of rows for each channel and bin (sweep.h), turned ones first. Out: `accumulated`, of any layout.
+// In: `sums`, a volume for each channel and bin (sweep.h). Out: `accumulated`, of any layout. CLPV_EACH_X_BIN and the like:
+// sweep_source.cl. The host writes the struct Swept and Coefficients clpv_projected(Swept).
 // A work-item is a tile of CLPV_LANES x CLPV_LANES cells of a slice of one channel.
 #include "coefficients.h"
+#include "shared/sweep.h"
 #include "sweep.h"
 #include "volume/light.h"
 
@@ -12,26 +14,29 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   CLPV_BUFFER_IN in = sums + channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
-  Tile tile[CLPV_TURNED_BINS];
-  for (int b = 0; b < CLPV_TURNED_BINS; ++b) {
+  Tile tile[CLPV_X_BINS];
+  for (int b = 0; b < CLPV_X_BINS; ++b) {
     Tile turned;
     for (int r = 0; r < CLPV_LANES; ++r) {
       turned.row[r] = 0.0f;
       if (x + r < CLPV_GRID)
-        turned.row[r] = CLPV_SWEEP_LOAD(in + b * CLPV_SWEEP_VOLUME, clpv_row_of(y, x + r, z));
+        turned.row[r] = CLPV_SWEEP_LOAD(in + b * CLPV_SWEEP_VOLUME, clpv_sweep_at(x + r, z, y));
     }
     tile[b] = clpv_turn(turned);
   }
   for (int r = 0; r < CLPV_LANES; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const int at = clpv_row_of(x, y + r, z);
-    Coefficients c;
-#define CLPV_DO(b) c.c##b = tile[b].row[r];
-    CLPV_EACH_TURNED_BIN(CLPV_DO)
+    const int across_z = clpv_sweep_at(z, y + r, x), across_y = clpv_sweep_at(y + r, z, x);
+    Swept m;
+#define CLPV_DO(b) m.c##b = tile[b].row[r];
+    CLPV_EACH_X_BIN(CLPV_DO)
 #undef CLPV_DO
-#define CLPV_DO(b) c.c##b = CLPV_SWEEP_LOAD(in + b * CLPV_SWEEP_VOLUME, at);
-    CLPV_EACH_STRAIGHT_BIN(CLPV_DO)
+#define CLPV_DO(b) m.c##b = CLPV_SWEEP_LOAD(in + b * CLPV_SWEEP_VOLUME, across_y);
+    CLPV_EACH_Y_BIN(CLPV_DO)
 #undef CLPV_DO
-    light_store(accumulated, channel, x, y + r, z, c);
+#define CLPV_DO(b) m.c##b = CLPV_SWEEP_LOAD(in + b * CLPV_SWEEP_VOLUME, across_z);
+    CLPV_EACH_Z_BIN(CLPV_DO)
+#undef CLPV_DO
+    light_store(accumulated, channel, x, y + r, z, clpv_projected(m));
   }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What blockers let through, for a sweep: the transmittance of each way into a cell, in rows (sweep.h).
+// What blockers let through, for a sweep: the transmittance of each way into a cell, in volumes of planes (sweep.h).
 //
-// In: geometry volume, samples at the cells' corners. Out: `ways`, a volume of rows for each way that directions across z
-// and y use, and then turned ones for those across x. CLPV_TRANSMITTANCE and Ways are kernels/transmit.cl's;
-// CLPV_EACH_STRAIGHT_WAY(DO) and CLPV_EACH_TURNED_WAY(DO) write DO(place, way).
+// In: geometry volume, samples at the cells' corners. Out: `through`, a volume for each axis and way that directions across
+// it use. CLPV_TRANSMITTANCE and Ways are kernels/transmit.cl's; CLPV_EACH_X_WAY(DO) and the like write DO(place, way),
+// those across x first.
 // A work-item is a tile of CLPV_LANES x CLPV_LANES cells of a slice.
 #include "coefficients.h"
 #include "sweep.h"
@@ -16,31 +16,35 @@ __kernel void sweep_ways(CLPV_VOLUME_IN blockers, CLPV_BUFFER_OUT through) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);
   const int z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
-  Tile tile[CLPV_TURNED_WAYS];
+  Tile tile[CLPV_X_WAYS];
   for (int r = 0; r < CLPV_LANES; ++r) {
     if (y + r < CLPV_GRID) {
       CLPV_LOAD_CORNER(0) CLPV_LOAD_CORNER(1) CLPV_LOAD_CORNER(2) CLPV_LOAD_CORNER(3)
       CLPV_LOAD_CORNER(4) CLPV_LOAD_CORNER(5) CLPV_LOAD_CORNER(6) CLPV_LOAD_CORNER(7)
       CLPV_TRANSMITTANCE
-      const int at = clpv_row_of(x, y + r, z);
-#define CLPV_DO(place, way) CLPV_SWEEP_STORE(through + place * CLPV_SWEEP_VOLUME, at, CLPV_WITHIN(x, ways.c##way));
-      CLPV_EACH_STRAIGHT_WAY(CLPV_DO)
+      const int across_z = clpv_sweep_at(z, y + r, x), across_y = clpv_sweep_at(y + r, z, x);
+#define CLPV_DO(place, way) \
+  CLPV_SWEEP_STORE(through + place * CLPV_SWEEP_VOLUME, across_z, CLPV_WITHIN(x, ways.c##way));
+      CLPV_EACH_Z_WAY(CLPV_DO)
+#undef CLPV_DO
+#define CLPV_DO(place, way) \
+  CLPV_SWEEP_STORE(through + place * CLPV_SWEEP_VOLUME, across_y, CLPV_WITHIN(x, ways.c##way));
+      CLPV_EACH_Y_WAY(CLPV_DO)
 #undef CLPV_DO
 #define CLPV_DO(place, way) tile[place].row[r] = ways.c##way;
-      CLPV_EACH_TURNED_WAY(CLPV_DO)
+      CLPV_EACH_X_WAY(CLPV_DO)
     } else {
 #undef CLPV_DO
 #define CLPV_DO(place, way) tile[place].row[r] = 0.0f;
-      CLPV_EACH_TURNED_WAY(CLPV_DO)
+      CLPV_EACH_X_WAY(CLPV_DO)
 #undef CLPV_DO
     }
   }
-  CLPV_BUFFER_OUT out = through + CLPV_STRAIGHT_WAYS * CLPV_SWEEP_VOLUME;
-  for (int w = 0; w < CLPV_TURNED_WAYS; ++w) {
+  for (int w = 0; w < CLPV_X_WAYS; ++w) {
     const Tile turned = clpv_turn(tile[w]);
     for (int r = 0; r < CLPV_LANES; ++r) {
       if (x + r >= CLPV_GRID) break;
-      CLPV_SWEEP_STORE(out + w * CLPV_SWEEP_VOLUME, clpv_row_of(y, x + r, z), turned.row[r]);
+      CLPV_SWEEP_STORE(through + w * CLPV_SWEEP_VOLUME, clpv_sweep_at(x + r, z, y), turned.row[r]);
     }
   }
 }

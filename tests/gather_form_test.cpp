@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "basis/sweep.hpp"
+
 namespace clpv {
 namespace {
 
@@ -152,6 +154,21 @@ TEST(GatherForm, TheWindowIsTheLeastThatLeavesNoLobeNegative) {
     }
     EXPECT_GT(least, -0.005 * most) << name << ", window " << form.window();
   }
+}
+
+TEST(GatherForm, SweptLightNeedsNoWindow) {
+  const auto bins = make_basis("bins24"), kept = swept_basis();
+  const GatherForm form(*kept, make_transport(TransportKind::sweep, *kept));
+  EXPECT_EQ(form.window(), 0);
+  std::mt19937 random(9);
+  double least = 0, most = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const std::vector<double> lobe = swept_projection() * bins->clamped_cosine(random_direction(random));
+    const double e = with_window(form, lobe, random_direction(random));
+    least = std::min(least, e), most = std::max(most, e);
+  }
+  EXPECT_GT(most, 0.5);
+  EXPECT_GE(least, 0);
 }
 
 }  // namespace

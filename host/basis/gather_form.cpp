@@ -76,7 +76,7 @@ GatherForm::GatherForm(const Basis& basis, const Transport& transport) : basis_(
   // The mean of max(0, w . d) over d is 1/4.
   for (const double integral : functions().integrals())
     mean_.push_back(integral * (integrates_ ? 0.25 : 0.25 / pi));
-  if (transport.gathers_cosine) window_ = least_window();
+  if (transport.gathers_cosine && transport.kind != TransportKind::sweep) window_ = least_window();
 }
 
 std::vector<double> GatherForm::evaluate(const glm::dvec3& w) const {

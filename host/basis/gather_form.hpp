@@ -20,7 +20,8 @@ namespace clpv {
 ///
 /// Operators gather every lobe in a cell at once, those that leave the surface too, and what a truncated basis makes of
 /// the latter is negative light that eats the other's. The window is the least that leaves no clamped cosine lobe a
-/// negative irradiance on any surface; 0 for face transports.
+/// negative irradiance on any surface; 0 for face transports, and for swept light: a lobe that went through the 24 bins of a
+/// sweep is too wide to leave any.
 class GatherForm {
  public:
   /// Refers to `basis`.

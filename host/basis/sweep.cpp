@@ -7,11 +7,13 @@
 
 #include "basis/direction_bins.hpp"
 #include "basis/quadrature.hpp"
+#include "basis/spherical_harmonics.hpp"
 
 namespace clpv {
 namespace {
 
 constexpr int kSide = 2;  // bins along each edge of a cube's face
+constexpr int kSweptBands = 3;
 
 struct FaceAxes {
   int n, u, v;
@@ -117,6 +119,25 @@ Matrix bin_means(const Basis& basis) {
     }
   }
   return sums;
+}
+
+std::unique_ptr<Basis> swept_basis() {
+  return std::make_unique<SphericalHarmonics>(kSweptBands);
+}
+
+Matrix swept_projection() {
+  const DirectionBins bins(kSide);
+  const std::unique_ptr<Basis> harmonics = swept_basis();
+  Matrix projection(harmonics->size(), kSweepBins);
+  for (const QuadratureNode& node : quadrature(bins, octants())) {
+    const std::vector<double> in = bins.evaluate(node.w), y = harmonics->evaluate(node.w);
+    for (int j = 0; j < projection.rows(); ++j) {
+      for (int bin = 0; bin < kSweepBins; ++bin)
+        projection(j, bin) +=
+            node.weight * y[static_cast<std::size_t>(j)] * in[static_cast<std::size_t>(bin)];
+    }
+  }
+  return projection;
 }
 
 OperatorTransport sweep_ways() {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -44,6 +45,12 @@ int coarser_part(int part, int parts, int coarser_parts);
 /// 24 x N: the mean over each bin of the functions of a basis. What a basis holds is swept as these means, negative ones
 /// too: the energy of any field is kept.
 Matrix bin_means(const Basis& basis);
+
+/// What is kept of swept light: the nine spherical harmonics of bands 0 to 2, all that gathering asks of it (gather_form.hpp).
+std::unique_ptr<Basis> swept_basis();
+
+/// 9 x 24: the projection on them of light that is the same all over each bin.
+Matrix swept_projection();
 
 /// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them: an operator transport without weights.
 OperatorTransport sweep_ways();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
@@ -14,55 +15,63 @@ namespace clpv {
 namespace {
 
 constexpr int kLanes = 8;
-constexpr int kTurnedAxis = 0;  // of planes whose rows lie along y
+constexpr const char* kAxes = "XYZ";
 
-/// Bins 0 .. turned - 1 are those of directions across x.
-int turned_bins(const std::vector<SweepBin>& bins) {
-  return static_cast<int>(
-      std::count_if(bins.begin(), bins.end(), [](const SweepBin& b) { return b.axis == kTurnedAxis; }));
-}
-
+/// "#define CLPV_EACH_X_BIN(DO) DO(0) ..." and the like: the bins that are swept across each axis, those across x first.
 std::string bin_macros() {
-  const int turned = turned_bins(sweep_bins(1));
-  std::string text =
-      fmt::format("#define CLPV_SWEEP_BINS {}\n#define CLPV_TURNED_BINS {}\n", kSweepBins, turned);
-  std::string lists[2] = {"#define CLPV_EACH_TURNED_BIN(DO)", "#define CLPV_EACH_STRAIGHT_BIN(DO)"};
-  for (int b = 0; b < kSweepBins; ++b) lists[b < turned ? 0 : 1] += fmt::format(" DO({})", b);
-  return text + lists[0] + "\n" + lists[1] + "\n";
-}
-
-/// Offsets of the ways as sweep_ways numbers them, and as kernels keep them: straight ones, then turned ones.
-struct WayList {
-  std::vector<glm::ivec3> all, straight, turned;
-};
-
-WayList way_list() {
-  WayList list;
-  for (const auto& way : sweep_ways().neighbours) list.all.push_back(way.offset);
   const std::vector<SweepBin> bins = sweep_bins(1);
-  for (const glm::ivec3& offset : list.all) {
-    const auto used = [&](bool turned) {
-      return std::any_of(bins.begin(), bins.end(), [&](const SweepBin& bin) {
-        return (bin.axis == kTurnedAxis) == turned &&
-               std::find(bin.offset.begin(), bin.offset.end(), offset) != bin.offset.end();
-      });
-    };
-    if (used(false)) list.straight.push_back(offset);
-    if (used(true)) list.turned.push_back(offset);
+  std::string text =
+      fmt::format("#define CLPV_X_BINS {}\n",
+                  std::count_if(bins.begin(), bins.end(), [](const SweepBin& bin) { return bin.axis == 0; }));
+  for (int axis = 0; axis < 3; ++axis) {
+    text += fmt::format("#define CLPV_EACH_{}_BIN(DO)", kAxes[axis]);
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+      if (bins[b].axis == axis) text += fmt::format(" DO({})", b);
+    }
+    text += "\n";
   }
-  return list;
+  return text;
 }
 
 int place_in(const std::vector<glm::ivec3>& list, const glm::ivec3& offset) {
   return static_cast<int>(std::find(list.begin(), list.end(), offset) - list.begin());
 }
 
-std::string each_way(const char* name, const WayList& list, const std::vector<glm::ivec3>& kept) {
-  std::string text =
-      fmt::format("#define CLPV_{}_WAYS {}\n#define CLPV_EACH_{}_WAY(DO)", name, kept.size(), name);
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    text += fmt::format(" DO({}, {})", i, place_in(list.all, kept[i]));
-  return text + "\n";
+/// Offsets of the ways: as sweep_ways numbers them, and for each axis those that directions across it use.
+struct WayList {
+  std::vector<glm::ivec3> all;
+  std::array<std::vector<glm::ivec3>, 3> across;
+
+  /// The number of the volume that a kernel keeps a way in: x's first.
+  int volume(int axis, const glm::ivec3& offset) const {
+    int before = 0;
+    for (int i = 0; i < axis; ++i) before += static_cast<int>(across[static_cast<std::size_t>(i)].size());
+    return before + place_in(across[static_cast<std::size_t>(axis)], offset);
+  }
+};
+
+WayList way_list() {
+  WayList list;
+  for (const auto& way : sweep_ways().neighbours) list.all.push_back(way.offset);
+  for (const SweepBin& bin : sweep_bins(1)) {
+    auto& across = list.across[static_cast<std::size_t>(bin.axis)];
+    for (const glm::ivec3& offset : bin.offset) {
+      if (std::find(across.begin(), across.end(), offset) == across.end()) across.push_back(offset);
+    }
+  }
+  return list;
+}
+
+std::string way_macros() {
+  const WayList list = way_list();
+  std::string text = fmt::format("#define CLPV_X_WAYS {}\n", list.across[0].size());
+  for (int axis = 0; axis < 3; ++axis) {
+    text += fmt::format("#define CLPV_EACH_{}_WAY(DO)", kAxes[axis]);
+    for (const glm::ivec3& offset : list.across[static_cast<std::size_t>(axis)])
+      text += fmt::format(" DO({}, {})", list.volume(axis, offset), place_in(list.all, offset));
+    text += "\n";
+  }
+  return text;
 }
 
 std::size_t pitch(int grid) {
@@ -84,13 +93,20 @@ std::string sweep_source_text(const Basis& basis) {
 }
 
 std::string sweep_ways_text(const Basis& basis, const Transport& transport) {
-  const WayList list = way_list();
-  return transmit_source(basis, transport).text + each_way("STRAIGHT", list, list.straight) +
-         each_way("TURNED", list, list.turned);
+  return transmit_source(basis, transport).text + way_macros();
 }
 
 std::string sweep_collect_text() {
-  return coefficient_macros(kSweepBins) + bin_macros();
+  const Matrix projection = swept_projection();
+  const Mirrors mirrors = mirrors_of(*make_basis("bins24"));
+  LinearCode code;
+  const std::vector<std::string> harmonics =
+      code.product(projection, fields("m", kSweepBins), {mirrors.all.begin(), mirrors.all.end()});
+  std::string text =
+      coefficient_macros(projection.rows()) + bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
+      "CLPV_INLINE Coefficients clpv_projected(const Swept m) {\n" + code.text() + "  Coefficients c;\n";
+  for (std::size_t i = 0; i < harmonics.size(); ++i) text += fmt::format("  c.c{} = {};\n", i, harmonics[i]);
+  return text + "  return c;\n}\n";
 }
 
 std::size_t sweep_plane_numbers(int grid) {
@@ -104,27 +120,18 @@ std::size_t sweep_volume_numbers(int grid) {
 
 int sweep_way_count() {
   const WayList list = way_list();
-  return static_cast<int>(list.straight.size() + list.turned.size());
+  return static_cast<int>(list.across[0].size() + list.across[1].size() + list.across[2].size());
 }
 
-std::vector<ClpvSweepBin> sweep_bin_table(int grid) {
+std::vector<ClpvSweepBin> sweep_bin_table() {
   const WayList list = way_list();
-  const int row = static_cast<int>(pitch(grid)), slice = (grid + 2) * row;
   std::vector<ClpvSweepBin> table;
   for (const SweepBin& bin : sweep_bins(1)) {
     ClpvSweepBin entry{};
-    // Slices lie along z; planes across z are slices, all others hold a row of each slice.
-    const bool slices = bin.axis == 2;
-    entry.plane_step = slices ? slice : row;
-    entry.row_step = slices ? row : slice;
     entry.plane_axis = bin.axis, entry.row_axis = bin.v, entry.column_axis = bin.u;
     entry.plane_sign = bin.sign[bin.axis], entry.row_sign = bin.sign[bin.v],
     entry.column_sign = bin.sign[bin.u];
-    for (std::size_t k = 0; k < bin.offset.size(); ++k) {
-      entry.ways[k] = bin.axis == kTurnedAxis
-                          ? static_cast<int>(list.straight.size()) + place_in(list.turned, bin.offset[k])
-                          : place_in(list.straight, bin.offset[k]);
-    }
+    for (std::size_t k = 0; k < bin.offset.size(); ++k) entry.ways[k] = list.volume(bin.axis, bin.offset[k]);
     table.push_back(entry);
   }
   return table;

@@ -15,16 +15,16 @@ namespace clpv {
 std::string sweep_source_text(const Basis& basis);
 /// For sweep_ways.cl: transmit_source's text, and which ways go where.
 std::string sweep_ways_text(const Basis& basis, const Transport& transport);
-/// For sweep_collect.cl: coefficient_macros of 24 bins.
+/// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
 std::string sweep_collect_text();
 
-/// Volumes of rows (kernels/sweep.h) of a grid: numbers in one, and in a plane by itself.
+/// Volumes of planes (kernels/sweep.h) of a grid: numbers in one, and in a plane by itself.
 std::size_t sweep_volume_numbers(int grid);
 std::size_t sweep_plane_numbers(int grid);
-/// Ways of sweep_ways.cl, straight and turned ones.
+/// Volumes that sweep_ways.cl writes.
 int sweep_way_count();
 
-std::vector<ClpvSweepBin> sweep_bin_table(int grid);
+std::vector<ClpvSweepBin> sweep_bin_table();
 /// `coarser_parts`: of the next coarser cascade; 0: there is none.
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);
 

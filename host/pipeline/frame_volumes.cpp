@@ -38,7 +38,8 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
       options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
   const auto sight = static_cast<double>(sight_bytes(options, grid));
   if (sweeps(options)) {
-    return sight + injected_volumes(options) * bytes(lit) + options.cascades * bytes({grid, kSweepBins, 3}) +
+    return sight + injected_volumes(options) * bytes(lit) +
+           options.cascades * bytes({grid, swept_basis()->size(), 3}) +
            geometry_volumes(options) * bytes(blocking) + masks + Sweeper::bytes(sweep_options(tried));
   }
   // What adding takes besides: steps, and what is carried down, add to light; injection adds to its cells.
@@ -101,7 +102,7 @@ VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis) {
 }
 
 std::unique_ptr<Basis> swept_basis(const RenderOptions& options) {
-  return sweeps(options) ? make_basis("bins24") : nullptr;
+  return sweeps(options) ? swept_basis() : nullptr;
 }
 
 bool blocked_by_view(const RenderOptions& options) {

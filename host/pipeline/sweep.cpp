@@ -49,13 +49,14 @@ ClpvSweepShell shell_of(int grid, const std::array<int, 3>& offset) {
 
 std::size_t shell_numbers(int grid) {
   const auto side = static_cast<std::size_t>((grid + 1) / 2 + 3);
-  return 2 * side * (side + 8) + 8;
+  return 2 * side * ((side + 7) / 8 * 8 + 8) + 8;
 }
 
 /// Of what a cascade keeps for the next finer one.
 std::size_t shell_bytes(const SweepOptions& options, std::size_t cascade) {
   if (cascade == 0) return sizeof(float);
-  return 3 * 3 * directions_of(options.parts[cascade]) * shell_numbers(options.grid) * sizeof(float);
+  return 3 * 3 * directions_of(options.parts[cascade]) * shell_numbers(options.grid) *
+         number_bytes(options.format);
 }
 
 bool within(const ClpvSweepShell& shell, int grid) {
@@ -80,26 +81,28 @@ ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_b
   return source;
 }
 
-ProgramSource border_program(int grid, int parts, int coarser_parts) {
+ProgramSource border_program(const SweepOptions& options, int parts, int coarser_parts) {
   ProgramSource source{"sweep_border.cl", {}, {}};
-  source.literals.integer("CLPV_GRID", grid)
+  source.literals.integer("CLPV_GRID", options.grid)
       .integer("CLPV_PARTS", squared(parts))
       .integer("CLPV_COARSER_PARTS", squared(coarser_parts));
+  add_format_literals(source.literals, options.format, 8);
   return source;
 }
 
 }  // namespace
 
 double Sweeper::bytes(const SweepOptions& options) {
-  const auto volume = static_cast<double>(sweep_volume_numbers(options.grid) * number_bytes(options.format));
-  const auto plane = static_cast<double>(sweep_plane_numbers(options.grid) * sizeof(float));
+  const auto number = static_cast<double>(number_bytes(options.format));
+  const auto volume = static_cast<double>(sweep_volume_numbers(options.grid)) * number;
+  const auto plane = static_cast<double>(sweep_plane_numbers(options.grid));
   double most = 0, shells = 0;
   for (std::size_t c = 0; c < options.parts.size(); ++c) {
     most = std::max(most, static_cast<double>(3 * directions_of(options.parts[c])));
     shells += static_cast<double>(shell_bytes(options, c));
   }
   const double ways = options.blocking ? static_cast<double>(options.parts.size()) * sweep_way_count() : 0;
-  return (2 * 3 * kSweepBins + ways) * volume + most * (2 + 3) * plane + shells;
+  return (3 * kSweepBins + ways) * volume + most * 2 * plane * (sizeof(float) + number) + shells;
 }
 
 Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transport,
@@ -114,11 +117,11 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   const std::size_t volume = sweep_volume_numbers(options.grid) * number_bytes(options.format);
   const std::size_t plane = sweep_plane_numbers(options.grid) * sizeof(float);
   const std::size_t swept = 3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
-  bins_ = session.upload(sweep_bin_table(options.grid), "bins to sweep");
-  sources_ = zeroed(session, 3 * kSweepBins * volume, "light to sweep");
-  sums_ = zeroed(session, 3 * kSweepBins * volume, "light swept");
+  bins_ = session.upload(sweep_bin_table(), "bins to sweep");
+  light_ = zeroed(session, 3 * kSweepBins * volume, "light to sweep, and swept");
   live_ = zeroed(session, (whole_bins() ? 1 : 2) * swept * plane, "planes being swept");
-  border_ = zeroed(session, 3 * swept * plane, "light at the border");
+  border_ = zeroed(session, 2 * swept * sweep_plane_numbers(options.grid) * number_bytes(options.format),
+                   "light at the border");
   if (options.blocking) {
     ways_.emplace(session, tiled_program("sweep_ways.cl", options, tile_, sweep_ways_text(basis, transport)),
                   "sweep_ways");
@@ -144,8 +147,7 @@ Sweeper::Pass Sweeper::make_pass(std::size_t cascade) {
                    whole_bins() ? "sweep_bin" : "sweep_plane"),
             {},
             zeroed(session_, shell_bytes(options_, cascade), "light for a finer cascade")};
-  if (coarser > 0)
-    pass.let_in.emplace(session_, border_program(options_.grid, parts, coarser), "sweep_border");
+  if (coarser > 0) pass.let_in.emplace(session_, border_program(options_, parts, coarser), "sweep_border");
   return pass;
 }
 
@@ -162,16 +164,19 @@ void Sweeper::block(std::size_t cascade, const Volume& geometry) {
 
 void Sweeper::let_in(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   Pass& pass = passes_[cascade];
-  const std::size_t faces = 3 * 3 * directions_of(pass.parts);
   if (!pass.let_in) {
-    session_.fill_zero(border_, faces * sweep_plane_numbers(options_.grid) * sizeof(float));
+    session_.fill_zero(border_, border_.bytes());
+    session_.fill_zero(live_, live_.bytes());
     return;
   }
+  const std::size_t swept = 3 * directions_of(pass.parts);
+  // Planes of odd number have their own place, and the one before the first is of them.
+  const std::size_t before = whole_bins() ? 0 : swept * sweep_plane_numbers(options_.grid);
   const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
   pass.let_in->set(bins_, pass.directions, passes_[cascade + 1].shell, shell_of(options_.grid, offset),
-                   offset[0], offset[1], offset[2], border_);
+                   offset[0], offset[1], offset[2], live_, static_cast<cl_int>(before), border_);
   const auto rows = static_cast<std::size_t>(options_.grid) + 2;
-  pass.let_in->launch({(rows + 7) / 8, rows, faces}, {1, std::min(rows, kRowGroup), 1});
+  pass.let_in->launch({(rows + 7) / 8, rows, 3 * swept}, {1, std::min(rows, kRowGroup), 1});
 }
 
 ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const {
@@ -180,22 +185,21 @@ ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& 
 }
 
 void Sweeper::sweep(Pass& pass, const ClpvSweepShell& shell) {
-  pass.sweep.set(bins_, pass.directions, sources_, pass.ways, border_, shell, live_, sums_, pass.shell);
+  pass.sweep.set(bins_, pass.directions, light_, pass.ways, border_, shell, live_, pass.shell);
   if (whole_bins()) {
     pass.sweep.launch({kSweepBins}, {1});
     return;
   }
   const auto n = static_cast<std::size_t>(options_.grid);
   for (int plane = 0; plane < options_.grid; ++plane) {
-    pass.sweep.set(bins_, pass.directions, sources_, pass.ways, border_, shell, live_, sums_, pass.shell,
-                   plane);
+    pass.sweep.set(bins_, pass.directions, light_, pass.ways, border_, shell, live_, pass.shell, plane);
     pass.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});
   }
 }
 
 void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
                     Volume& accumulated) {
-  source_.set(injected.memory(), sources_);
+  source_.set(injected.memory(), light_);
   launch_tiles(source_, 3);
   let_in(cascade, grids);
   Pass& pass = passes_[cascade];
@@ -203,7 +207,7 @@ void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, con
   // What lies beyond this grid is dark.
   if (!within(kept, options_.grid)) session_.fill_zero(pass.shell, pass.shell.bytes());
   sweep(pass, kept);
-  collect_.set(sums_, accumulated.memory());
+  collect_.set(light_, accumulated.memory());
   launch_tiles(collect_, 3);
 }
 

@@ -24,14 +24,14 @@ static_assert(sizeof(ClpvSweepBin) == CLPV_SIZEOF_SWEEP_BIN &&
 /// Sweeps the cascades of a frame, coarsest first. Deterministic to the bit, whatever the number of compute units.
 class Sweeper {
  public:
-  /// `basis`: of injected light; what comes out is of bins24. `transport`: TransportKind::sweep, which says what blocks.
+  /// `basis`: of injected light; what comes out is of swept_basis(). `transport`: TransportKind::sweep, which says what blocks.
   Sweeper(Session& session, const Basis& basis, const Transport& transport, const SweepOptions& options);
 
   /// What blocks in a cascade from now on: (grid + 1)^3 samples.
   void block(std::size_t cascade, const Volume& geometry);
 
   /// Sweeps `injected` through cascade `cascade` of `grids`, whose coarser one has been swept before, and leaves light of
-  /// bins24, as radiance times s^2, in `accumulated`. Throws Error(run_time) for grids that are not nested.
+  /// swept_basis(), as radiance times s^2, in `accumulated`. Throws Error(run_time) for grids that are not nested.
   void sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
              Volume& accumulated);
 
@@ -59,7 +59,7 @@ class Sweeper {
   Session& session_;
   SweepOptions options_;
   int tile_;  ///< cells along the edges of a tile
-  Buffer bins_, sources_, sums_, live_, border_;
+  Buffer bins_, light_, live_, border_;
   Kernel source_, collect_;
   std::optional<Kernel> ways_;
   std::vector<Pass> passes_;

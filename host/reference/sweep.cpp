@@ -178,4 +178,21 @@ std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
   return results;
 }
 
+Volume kept_of(const Volume& swept) {
+  const Matrix projection = swept_projection();
+  Volume kept(swept.n, projection.rows(), 3);
+  const std::size_t cells = swept.values.size() / (3 * kSweepBins);
+  for (int channel = 0; channel < 3; ++channel) {
+    for (int j = 0; j < projection.rows(); ++j) {
+      const std::size_t to = kept.index(channel, j, 0, 0, 0);
+      for (int bin = 0; bin < kSweepBins; ++bin) {
+        const std::size_t from = swept.index(channel, bin, 0, 0, 0);
+        for (std::size_t i = 0; i < cells; ++i)
+          kept.values[to + i] += projection(j, bin) * swept.values[from + i];
+      }
+    }
+  }
+  return kept;
+}
+
 }  // namespace clpv::reference

@@ -23,4 +23,7 @@ struct SweptCascade {
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
                           const std::vector<SweptCascade>& cascades);
 
+/// What is kept of it: light of swept_basis().
+Volume kept_of(const Volume& swept);
+
 }  // namespace clpv::reference

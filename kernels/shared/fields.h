@@ -23,8 +23,7 @@
     OFFSET(ClpvView, half_width) OFFSET(ClpvView, up) OFFSET(ClpvView, half_height)                \
     OFFSET(ClpvView, forward) OFFSET(ClpvView, near_depth) OFFSET(ClpvView, width)                 \
     OFFSET(ClpvView, height) OFFSET(ClpvView, far_depth)                                           \
-  SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_step) OFFSET(ClpvSweepBin, row_step)               \
-    OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)                                \
+  SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)               \
     OFFSET(ClpvSweepBin, column_sign) OFFSET(ClpvSweepBin, plane_axis)                             \
     OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, ways)    \
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \

@@ -7,13 +7,12 @@
 
 // Along w light goes from plane to plane; within a plane from row to row, within a row from column to column.
 typedef struct {
-  int plane_step, row_step;  // numbers from a plane and a row of a volume of rows to the next ones
   int plane_sign, row_sign, column_sign;  // 1: light goes upwards
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
   int ways[4];                            // volumes of the transmittance from the cells 0, u, v, u and v aside
 } ClpvSweepBin;
 
-#define CLPV_SIZEOF_SWEEP_BIN 48
+#define CLPV_SIZEOF_SWEEP_BIN 40
 
 typedef struct {
   float taps[4];       // of those four cells

@@ -14,7 +14,7 @@ int main() {
                   {.grid = kGrid, .parts = {1, 1}, .blocking = true, .form = SweepForm::planes});
   const Volume light(session, {kGrid, kSweepBins, 3}, "light"),
       blockers(session, {kGrid + 1, 3, 1}, "blockers");
-  Volume swept(session, {kGrid, kSweepBins, 3}, "swept");
+  Volume swept(session, {kGrid, swept_basis()->size(), 3}, "swept");
   const std::vector<ClpvGrid> grids = cascade_grids(glm::vec3(0.1f), 2, 1, kGrid);
   for (const std::size_t cascade : {1, 0}) {
     sweeper.block(cascade, blockers);
