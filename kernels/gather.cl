@@ -4,7 +4,9 @@
 //   E(n) = g(n) . M c / s^2,   c the coefficients sampled trilinearly at p + offset s n,
 //   g and M by basis and transport (host/basis/gather_form.hpp), E clamped at 0 after the dot product.
 // A cascade weighs min(1, distance to its boundary / CLPV_BLEND), the distance in cells at p itself; finer ones come
-// first and a coarser one gets what they left. So E is continuous everywhere, and 0 outside all cascades.
+// first and a coarser one gets what they left. So E is continuous everywhere, and 0 outside all cascades. The boundary is that
+// of the cube about the eye that lies in the grid wherever in its cell the eye is: shares glide as the eye does, and do not
+// jump when the grid does.
 //
 // CLPV_PACKED 1: from records of M c (pack.cl, gather_packed.h), whatever the volumes' layout; 0: from images as they are
 // (gather_image.h), where M is applied to the weights. Each of the two defines
@@ -51,8 +53,9 @@ CLPV_INLINE void clpv_add_cascade(float3* sum, float* left, const ClpvGrid grid,
                                   const float3 normal, const Coefficients weights, CLPV_GATHERED volume) {
   const float per_cell = 1.0f / grid.cell;
   const float3 at = (position - clpv_float3(grid.origin)) * per_cell;
-  const float3 inside = min(at, (float)CLPV_GRID - at);
-  const float share = clamp(fmin(fmin(inside.x, inside.y), inside.z) * CLPV_INVERSE_BLEND, 0.0f, 1.0f);
+  const float3 off = fabs(position - clpv_float3(grid.middle)) * per_cell;
+  const float inside = (float)CLPV_GRID_REACH(CLPV_GRID) - fmax(fmax(off.x, off.y), off.z);
+  const float share = clamp(inside * CLPV_INVERSE_BLEND, 0.0f, 1.0f);
   if (share == 0.0f) return;
   const float3 point = at + CLPV_GATHER_OFFSET * normal - 0.5f;
   *sum += share * *left * per_cell * per_cell * clpv_irradiance(volume, point, weights);

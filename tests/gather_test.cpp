@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 
+#include "pipeline/cascade.hpp"
 #include "pipeline/see.hpp"
 #include "reference/see.hpp"
 #include "support/error.hpp"
@@ -36,7 +37,7 @@ TEST(Gather, UniformLightIsTheSameEverywhereInside) {
     SCOPED_TRACE(name);
     const std::unique_ptr<Basis> basis = make_basis(name);
     const std::vector<double> c = times(1.75, basis->constant());
-    const SurfaceImage image = walk({-1.4, 1.1, -1.2}, {1.3, -1.4, 1.2}, kTilted);
+    const SurfaceImage image = walk({-0.98, 0.9, -0.9}, {0.97, -0.98, 0.9}, kTilted);
     const Both both = gather(*basis, intensity_transport(), {}, {uniform(c)}, image);
     expect_all(both, 4 * basis->value(c, -kTilted) / (kCell * kCell));  // spherical harmonics: 4 . 1.75 / s^2
   }
@@ -91,7 +92,7 @@ TEST(Gather, LinearLightIsReproducedWithTheOffset) {
   const reference::Volume light = volume_of(4, [&](int channel, const glm::dvec3& centre) {
     return times((channel + 1) * intensity(centre), basis->constant());
   });
-  const glm::dvec3 from(-1.45, 1.0, -1.2), to(1.4, -1.3, 1.3);
+  const glm::dvec3 from(-0.98, 0.8, -0.9), to(0.97, -0.95, 0.95);
   for (const double offset : {0.5, 0.75, 0.0}) {
     const Both both =
         gather(*basis, intensity_transport(), {.gather_offset = offset}, {light}, walk(from, to, kTilted));
@@ -109,14 +110,14 @@ TEST(Gather, CascadesHandOverWithoutASeam) {
   const std::vector<reference::Volume> light = {
       uniform(times(fine / 4 * kCell * kCell, basis->constant())),
       uniform(times(coarse / 4 * 4 * kCell * kCell, basis->constant()))};
-  // From inside the finer cascade (boundary at 3 m) through the coarser (6 m) and out.
+  // From inside the finer cascade (boundary at 2.5 m) through the coarser (5 m) and out.
   const double from = 1, to = 7;
   const SurfaceImage image = walk({from, 0.1, 0.2}, {to, 0.1, 0.2}, {0, 1, 0});
   const Both both = gather(*basis, intensity_transport(), {.blend_cells = 3}, light, image);
   const auto expected = [&](std::size_t pixel) {
     const double x = along(from, to, pixel);
-    const double in_fine = std::clamp((3 - x) / (3 * kCell), 0.0, 1.0);
-    const double in_coarse = std::clamp((6 - x) / (3 * 2 * kCell), 0.0, 1.0);
+    const double in_fine = std::clamp((2.5 - x) / (3 * kCell), 0.0, 1.0);
+    const double in_coarse = std::clamp((5 - x) / (3 * 2 * kCell), 0.0, 1.0);
     return in_fine * fine + (1 - in_fine) * in_coarse * coarse;
   };
   expect_all(both, expected, 3 * fine, 2 * kFloat);
@@ -127,12 +128,35 @@ TEST(Gather, CascadesHandOverWithoutASeam) {
   EXPECT_EQ(both.device.back(), glm::dvec3(0)) << "outside all cascades";
 }
 
+TEST(Gather, SharesDoNotJumpWhereTheEyeCrossesIntoAnotherCell) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const GatherForm form(*basis, intensity_transport());
+  const reference::Volume fine = uniform(times(5, basis->constant())), coarse = uniform(basis->constant());
+  const auto seen_from = [&](float eye, const glm::dvec3& p) {
+    const auto grids = cascade_grids({eye, 0.1f, 0.2f}, 2, double{kCell} * kGrid, kGrid);
+    return reference::gather(*basis, form, {.grid = kGrid}, {{grids[0], &fine}, {grids[1], &coarse}}, p,
+                             glm::dvec3(0, 1, 0))
+        .x;
+  };
+  const float boundary = 2 * kCell;  // of both cascades' cells
+  EXPECT_NE(cascade_grids({boundary - 1e-5f, 0, 0}, 1, double{kCell} * kGrid, kGrid)[0].origin[0],
+            cascade_grids({boundary + 1e-5f, 0, 0}, 1, double{kCell} * kGrid, kGrid)[0].origin[0]);
+  double most = 0;
+  for (int i = 0; i < 200; ++i) {
+    const glm::dvec3 p(-6 + 0.07 * i, 0.3, -0.2);
+    const double before = seen_from(boundary - 1e-5f, p);
+    most = std::max(most, before);
+    EXPECT_NEAR(seen_from(boundary + 1e-5f, p), before, 1e-3 * 4 * 5 / (kCell * kCell)) << p.x;
+  }
+  EXPECT_GT(most, 4 * 5 / (kCell * kCell) * 0.9);
+}
+
 TEST(Gather, OutsideAllCascadesIsExactlyDark) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const std::vector<reference::Volume> light = {uniform(basis->constant()), uniform(basis->constant())};
   for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1)}) {
     const Both both =
-        gather(*basis, intensity_transport(), {}, light, walk(6.001 * axis, 900.0 * axis, -axis));
+        gather(*basis, intensity_transport(), {}, light, walk(5.001 * axis, 900.0 * axis, -axis));
     for (const glm::dvec3& e : both.device) ASSERT_EQ(e, glm::dvec3(0));
   }
 }
@@ -206,7 +230,7 @@ TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
   const Walled scene = walled(*basis);
   const double lit = 4 * 2.0 / (kCell * kCell);
   const auto on_wall = [&](double side, Gathering gathering) {
-    const SurfaceImage image = walk({side * 1e-4, -1.3, -1}, {side * 1e-4, 1.2, 1}, {side, 0, 0});
+    const SurfaceImage image = walk({side * 1e-4, -0.98, -0.9}, {side * 1e-4, 0.97, 0.95}, {side, 0, 0});
     return gather(*basis, intensity_transport(), {.gather = gathering, .gather_offset = 0.25}, {scene.light},
                   image, scene.hidden);
   };

@@ -150,12 +150,14 @@ TEST_F(SteadyFrame, IrradianceOnWhatTheCameraSeesIsTheFrames) {
   }
 }
 
-TEST_F(SteadyFrame, LightStandsStillInsideACellAndChangesWithTheLight) {
+TEST_F(SteadyFrame, LightChangesLittleAsTheEyeMovesAndAsMuchAsTheLight) {
   EXPECT_EQ(after(0).mean, 0.0);
   const LightChange inside = after(0.5f);
-  EXPECT_EQ(inside.mean, 0.0);
+  EXPECT_LT(inside.mean.value(), 0.02) << "cascades hand over elsewhere";
   EXPECT_GT(inside.points, std::size_t{48 * 27 / 2});
-  EXPECT_GT(after(1).mean.value(), 0.0) << "another cell";
+  const double across = after(1).mean.value();
+  EXPECT_GT(across, 0.0) << "another cell";
+  EXPECT_LT(across, 0.08);
   for (Light& light : scene_.lights) light.data = scaled(light.data, 1.25f);
   EXPECT_NEAR(after(0).mean.value(), 0.25, 1e-3) << "halves round";
 }

@@ -50,10 +50,8 @@ glm::dvec3 LightField::irradiance(const glm::dvec3& position, const glm::dvec3& 
 
 bool LightField::reaches(const glm::dvec3& position) const {
   const ClpvGrid& grid = cascades_.back().grid;
-  const glm::dvec3 at =
-      (position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell};
-  const double cells = options_.grid;
-  return glm::all(glm::greaterThan(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(cells)));
+  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
+  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(options_.grid) * double{grid.cell})));
 }
 
 }  // namespace clpv

@@ -66,7 +66,7 @@ struct GatherOptions {
   int grid = 32;  ///< cells along each axis of every cascade
   Gathering gather = Gathering::all;
   double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
-  double blend_cells = 3;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
+  double blend_cells = 2;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
   double floor = 0;            ///< E is at least so much of its mean over all normals, in [0, 1]
   LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
   TableStorage table = TableStorage::buffer;

@@ -9,8 +9,8 @@
 namespace clpv {
 namespace {
 
-// The coarsest cascade fades out over its three outer cells, and its middle is up to a cell from the eye: of the usual 32
-// cells a side, 24 hold the scene in full light.
+// Of the coarsest cascade's usual 32 cells a side, the 26 about the eye are in full light, whose next two fade out; 24 leave
+// room for what moves.
 constexpr double kRoom = 32.0 / 24;
 constexpr double kFarTooLarge = 4;  // times the edge that just holds the scene: a quarter of its cells across
 
@@ -28,6 +28,7 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
     for (int axis = 0; axis < 3; ++axis) {
       const double first = std::floor(eye[axis] / cell) - cells / 2;
       grid.origin[axis] = static_cast<float>(first * cell);
+      grid.middle[axis] = eye[axis];
     }
     grids.push_back(grid);
   }

@@ -15,6 +15,11 @@ PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
   return options;
 }
 
+/// Where a cascade stands. Where in it the eye is matters to gathering alone.
+MadeOf place_of(const ClpvGrid& grid) {
+  return MadeOf().add(grid.origin).add(grid.cell);
+}
+
 /// What a scene's triangles are, as far as they can change.
 MadeOf triangles_of(const Scene& scene) {
   Fingerprint print;
@@ -93,11 +98,11 @@ void Frame::forget() {
 }
 
 MadeOf Frame::injected_made_of(int cascade) const {
-  return MadeOf().add(grid(cascade)).add(lights_.rsms_made_of(cascade));
+  return MadeOf().add(place_of(grid(cascade))).add(lights_.rsms_made_of(cascade));
 }
 
 MadeOf Frame::geometry_made_of(int cascade) const {
-  MadeOf made_of = MadeOf().add(grid(cascade)).add(triangles_);
+  MadeOf made_of = MadeOf().add(place_of(grid(cascade))).add(triangles_);
   if (!blocker_) made_of.add(lights_.rsms_made_of(cascade)).add(camera_surface_->view);
   return made_of;
 }
@@ -151,7 +156,7 @@ void Frame::inject_geometry(int cascade, Volume& geometry) {
 void Frame::see(int cascade) {
   if (!sight_) return;
   const auto c = static_cast<std::size_t>(cascade);
-  seen_[c].update(MadeOf().add(grid(cascade)).add(triangles_), [&] {
+  seen_[c].update(MadeOf().add(place_of(grid(cascade))).add(triangles_), [&] {
     const StageScope scope(session_, {Pass::see, cascade});
     sight_->see(c, grid(cascade));
   });

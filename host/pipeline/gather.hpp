@@ -25,8 +25,9 @@ namespace clpv {
 /// sampled trilinearly `gather_offset` cells off the surface, negative E clamped at 0.
 ///
 /// Which cascade lights a surface depends on the surface point alone: cascade i has the share
-/// m_i = min(1, cells to its boundary / blend_cells) of what finer ones left. So light is continuous across
-/// cascades, fades out towards the coarsest one's boundary, and is 0 outside.
+/// m_i = min(1, cells to its boundary / blend_cells) of what finer ones left; the boundary is that of a cube about the eye
+/// (ClpvGrid::middle). So light is continuous across cascades and as the eye moves on, fades out towards the coarsest one's
+/// boundary, and is 0 outside.
 class Gatherer {
  public:
   /// Throws Error(usage) for options out of range.

@@ -119,11 +119,13 @@ glm::dvec3 irradiance(const Volume& volume, const Around& around, const std::vec
   return e;
 }
 
-/// How much of a cascade holds at a point, `at` in cells from its origin: 1 inside, 0 at the boundary and
-/// beyond.
-double share_of(const glm::dvec3& at, int n, double blend_cells) {
+/// How much of a cascade holds at a point: 1 inside, 0 at the boundary of what is sure to lie in it round the eye, and beyond.
+double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double blend_cells) {
   double distance = n;
-  for (int axis = 0; axis < 3; ++axis) distance = std::min({distance, at[axis], n - at[axis]});
+  for (int axis = 0; axis < 3; ++axis) {
+    const double off = std::abs(position[axis] - double{grid.middle[axis]}) / double{grid.cell};
+    distance = std::min(distance, CLPV_GRID_REACH(n) - off);
+  }
   return std::clamp(distance / blend_cells, 0.0, 1.0);
 }
 
@@ -141,7 +143,7 @@ glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOption
     const ClpvGrid& grid = cascade.grid;
     const glm::dvec3 at =
         (position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell};
-    const double share = share_of(at, options.grid, options.blend_cells);
+    const double share = share_of(position, grid, options.grid, options.blend_cells);
     const glm::dvec3 point = at + options.gather_offset * normal - 0.5;  // the first cell's centre is at 0.5
     const double area = double{grid.cell} * grid.cell;
     Around cells = around(point, options.grid);

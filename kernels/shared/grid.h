@@ -10,9 +10,12 @@ typedef struct {
   float origin[3];  // least corner [m], a whole multiple of cell
   float cell;       // edge s of a cell [m]
   unsigned int n;   // cells along each axis
-  float unused[3];
+  float middle[3];  // [m]: the eye that cascades stand round, in the cell of that number n / 2; what it lights fades about it
 } ClpvGrid;
 
 #define CLPV_SIZEOF_GRID 32
+
+// Cells to either side of `middle` that lie in a grid of n along each axis, wherever in its cell `middle` is.
+#define CLPV_GRID_REACH(n) (((n) - 1) / 2)
 
 #endif
