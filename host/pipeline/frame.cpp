@@ -48,7 +48,8 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       accumulated_(volumes(options.cascades, light_shape(options, gathered()), "accumulated light")),
       geometry_(volumes(geometry_volumes(options), geometry_shape(options, *basis_), "geometry volume")),
       ways_(accumulated_.size()),
-      seen_(accumulated_.size()) {
+      seen_(accumulated_.size()),
+      packed_(accumulated_.size()) {
   if (swept_) {
     sweeper_.emplace(session, *basis_, transport_, sweep_options(options));
   } else {
@@ -85,6 +86,7 @@ void Frame::forget_light() {
   lights_.forget();
   for (KeptVolume& injected : injected_) injected.kept.forget();
   for (KeptVolume& accumulated : accumulated_) accumulated.kept.forget();
+  for (Kept& packed : packed_) packed.forget();
   if (blocker_) return;
   for (KeptVolume& geometry : geometry_) geometry.kept.forget();
   for (Kept& ways : ways_) ways.forget();
@@ -190,6 +192,15 @@ void Frame::light_cascade(int cascade, const CascadeObserver& observer) {
             *accumulated_[static_cast<std::size_t>(cascade)].volume, lights_.scale()});
 }
 
+void Frame::gather(const Surface& surface, Buffer& irradiance) {
+  const GatheredLight gathered = light();
+  std::vector<bool> changed(packed_.size(), false);
+  for (std::size_t c = 0; c < changed.size(); ++c)
+    packed_[c].update(accumulated_made_of(static_cast<int>(c)), [&] { changed[c] = true; });
+  gatherer_.gather(surface, gathered.grids, gathered.accumulated, irradiance, gathered.scale, gathered.hidden,
+                   changed);
+}
+
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   grids_ = cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
   lights_.prepare(camera, grids_, triangles_);
@@ -198,9 +209,7 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
   {
     const StageScope scope(session_, {Pass::gather});
-    const GatheredLight gathered = light();
-    gatherer_.gather(*camera_surface_, gathered.grids, gathered.accumulated, irradiance_, gathered.scale,
-                     gathered.hidden);
+    gather(*camera_surface_, irradiance_);
   }
   const StageScope scope(session_, {Pass::shade});
   shader_.light(*camera_surface_, lights_.shadowed());
@@ -218,8 +227,7 @@ std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
   const std::size_t numbers = surfaces.depth.size() * 4;
   const Surface there = upload_surface(session_, {surfaces.view, surfaces.depth, surfaces.normal, {}, {}});
   Buffer irradiance = session_.buffer(numbers * sizeof(float), "irradiance on given surfaces");
-  const GatheredLight gathered = light();
-  gatherer_.gather(there, gathered.grids, gathered.accumulated, irradiance, gathered.scale, gathered.hidden);
+  gather(there, irradiance);
   return session_.read<float>(irradiance, numbers);
 }
 

@@ -110,6 +110,7 @@ class Frame {
   void rasterize_camera(const Camera& camera);
   void inject_geometry(int cascade, Volume& geometry);
   void light_cascade(int cascade, const CascadeObserver& observer);
+  void gather(const Surface& surface, Buffer& irradiance);
   const ClpvGrid& grid(int cascade) const { return grids_[static_cast<std::size_t>(cascade)]; }
 
   Session& session_;
@@ -133,6 +134,7 @@ class Frame {
   std::vector<KeptVolume> injected_, accumulated_;
   std::vector<KeptVolume> geometry_;  ///< none without occlusion
   std::vector<Kept> ways_, seen_;     ///< of the sweeper and the sight, a cascade
+  std::vector<Kept> packed_;          ///< accumulated light as the gatherer holds it
   Buffer irradiance_;                 ///< float4 a pixel, as is image_
   Buffer image_;
   Show shown_ = Show::full;

@@ -124,7 +124,7 @@ void Gatherer::pack(const Volume& volume, std::size_t slot) {
 
 void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
                       const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale,
-                      const Buffer* hidden) {
+                      const Buffer* hidden, const std::vector<bool>& changed) {
   require_fit(camera, grids, accumulated);
   if (sees() && hidden == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is hidden");
   reserve(grids.size());
@@ -133,7 +133,9 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   kernel.set(camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()), 1 / scale,
              irradiance);
   if (packs()) {
-    for (std::size_t c = 0; c < grids.size(); ++c) pack(*accumulated[c], c);
+    for (std::size_t c = 0; c < grids.size(); ++c) {
+      if (changed.empty() || changed[c]) pack(*accumulated[c], c);
+    }
     kernel.add(packed_);
     if (sees()) kernel.add(*hidden);
   } else {
