@@ -151,6 +151,36 @@ TEST_F(KeptFrame, AnObserverSeesWhatCascadesShare) {
   EXPECT_TRUE(observed() == anew);
 }
 
+/// Light that bounces on.
+class KeptBouncingFrame : public KeptFrame {
+ protected:
+  KeptBouncingFrame() : KeptFrame([](RenderOptions& options) { options.bounces = Bounces::all; }) {}
+};
+
+TEST_F(KeptBouncingFrame, MakesWhatChanged) {
+  Instants at;
+  const Passes cells = with(kOfCells, {Pass::reflect});
+  const Passes all = with(with(kOfEveryFrame, kOfLight), cells);
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), kOfEveryFrame);
+  at.eye.x += 0.5f * kCell;
+  EXPECT_EQ(passes(at), kOfEveryFrame) << "a camera that moves inside a cell";
+  at.sun = 0.3;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
+  at.wall = 0.6;
+  EXPECT_EQ(passes(at), all);
+  at.eye.x += kCell;
+  EXPECT_EQ(passes(at),
+            with(with(kOfEveryFrame, cells), {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}));
+  for (int i = 0; i < 5; ++i) {
+    at.eye += glm::vec3(0.6f, 0.0f, -0.55f) * kCell;
+    if (i % 3 == 1) at.sun += 0.1;
+    passes(at);
+  }
+  frame_.forget();
+  EXPECT_EQ(passes(at), all);
+}
+
 /// What the camera sees blocks: what follows from it changes with the view.
 class KeptPublishedFrame : public KeptFrame {
  protected:

@@ -158,9 +158,9 @@ TEST(Options, BenchmarksNameLobes) {
 
 template <typename E>
 class EachNamedEnum : public ::testing::Test {};
-using NamedEnums =
-    ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage, Injection,
-                     RsmFormat, Show, ToneMap, TransportKind, Blocking, LobeKind, LightKind, Stage, Pass>;
+using NamedEnums = ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage,
+                                    Bounces, Injection, RsmFormat, Show, ToneMap, TransportKind, Blocking,
+                                    LobeKind, LightKind, Stage, Pass>;
 TYPED_TEST_SUITE(EachNamedEnum, NamedEnums);
 
 TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {

@@ -13,10 +13,14 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
       return check_inject(session, scope);
     case Stage::block:
       return check_block(session);
+    case Stage::reflect:
+      return check_reflect(session);
     case Stage::propagate:
       return check_propagate(session, scope);
     case Stage::sweep:
       return check_sweep(session, scope);
+    case Stage::bounce:
+      return check_bounce(session, scope);
     case Stage::see:
       return check_see(session);
     case Stage::gather:

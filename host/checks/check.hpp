@@ -46,8 +46,10 @@ CheckResults check_sizes(Session& session);  ///< the shared structs' layout; wo
 CheckResults check_rasterize(Session& session);
 CheckResults check_inject(Session& session, const CheckScope& scope = {});
 CheckResults check_block(Session& session);
+CheckResults check_reflect(Session& session);
 CheckResults check_propagate(Session& session, const CheckScope& scope = {});
 CheckResults check_sweep(Session& session, const CheckScope& scope = {});
+CheckResults check_bounce(Session& session, const CheckScope& scope = {});
 CheckResults check_see(Session& session);
 CheckResults check_gather(Session& session, const CheckScope& scope = {});
 CheckResults check_shade(Session& session);

@@ -2,8 +2,6 @@
 // The sweep: kernels against the twin, on small cascades of random light and random blockers.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <random>
 #include <string>
@@ -11,6 +9,7 @@
 
 #include "basis/sweep.hpp"
 #include "checks/check.hpp"
+#include "checks/check_light.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/sweep.hpp"
@@ -20,21 +19,6 @@ namespace clpv::reference {
 namespace {
 
 constexpr double kEdge = 4;  // of the finest grid [m]
-
-/// Light in a third of the cells, of any sign, as bases with negative lobes leave it.
-Volume random_light(const Basis& basis, int n, std::mt19937& random) {
-  std::uniform_real_distribution<float> uniform(-0.3f, 1);
-  Volume volume(n, basis.size());
-  for (double& value : volume.values) value = uniform(random) > 0.5f ? uniform(random) : 0;
-  return volume;
-}
-
-Volume random_blockers(int numbers, int n, std::mt19937& random) {
-  std::uniform_real_distribution<float> uniform(-0.5f, 1);
-  Volume volume(n + 1, numbers, 1);
-  for (double& value : volume.values) value = std::max(0.0f, uniform(random));
-  return volume;
-}
 
 struct Case {
   std::string basis;
@@ -54,20 +38,6 @@ struct Case {
                        form == SweepForm::planes ? "/planes" : "", format_name(format));
   }
 };
-
-/// The larger of `result` and the greatest difference of a cascade, over the largest value.
-void compare(const std::vector<float>& found, const Volume& twin, std::size_t cascade, CheckResult& result) {
-  double largest = 0;
-  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
-  const auto n = static_cast<std::size_t>(twin.n);
-  for (std::size_t at = 0; at < found.size(); ++at) {
-    const double error = std::abs(found[at] - twin.values[at]) / largest;
-    if (error <= result.worst || std::isnan(result.worst)) continue;  // a NaN is not, and stays the worst
-    result.worst = error;
-    result.place = fmt::format("cascade {} cell {},{},{} plane {}: {:.7g}, twin {:.7g}", cascade, at % n,
-                               at / n % n, at / n / n % n, at / n / n / n, found[at], twin.values[at]);
-  }
-}
 
 CheckResult check_one(Session& session, const Case& c) {
   std::mt19937 random(3);
@@ -100,7 +70,7 @@ CheckResult check_one(Session& session, const Case& c) {
   }
   CheckResult result{"sweep", c.name(), 0, tolerance_in("sweep", c.format), {}};
   const std::vector<Volume> twin = sweep(*basis, transport, cascades);
-  for (std::size_t i = 0; i < grids.size(); ++i) compare(found[i], kept_of(twin[i]), i, result);
+  for (std::size_t i = 0; i < grids.size(); ++i) compare_cascade(found[i], kept_of(twin[i]), i, result);
   return result;
 }
 

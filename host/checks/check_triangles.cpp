@@ -12,7 +12,7 @@ void add_materials(Scene& scene, std::mt19937& random) {
   for (int i = 0; i < 5 * 4 * 4; ++i) texture.rgba.push_back(static_cast<std::uint8_t>(random() % 256));
   scene.textures.push_back(texture);
   for (const unsigned flags : {0u, CLPV_MATERIAL_MASKED}) {
-    Material material{{1, 1, 1, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
+    Material material{{0.9f, 0.6f, 0.3f, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
     scene.materials.push_back(material);
   }
 }
@@ -35,8 +35,10 @@ Scene triangle_soup() {
       if (i % 7 == 3) p[i % 3] = at[i % 3];
       if (i == 20) p = at;
       vertex = static_cast<unsigned>(scene.vertices.size());
-      scene.vertices.push_back(
-          {{p.x, p.y, p.z}, {0, 0, 1}, {2 * uniform(random), 2 * uniform(random)}, {1, 1, 1, 0.95f}});
+      scene.vertices.push_back({{p.x, p.y, p.z},
+                                {0, 0, 1},
+                                {2 * uniform(random), 2 * uniform(random)},
+                                {0.8f, uniform(random) > 0 ? 0.6f : 1.0f, 1, 0.95f}});
     }
     scene.triangles.push_back(triangle);
   }

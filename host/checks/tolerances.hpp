@@ -34,6 +34,11 @@ inline constexpr Tolerance kTolerances[] = {
      "shares of samples outside what rounding can decide (reference/block.hpp); 64ths are exact in any "
      "format"},
     {"block-half", 0, "as block"},
+    {"reflect", 1e-3,
+     "areas in faces, apart from what rounding can decide (reference/reflect.hpp): colours in 4096ths, and a "
+     "texture's steps "
+     "magnify what float32 moves a sample by"},
+    {"reflect-half", 2e-3, "as reflect, and numbers of 11 bits"},
     {"see", 0, "hidden cells of a point, apart from those that rounding can decide (reference/see.hpp)"},
     {"propagate", 2e-5,
      "float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14)"},
@@ -56,6 +61,8 @@ inline constexpr Tolerance kTolerances[] = {
     {"sweep-half", 4e-3,
      "numbers of 11 bits: injected light, transmittance, the sums, and what is made of them; light on its "
      "way is float32"},
+    {"bounce", 1e-5, "as sweep, twice, and as often as light bounces on"},
+    {"bounce-half", 1e-2, "as sweep-half, twice over"},
     {"gather-visible", 1e-3, "as gather, over the share of weight that is seen, 1/64 at least"},
     {"gather-visible-half", 2e-2, "as gather-half, over that share"},
     {"shade", 5e-6,

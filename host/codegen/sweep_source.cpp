@@ -15,23 +15,7 @@ namespace clpv {
 namespace {
 
 constexpr int kLanes = 8;
-constexpr const char* kAxes = "XYZ";
-
-/// "#define CLPV_EACH_X_BIN(DO) DO(0) ..." and the like: the bins that are swept across each axis, those across x first.
-std::string bin_macros() {
-  const std::vector<SweepBin> bins = sweep_bins(1);
-  std::string text =
-      fmt::format("#define CLPV_X_BINS {}\n",
-                  std::count_if(bins.begin(), bins.end(), [](const SweepBin& bin) { return bin.axis == 0; }));
-  for (int axis = 0; axis < 3; ++axis) {
-    text += fmt::format("#define CLPV_EACH_{}_BIN(DO)", kAxes[axis]);
-    for (std::size_t b = 0; b < bins.size(); ++b) {
-      if (bins[b].axis == axis) text += fmt::format(" DO({})", b);
-    }
-    text += "\n";
-  }
-  return text;
-}
+constexpr const char* kAxisNames = "XYZ";
 
 int place_in(const std::vector<glm::ivec3>& list, const glm::ivec3& offset) {
   return static_cast<int>(std::find(list.begin(), list.end(), offset) - list.begin());
@@ -66,7 +50,7 @@ std::string way_macros() {
   const WayList list = way_list();
   std::string text = fmt::format("#define CLPV_X_WAYS {}\n", list.across[0].size());
   for (int axis = 0; axis < 3; ++axis) {
-    text += fmt::format("#define CLPV_EACH_{}_WAY(DO)", kAxes[axis]);
+    text += fmt::format("#define CLPV_EACH_{}_WAY(DO)", kAxisNames[axis]);
     for (const glm::ivec3& offset : list.across[static_cast<std::size_t>(axis)])
       text += fmt::format(" DO({}, {})", list.volume(axis, offset), place_in(list.all, offset));
     text += "\n";
@@ -80,13 +64,28 @@ std::size_t pitch(int grid) {
 
 }  // namespace
 
+std::string sweep_bin_macros() {
+  const std::vector<SweepBin> bins = sweep_bins(1);
+  std::string text =
+      fmt::format("#define CLPV_X_BINS {}\n",
+                  std::count_if(bins.begin(), bins.end(), [](const SweepBin& bin) { return bin.axis == 0; }));
+  for (int axis = 0; axis < 3; ++axis) {
+    text += fmt::format("#define CLPV_EACH_{}_BIN(DO)", kAxisNames[axis]);
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+      if (bins[b].axis == axis) text += fmt::format(" DO({})", b);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 std::string sweep_source_text(const Basis& basis) {
   const Mirrors mirrors = mirrors_of(basis);
   LinearCode code;
   const std::vector<std::string> means =
       code.product(bin_means(basis), fields("a", basis.size()), {mirrors.all.begin(), mirrors.all.end()});
   std::string text =
-      coefficient_macros(basis.size()) + bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
+      coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
       "CLPV_INLINE Swept clpv_bin_means(const Coefficients a) {\n" + code.text() + "  Swept m;\n";
   for (std::size_t i = 0; i < means.size(); ++i) text += fmt::format("  m.c{} = {};\n", i, means[i]);
   return text + "  return m;\n}\n";
@@ -103,7 +102,7 @@ std::string sweep_collect_text() {
   const std::vector<std::string> harmonics =
       code.product(projection, fields("m", kSweepBins), {mirrors.all.begin(), mirrors.all.end()});
   std::string text =
-      coefficient_macros(projection.rows()) + bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
+      coefficient_macros(projection.rows()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
       "CLPV_INLINE Coefficients clpv_projected(const Swept m) {\n" + code.text() + "  Coefficients c;\n";
   for (std::size_t i = 0; i < harmonics.size(); ++i) text += fmt::format("  c.c{} = {};\n", i, harmonics[i]);
   return text + "  return c;\n}\n";

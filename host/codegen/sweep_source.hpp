@@ -11,6 +11,8 @@
 
 namespace clpv {
 
+/// "#define CLPV_EACH_X_BIN(DO) DO(0) ..." and the like: the bins that are swept across each axis, those across x first.
+std::string sweep_bin_macros();
 /// For sweep_source.cl: coefficient_macros, the struct Swept, and clpv_bin_means.
 std::string sweep_source_text(const Basis& basis);
 /// For sweep_ways.cl: transmit_source's text, and which ways go where.

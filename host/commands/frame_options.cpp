@@ -33,6 +33,7 @@ void set_given(RenderOptions& options, const std::string& name, const std::strin
 
 void add_frame_options(CLI::App& command, GivenOptions& given) {
   for (const OptionInfo& info : list_options(RenderOptions{})) {
+    if (command.get_option_no_throw("--" + info.name) != nullptr) continue;
     const auto take = [&given, name = info.name](const std::string& text) {
       RenderOptions probe;
       set_given(probe, name, text);  // a bad value is told before any scene is read

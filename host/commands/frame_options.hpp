@@ -11,7 +11,7 @@
 
 namespace clpv {
 
-/// Adds one option of text each; `given` must outlive the parse.
+/// Adds one option of text each, but for those that `command` has already; `given` must outlive the parse.
 void add_frame_options(CLI::App& command, GivenOptions& given);
 
 /// Adds those of these names to `command`: each sets `options` as it is parsed, and shows its present value as default.

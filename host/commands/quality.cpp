@@ -52,8 +52,10 @@ std::vector<Variant> variants(const Options& options) {
   return combinations(varied);
 }
 
+/// Frames have as many bounces as their truth, unless --vary says how many.
 RenderOptions with(const Options& options, const Variant& variant, const Scene& scene) {
   GivenOptions given = options.given;
+  given["bounces"] = options.tracing.bounces;
   for (const auto& [name, value] : variant) given[name] = value;
   return resolve_options(given, scene);
 }

@@ -39,16 +39,15 @@ struct Options {
   TracingOptions tracing;
 };
 
-/// The ways to render that a page shows, the one that matters last.
+/// The ways to render that a page shows, the one that matters last: with as many bounces as the truth, which others lack.
 struct Way {
   const char* title;
   GivenOptions given;
 };
-const std::vector<Way>& ways() {
-  static const std::vector<Way> all{{"published scheme (sh2)", {{"preset", "paper"}, {"basis", "sh2"}}},
-                                    {"the paper (srbf8v2)", {{"preset", "paper"}}},
-                                    {"clpv", {{"preset", "best"}}}};
-  return all;
+std::vector<Way> ways(const Options& options) {
+  return {{"published scheme (sh2)", {{"preset", "paper"}, {"basis", "sh2"}}},
+          {"the paper (srbf8v2)", {{"preset", "paper"}}},
+          {"clpv", {{"preset", "best"}, {"bounces", options.tracing.bounces}}}};
 }
 
 std::string as_arguments(const GivenOptions& given) {
@@ -121,7 +120,7 @@ nlohmann::json view(Session& session, const Options& options, const Subject& sub
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
   const float exposure = exposure_of(truth);
   nlohmann::json shots = nlohmann::json::array();
-  for (const Way& way : ways()) {
+  for (const Way& way : ways(options)) {
     const Image image = render_indirect(session, subject, camera, options, way);
     nlohmann::json shot = to_json(compare(image, way.title, truth, "truth"));
     shot.update(add_image(drawing, fmt::format("{}-{}", stem, shots.size()), image, exposure));
@@ -141,7 +140,7 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
                  quality_cache(options.cache) / "references");
-    Progress progress("report", subject.cameras.size() * ways().size());
+    Progress progress("report", subject.cameras.size() * ways(options).size());
     for (std::size_t i = 0; i < subject.cameras.size(); ++i)
       all.push_back(view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
   }

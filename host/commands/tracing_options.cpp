@@ -19,7 +19,7 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
   constexpr const char* kGroup = "Path tracing";
   command
       .add_option("--bounces", options.bounces,
-                  "surfaces between a light and the surface seen; 1: what a volume estimates; or all")
+                  "surfaces between a light and the surface seen: 1, 2 and so on, or all")
       ->type_name("N|all")
       ->capture_default_str()
       ->group(kGroup);

@@ -179,6 +179,21 @@ constexpr int parts_of(Directions directions) {
   return 1 + static_cast<int>(directions);
 }
 
+/// Surfaces between a light and the surface seen.
+enum class Bounces { one, two, all };
+
+constexpr std::string_view name_of(Bounces bounces) {
+  switch (bounces) {
+    case Bounces::one:
+      return "1";
+    case Bounces::two:
+      return "2";
+    case Bounces::all:
+      return "all";
+  }
+  return {};
+}
+
 /// A virtual point light goes to the cell it is in, or is spread over the eight round it.
 enum class Injection { nearest, trilinear };
 

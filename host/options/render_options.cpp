@@ -64,6 +64,8 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("transport", o.transport, "how light moves from cell to cell", Named{});
   visit("directions", o.directions, "that light is swept along in the finest cascade", Named{});
   visit("coarser-directions", o.coarser_directions, "the same in all other cascades", Named{});
+  visit("bounces", o.bounces, "surfaces between a light and the surface seen; more than 1 for a sweep alone",
+        Named{});
   visit("state", o.state, "what travels in steps: the basis's coefficients, or six fluxes a cell", Named{});
   visit("layout", o.layout,
         "how volumes lie in memory: 3-D images, or buffers by cell, by coefficient, by blocks", Named{});

@@ -31,6 +31,7 @@ struct RenderOptions {
   TransportKind transport = TransportKind::sweep;
   Directions directions = Directions::of96;
   Directions coarser_directions = Directions::of96;
+  Bounces bounces = Bounces::one;
   State state = State::coefficients;
   Layout layout = Layout::soa;
   Storage storage = Storage::float16;

@@ -26,7 +26,11 @@ PropagateOptions propagate_options(const RenderOptions& options) {
 SweepOptions sweep_options(const RenderOptions& options) {
   std::vector<int> parts(static_cast<std::size_t>(options.cascades), parts_of(options.coarser_directions));
   parts.front() = parts_of(options.directions);
-  return {.grid = options.grid, .parts = parts, .blocking = options.occlusion, .format = options.format()};
+  return {.grid = options.grid,
+          .parts = parts,
+          .blocking = options.occlusion,
+          .bounces = options.bounces,
+          .format = options.format()};
 }
 
 GatherOptions gather_options(const RenderOptions& options) {

@@ -55,10 +55,11 @@ enum class SweepForm {
 };
 
 struct SweepOptions {
-  int grid = 32;             ///< cells along each axis
-  std::vector<int> parts;    ///< of each bin (sweep_bins), one a cascade, finest first
-  bool blocking = true;      ///< geometry volumes block
-  VolumeFormat format = {};  ///< of all volumes; its storage is that of what the sweep keeps for itself
+  int grid = 32;                   ///< cells along each axis
+  std::vector<int> parts;          ///< of each bin (sweep_bins), one a cascade, finest first
+  bool blocking = true;            ///< geometry volumes block
+  Bounces bounces = Bounces::one;  ///< more need Sweeper::reflect()
+  VolumeFormat format = {};        ///< of all volumes; its storage is that of what the sweep keeps for itself
   SweepForm form = SweepForm::suited;
 };
 

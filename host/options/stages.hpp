@@ -9,7 +9,7 @@ namespace clpv {
 
 /// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
 /// that both sides share, is none of a frame's: it is checked before all others.
-enum class Stage { sizes, rasterize, inject, block, propagate, sweep, see, gather, shade };
+enum class Stage { sizes, rasterize, inject, block, reflect, propagate, sweep, bounce, see, gather, shade };
 
 constexpr std::string_view name_of(Stage stage) {
   switch (stage) {
@@ -21,10 +21,14 @@ constexpr std::string_view name_of(Stage stage) {
       return "inject";
     case Stage::block:
       return "block";
+    case Stage::reflect:
+      return "reflect";
     case Stage::propagate:
       return "propagate";
     case Stage::sweep:
       return "sweep";
+    case Stage::bounce:
+      return "bounce";
     case Stage::see:
       return "see";
     case Stage::gather:
@@ -41,10 +45,11 @@ enum class Pass {
   rasterize_camera,
   rasterize_shadow,  ///< a light
   rasterize_rsm,     ///< a cascade and light
-  inject_light,      ///< a cascade, as are the next four
+  inject_light,      ///< a cascade, as are the next five
   inject_geometry,
   block,
-  propagate,  ///< in steps, or by a sweep
+  reflect,
+  propagate,  ///< in steps, or by a sweep and its bounces
   see,        ///< a cascade
   gather,
   shade,
@@ -65,6 +70,8 @@ constexpr std::string_view name_of(Pass pass) {
       return "inject-geometry";
     case Pass::block:
       return "block";
+    case Pass::reflect:
+      return "reflect";
     case Pass::propagate:
       return "propagate";
     case Pass::see:

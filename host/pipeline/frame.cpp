@@ -48,6 +48,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       accumulated_(volumes(options.cascades, light_shape(options, gathered()), "accumulated light")),
       geometry_(volumes(geometry_volumes(options), geometry_shape(options, *basis_), "geometry volume")),
       ways_(accumulated_.size()),
+      reflected_(accumulated_.size()),
       seen_(accumulated_.size()),
       packed_(accumulated_.size()) {
   if (swept_) {
@@ -57,6 +58,8 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
   }
   if (!geometry_.empty() && !blocked_by_view(options))
     blocker_.emplace(session, buffers_, options.grid, options.format());
+  if (options.bounces != Bounces::one)
+    reflector_.emplace(session, buffers_, options.grid, options.cascades, options.format());
   if (options.gather == Gathering::visible) sight_.emplace(session, buffers_, options.grid, options.cascades);
   const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
@@ -96,6 +99,7 @@ void Frame::forget() {
   forget_light();
   for (KeptVolume& geometry : geometry_) geometry.kept.forget();
   for (Kept& ways : ways_) ways.forget();
+  for (Kept& reflected : reflected_) reflected.forget();
   for (Kept& seen : seen_) seen.forget();
 }
 
@@ -109,11 +113,19 @@ MadeOf Frame::geometry_made_of(int cascade) const {
   return made_of;
 }
 
+/// What is sent back in all bounces depends on what blocks.
+MadeOf Frame::reflected_made_of(int cascade) const {
+  MadeOf made_of = MadeOf().add(place_of(grid(cascade))).add(triangles_);
+  if (!geometry_.empty()) made_of.add(geometry_made_of(cascade));
+  return made_of;
+}
+
 /// A sweep takes what comes in at a cascade's border from the next coarser one, and keeps what the next finer one will take.
 MadeOf Frame::accumulated_made_of(int cascade) const {
   MadeOf made_of = injected_made_of(cascade);
   if (!geometry_.empty()) made_of.add(geometry_made_of(cascade));
   if (!sweeper_) return made_of;
+  if (reflector_) made_of.add(reflected_made_of(cascade));
   made_of.add(sweeper_->shell(static_cast<std::size_t>(cascade), grids_));
   if (cascade + 1 < options_.cascades) made_of.add(accumulated_made_of(cascade + 1));
   return made_of;
@@ -155,6 +167,23 @@ void Frame::inject_geometry(int cascade, Volume& geometry) {
   injector_.inject_geometry(*camera_surface_, grid(cascade), geometry, options_.blocker_stride);
 }
 
+void Frame::let_through(int cascade) {
+  if (geometry_.empty()) return;
+  const auto c = static_cast<std::size_t>(cascade);
+  ways_[c].update(geometry_made_of(cascade),
+                  [&] { sweeper_->block(c, *of_cascade(geometry_, cascade).volume); });
+}
+
+void Frame::reflect(int cascade) {
+  const auto c = static_cast<std::size_t>(cascade);
+  reflected_[c].update(reflected_made_of(cascade), [&] {
+    const StageScope scope(session_, {Pass::reflect, cascade});
+    let_through(cascade);
+    reflector_->reflect(c, grid(cascade));
+    sweeper_->reflect(c, reflector_->reflectors(c));
+  });
+}
+
 void Frame::see(int cascade) {
   if (!sight_) return;
   const auto c = static_cast<std::size_t>(cascade);
@@ -172,11 +201,11 @@ void Frame::propagate(int cascade) {
     if (!geometry_.empty()) block(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const Volume* geometry = geometry_.empty() ? nullptr : of_cascade(geometry_, cascade).volume.get();
+    if (reflector_) reflect(cascade);
     const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
       return propagator_->propagate({injected, geometry, *accumulated.volume}, options_.iterations);
-    if (geometry != nullptr)
-      ways_[c].update(geometry_made_of(cascade), [&] { sweeper_->block(c, *geometry); });
+    let_through(cascade);
     sweeper_->sweep(c, grids_, injected, *accumulated.volume);
   });
 }

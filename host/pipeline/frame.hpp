@@ -19,6 +19,7 @@
 #include "pipeline/made_of.hpp"
 #include "pipeline/propagate.hpp"
 #include "pipeline/rasterize.hpp"
+#include "pipeline/reflect.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/see.hpp"
 #include "pipeline/shade.hpp"
@@ -99,11 +100,14 @@ class Frame {
   /// What a cascade's products are made of.
   MadeOf injected_made_of(int cascade) const;
   MadeOf geometry_made_of(int cascade) const;
+  MadeOf reflected_made_of(int cascade) const;
   MadeOf accumulated_made_of(int cascade) const;
 
   /// Each brings a cascade's product to date, and what that is made of before it where it is not.
   void inject(int cascade);
   void block(int cascade);
+  void let_through(int cascade);
+  void reflect(int cascade);
   void propagate(int cascade);
   void see(int cascade);
 
@@ -121,8 +125,9 @@ class Frame {
   SceneBuffers buffers_;
   Rasterizer rasterizer_;
   Injector injector_;
-  std::optional<SceneBlocker> blocker_;   ///< none: what is seen blocks
-  std::optional<Propagator> propagator_;  ///< one of the two
+  std::optional<SceneBlocker> blocker_;      ///< none: what is seen blocks
+  std::optional<SceneReflector> reflector_;  ///< none: one bounce
+  std::optional<Propagator> propagator_;     ///< one of the two
   std::optional<Sweeper> sweeper_;
   std::optional<SceneSight> sight_;  ///< none: all cells light a surface
   Gatherer gatherer_;
@@ -134,6 +139,7 @@ class Frame {
   std::vector<KeptVolume> injected_, accumulated_;
   std::vector<KeptVolume> geometry_;  ///< none without occlusion
   std::vector<Kept> ways_, seen_;     ///< of the sweeper and the sight, a cascade
+  std::vector<Kept> reflected_;       ///< of the reflector and the sweeper
   std::vector<Kept> packed_;          ///< accumulated light as the gatherer holds it
   Buffer irradiance_;                 ///< float4 a pixel, as is image_
   Buffer image_;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
 #include "options/stage_options.hpp"
 #include "pipeline/block.hpp"
+#include "pipeline/reflect.hpp"
 #include "pipeline/see.hpp"
 #include "pipeline/sweep.hpp"
 #include "support/error.hpp"
@@ -36,11 +38,17 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
                     carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
   const double masks =
       options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
+  const double reflecting = options.bounces == Bounces::one
+                                ? 0
+                                : (options.bounces == Bounces::all ? 2 : 1) * options.cascades *
+                                          bytes({grid, kReflectingSides, 3}) +
+                                      static_cast<double>(SceneReflector::bytes(grid));
   const auto sight = static_cast<double>(sight_bytes(options, grid));
   if (sweeps(options)) {
     return sight + injected_volumes(options) * bytes(lit) +
            options.cascades * bytes({grid, swept_basis()->size(), 3}) +
-           geometry_volumes(options) * bytes(blocking) + masks + Sweeper::bytes(sweep_options(tried));
+           geometry_volumes(options) * bytes(blocking) + masks + reflecting +
+           Sweeper::bytes(sweep_options(tried));
   }
   // What adding takes besides: steps, and what is carried down, add to light; injection adds to its cells.
   const auto spare = [&](const VolumeShape& shape) {
@@ -78,6 +86,10 @@ void require_compatible(const RenderOptions& options) {
     throw Error(ExitCode::usage,
                 "blocking: found '{}' with blockers 'scene', allowed: areas (or blockers 'seen')",
                 name_of(options.blocking));
+  }
+  if (!sweeps(options) && options.bounces != Bounces::one) {
+    throw Error(ExitCode::usage, "bounces: found '{}' with transport '{}', allowed: 1 (or transport 'sweep')",
+                name_of(options.bounces), name_of(options.transport));
   }
   if (!sweeps(options)) return;
   if (options.state != State::coefficients) {

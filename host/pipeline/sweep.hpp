@@ -13,6 +13,8 @@
 #include "kernels/shared/grid.h"
 #include "kernels/shared/sweep.h"
 #include "options/stage_options.hpp"
+#include "pipeline/bounce.hpp"
+#include "pipeline/sweep_volumes.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
@@ -30,6 +32,10 @@ class Sweeper {
   /// What blocks in a cascade from now on: (grid + 1)^3 samples.
   void block(std::size_t cascade, const Volume& geometry);
 
+  /// What reflects in a cascade from now on (SceneReflector), where SweepOptions::bounces are more than one; after block(),
+  /// for what is sent back in all bounces depends on both. `reflectors` must live on.
+  void reflect(std::size_t cascade, const Volume& reflectors);
+
   /// Sweeps `injected` through cascade `cascade` of `grids`, whose coarser one has been swept before, and leaves light of
   /// swept_basis(), as radiance times s^2, in `accumulated`. Throws Error(run_time) for grids that are not nested.
   void sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
@@ -45,24 +51,29 @@ class Sweeper {
   struct Pass {  ///< of a cascade
     int parts;
     Buffer directions;  ///< ClpvSweepDirection
-    Buffer ways;        ///< transmittance
     Kernel sweep;
     std::optional<Kernel> let_in;  ///< none: nothing is beyond
     Buffer shell;                  ///< light for the next finer cascade
   };
-  Pass make_pass(std::size_t cascade);
-  void launch_tiles(Kernel& kernel, int channels);
-  void let_in(std::size_t cascade, const std::vector<ClpvGrid>& grids);
-  void sweep(Pass& pass, const ClpvSweepShell& shell);
+  using Passes = std::vector<Pass>;  ///< one a cascade
+  Passes make_passes(const std::vector<int>& parts);
+  void let_nothing_in();
+  void let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  void sweep(Pass& pass, std::size_t cascade, const Buffer& light, const ClpvSweepShell& shell);
+  void sweep(Passes& passes, std::size_t cascade, const Buffer& light, const std::vector<ClpvGrid>& grids);
   bool whole_bins() const;
 
   Session& session_;
   SweepOptions options_;
-  int tile_;  ///< cells along the edges of a tile
+  SweepVolumes volumes_;
   Buffer bins_, light_, live_, border_;
+  std::vector<Buffer> through_;  ///< transmittance of the ways through each cascade
   Kernel source_, collect_;
   std::optional<Kernel> ways_;
-  std::vector<Pass> passes_;
+  Passes passes_;
+  std::optional<Bouncer> bouncer_;  ///< none: one bounce
+  Passes first_passes_;             ///< of what is to bounce, along 24 directions
+  Buffer first_light_;              ///< that these sweep
 };
 
 }  // namespace clpv

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/sweep_volumes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "codegen/sweep_source.hpp"
+
+namespace clpv {
+
+std::size_t number_bytes(const VolumeFormat& format) {
+  return format.storage == Storage::float16 ? 2 : 4;
+}
+
+Buffer zeroed_buffer(Session& session, std::size_t bytes, const char* what) {
+  const std::size_t words = (bytes + sizeof(cl_uint) - 1) / sizeof(cl_uint) * sizeof(cl_uint);
+  Buffer buffer = session.buffer(words, what);
+  session.fill_zero(buffer, words);
+  return buffer;
+}
+
+SweepVolumes::SweepVolumes(Session& session, int grid, const VolumeFormat& format)
+    : session_(session), grid_(grid), format_(format), tile_(preferred_row_lanes(session.device(), format)) {}
+
+ProgramSource SweepVolumes::program(const char* file, std::string generated) const {
+  ProgramSource source{file, {}, std::move(generated)};
+  source.literals.integer("CLPV_GRID", grid_);
+  add_format_literals(source.literals, format_, tile_);
+  return source;
+}
+
+void SweepVolumes::launch(Kernel& kernel, int channels) const {
+  const auto tiles = static_cast<std::size_t>((grid_ + tile_ - 1) / tile_);
+  const auto slices = static_cast<std::size_t>(grid_) * static_cast<std::size_t>(channels);
+  kernel.launch({tiles, tiles, slices}, {tile_ == 1 ? std::min(tiles, kRowGroup) : 1, 1, 1});
+}
+
+std::size_t SweepVolumes::bytes(int grid, const VolumeFormat& format) {
+  return sweep_volume_numbers(grid) * number_bytes(format);
+}
+
+Buffer SweepVolumes::make(std::size_t count, const char* what) const {
+  return zeroed_buffer(session_, count * bytes(grid_, format_), what);
+}
+
+}  // namespace clpv

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// Light that surfaces send back, held against what is known in closed form; and the kernels against the twin.
+#include "pipeline/bounce.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+#include "basis/bounce.hpp"
+#include "basis/sweep.hpp"
+#include "checks/check.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/sweep.hpp"
+#include "reference/block.hpp"
+#include "reference/bounce.hpp"
+#include "reference/reflect.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+using reference::SweptCascade;
+
+constexpr double kExact = 1e-12;
+
+Transport swept() {
+  return make_transport(TransportKind::sweep, *make_basis("bins24"), {}, Blocking::areas);
+}
+
+TEST(Bounce, AllThatLeavesASideLeaves) {
+  const Matrix light = leaving_light();
+  for (int side = 0; side < kReflectingSides; ++side) {
+    double flux = 0, along = 0;
+    for (int b = 0; b < kSweepBins; ++b) {
+      const SweepBin bin = sweep_bins(1)[static_cast<std::size_t>(b)];
+      const double cosine = (side % 2 == 0 ? 1 : -1) * bin.directions[0].w[side / 2];
+      EXPECT_GE(light(b, side), 0);
+      EXPECT_TRUE(cosine > 0 || light(b, side) == 0) << b << ' ' << side;
+      flux += bin.solid_angle * light(b, side);
+      along += bin.solid_angle * light(b, side) * cosine;
+    }
+    EXPECT_NEAR(flux, 1, kExact);
+    EXPECT_NEAR(along, 2.0 / 3, 0.03) << "a cosine's";
+  }
+}
+
+// Under the same light from everywhere a white wall sends back the light that falls on it.
+TEST(Bounce, WhatFallsOnASideIsWhatItWouldSend) {
+  const Matrix flux = arriving_flux(), light = leaving_light();
+  const std::vector<double> even(kSweepBins, 1.0);
+  const std::vector<double> arriving = flux * std::span<const double>(even);
+  for (int side = 0; side < kReflectingSides; ++side) {
+    EXPECT_NEAR(arriving[static_cast<std::size_t>(side)], std::numbers::pi, 0.05 * std::numbers::pi);
+    for (int b = 0; b < kSweepBins; ++b) {
+      const double cosine =
+          (side % 2 == 0 ? 1 : -1) * sweep_bins(1)[static_cast<std::size_t>(b)].directions[0].w[side / 2];
+      EXPECT_NEAR(light(b, side) * arriving[static_cast<std::size_t>(side)], std::max(0.0, cosine), kExact);
+    }
+  }
+}
+
+constexpr int kGrid = 12, kFirst = 2, kLast = 9;  // cells inside the room
+
+bool inside(const glm::ivec3& p) {
+  return glm::all(glm::greaterThanEqual(p, glm::ivec3(kFirst))) &&
+         glm::all(glm::lessThanEqual(p, glm::ivec3(kLast)));
+}
+
+template <typename Visit>
+void for_each_cell(Visit visit) {
+  for (int i = 0; i < kGrid * kGrid * kGrid; ++i)
+    visit(glm::ivec3(i % kGrid, i / kGrid % kGrid, i / kGrid / kGrid));
+}
+
+/// A closed box of an albedo, its walls in the middle of those that block next to the cells inside.
+Scene room_scene(float albedo, const ClpvGrid& grid) {
+  Scene scene;
+  const unsigned material = add_material(scene, glm::vec3(albedo));
+  const glm::vec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
+  const float low = kFirst - 0.49f, edge = kLast + 1.49f - low;
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::vec3 across(0), u(0), v(0);
+    across[axis] = u[(axis + 1) % 3] = v[(axis + 2) % 3] = edge;
+    add_quad(scene, origin + low, u, v, material);
+    add_quad(scene, origin + low + across, v, u, material);
+  }
+  return scene;
+}
+
+/// The room's walls, as stages find them; and light that leaves each of them by 1 W a face.
+struct Room {
+  ClpvGrid grid = cascade_grids(glm::vec3(0.5f), 1, kGrid, kGrid).front();
+  Scene scene;
+  reference::Volume light{kGrid, kSweepBins}, blockers, reflectors;
+
+  explicit Room(float albedo) : scene(room_scene(albedo, grid)) {
+    blockers = reference::block(scene, grid).least;
+    reflectors = reference::reflect(scene, grid).areas;
+    const Matrix leaving = leaving_light();
+    for_each_cell([&](const glm::ivec3& p) {
+      if (!inside(p)) return;
+      for (int side = 0; side < kReflectingSides; ++side) {
+        if (p[side / 2] != (side % 2 == 0 ? kFirst : kLast)) continue;
+        for (int channel = 0; channel < 3; ++channel) {
+          for (int b = 0; b < kSweepBins; ++b) light.at(channel, b, p.x, p.y, p.z) += leaving(b, side);
+        }
+      }
+    });
+  }
+
+  /// All light inside.
+  double lit(Bounces bounces, int parts = 1) const {
+    const SweptCascade cascade{grid, &light, &blockers, parts};
+    const reference::Volume swept_light =
+        reference::sweep_bounced(*make_basis("bins24"), swept(), {cascade}, {&reflectors}, bounces)[0];
+    double sum = 0;
+    for_each_cell([&](const glm::ivec3& p) {
+      if (!inside(p)) return;
+      for (int b = 0; b < kSweepBins; ++b) sum += swept_light.value(1, b, p.x, p.y, p.z);
+    });
+    return sum;
+  }
+};
+
+// Of a furnace's E / (1 - a) as many terms as there are bounces.
+TEST(Bounce, AFurnaceGlowsByItsClosedForm) {
+  for (const float albedo : {0.2f, 0.8f}) {
+    const Room room(albedo);
+    const double one = room.lit(Bounces::one), bounces = kFurtherBounces + 2;
+    EXPECT_NEAR(room.lit(Bounces::two) / one, 1 + albedo, 0.02 * albedo);
+    const double series = (1 - std::pow(double{albedo}, bounces)) / (1 - double{albedo});
+    EXPECT_NEAR(room.lit(Bounces::all) / one / series, 1, 0.1 * albedo) << albedo;
+  }
+}
+
+// Energy: what surfaces absorb is gone.
+TEST(Bounce, LightOnlyFallsWhereNothingEmits) {
+  double before = 1e9;
+  for (const float albedo : {1.0f, 0.5f, 0.0f}) {
+    const Room room(albedo);
+    const double more = room.lit(Bounces::two) / room.lit(Bounces::one) - 1;
+    EXPECT_LT(more, before);
+    EXPECT_LE(more, 1.02 * double{albedo} + kExact);
+    before = more;
+  }
+}
+
+RenderOptions small_frame(Bounces bounces, int cascades) {
+  RenderOptions options;
+  options.bounces = bounces, options.cascades = cascades;
+  options.directions = options.coarser_directions = Directions::of24;
+  options.width = 48, options.height = 27, options.grid = 16,
+  options.cascade_size = cascades == 1 ? 1.5 : 0.75;
+  options.rsm_size = 64, options.shadow_size = 64;
+  return options;
+}
+
+double irradiance(const RenderOptions& options) {
+  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/cornell.json");
+  Frame frame(test_session(), scene, options);
+  frame.render(scene.camera(""));
+  const std::vector<float> pixels = frame.read(Show::irradiance);
+  double sum = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) sum += i % 4 == 3 ? 0.0 : double{pixels[i]};
+  return sum;
+}
+
+TEST(BouncedFrame, EachBounceAddsLightAndEndsByItself) {
+  const double one = irradiance(small_frame(Bounces::one, 1)), two = irradiance(small_frame(Bounces::two, 1)),
+               all = irradiance(small_frame(Bounces::all, 1));
+  EXPECT_GT(two, 1.1 * one);
+  EXPECT_GT(all, 1.05 * two);
+  EXPECT_LT(all, 3 * one);
+}
+
+// A finer cascade takes the coarser one's light, bounced there, through its border once, and its own is its own.
+TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
+  for (const Bounces bounces : {Bounces::two, Bounces::all}) {
+    const double share = irradiance(small_frame(bounces, 1)) / irradiance(small_frame(Bounces::one, 1));
+    EXPECT_NEAR(irradiance(small_frame(bounces, 2)) / irradiance(small_frame(Bounces::one, 2)), share,
+                0.1 * share);
+  }
+}
+
+TEST(BouncedFrame, RefusesWhatDoesNotSweep) {
+  RenderOptions options = small_frame(Bounces::two, 1);
+  options.transport = TransportKind::upwind;
+  EXPECT_THROW(irradiance(options), Error);
+}
+
+TEST(Bounce, KernelsAgreeWithTheirTwin) {
+  expect_passed(reference::check_bounce(test_session()), 4);
+}
+
+}  // namespace
+}  // namespace clpv
