@@ -52,13 +52,17 @@ __kernel void block_triangles(const ClpvGrid grid, const uint first, const uint 
   __global const ClpvMaterial* material = materials + triangle.material;
   const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
 #endif
+  BlockCorners corners;
+  if (!clpv_block_corners(grid, corner, &corners)) return;
+  int2 samples[3];  // that it may cover, along each axis
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* at = corners.at[axis];
+    samples[axis] = clpv_block_range(CLPV_GRID + 1, at[0], at[1], at[2]);
+  }
   for (uint axis = 0; axis < 3; ++axis) {
+    const int2 columns = samples[(axis + 1) % 3], rows = samples[(axis + 2) % 3];
     BlockTriangle t;
-    const bool has_area = clpv_block_triangle(grid, corner, axis, &t);
-    if (!has_area || t.farthest < 0.0f || t.nearest >= (float)(CLPV_GRID + 1)) continue;
-    const int2 columns = clpv_block_range(CLPV_GRID + 1, t.u[0], t.u[1], t.u[2]);
-    const int2 rows = clpv_block_range(CLPV_GRID + 1, t.v[0], t.v[1], t.v[2]);
-    if (columns.x > columns.y) continue;
+    if (columns.x > columns.y || rows.x > rows.y || !clpv_block_triangle(&corners, axis, &t)) continue;
     for (int v = rows.x; v <= rows.y; ++v) {
       for (int i = columns.x / CLPV_BLOCK_SAMPLES; i <= columns.y / CLPV_BLOCK_SAMPLES; ++i) {
         const float u = (float)(i * CLPV_BLOCK_SAMPLES);

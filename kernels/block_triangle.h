@@ -30,20 +30,35 @@ typedef struct {
   float inverse_area;
 } BlockTriangle;
 
-// Coordinates in samples of vertex `i` along an axis.
-static inline float clpv_block_at(const ClpvGrid grid, __global const ClpvVertex* vertex, const uint axis) {
-  const float at = (vertex->position[axis] - grid.origin[axis]) / grid.cell * CLPV_BLOCK_SAMPLES;
-  return clamp(at + CLPV_BLOCK_SAMPLES / 2, -CLPV_BLOCK_FAR, CLPV_BLOCK_FAR);
+// Where a triangle's corners are, in samples along each axis.
+typedef struct {
+  float at[3][3];  // [axis][corner]
+} BlockCorners;
+
+// False for a triangle that lies beside the grid, half a cell more on every side.
+static inline bool clpv_block_corners(const ClpvGrid grid, __global const ClpvVertex* const corner[3],
+                                      BlockCorners* corners) {
+  const float per_sample = CLPV_BLOCK_SAMPLES / grid.cell;
+  bool within = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    float* at = corners->at[axis];
+    for (int i = 0; i < 3; ++i) {
+      at[i] = (corner[i]->position[axis] - grid.origin[axis]) * per_sample + CLPV_BLOCK_SAMPLES / 2;
+      at[i] = clamp(at[i], -CLPV_BLOCK_FAR, CLPV_BLOCK_FAR);
+    }
+    within = within && fmax(at[0], fmax(at[1], at[2])) >= 0.0f &&
+             fmin(at[0], fmin(at[1], at[2])) < (float)(CLPV_BLOCK_SAMPLES * (CLPV_GRID + 1));
+  }
+  return within;
 }
 
 // False for one that is seen edge-on, or has no area at all.
-static inline bool clpv_block_triangle(const ClpvGrid grid, __global const ClpvVertex* const corner[3],
-                                       const uint axis, BlockTriangle* t) {
+static inline bool clpv_block_triangle(const BlockCorners* corners, const uint axis, BlockTriangle* t) {
   float w[3];
   for (int i = 0; i < 3; ++i) {
-    t->u[i] = clpv_block_at(grid, corner[i], (axis + 1) % 3);
-    t->v[i] = clpv_block_at(grid, corner[i], (axis + 2) % 3);
-    w[i] = clpv_block_at(grid, corner[i], axis) * (1.0f / CLPV_BLOCK_SAMPLES);
+    t->u[i] = corners->at[(axis + 1) % 3][i];
+    t->v[i] = corners->at[(axis + 2) % 3][i];
+    w[i] = corners->at[axis][i] * (1.0f / CLPV_BLOCK_SAMPLES);
   }
   const float u1 = t->u[1] - t->u[0], v1 = t->v[1] - t->v[0], w1 = w[1] - w[0];
   const float u2 = t->u[2] - t->u[0], v2 = t->v[2] - t->v[0], w2 = w[2] - w[0];

@@ -177,9 +177,11 @@ __kernel void reflect_triangles(const ClpvGrid grid, const uint first, const uin
   __global const ClpvVertex* const corner[3] = {vertices + triangle.vertex[0], vertices + triangle.vertex[1],
                                                 vertices + triangle.vertex[2]};
   __global const ClpvMaterial* material = materials + triangle.material;
+  BlockCorners corners;
+  if (!clpv_block_corners(grid, corner, &corners)) return;
   for (uint axis = 0; axis < 3; ++axis) {
     BlockTriangle t;
-    if (!clpv_block_triangle(grid, corner, axis, &t)) continue;
+    if (!clpv_block_triangle(&corners, axis, &t)) continue;
     const float slope_u = CLPV_BLOCK_SAMPLES * t.w_u, slope_v = CLPV_BLOCK_SAMPLES * t.w_v;
     const float length = sqrt(1.0f + slope_u * slope_u + slope_v * slope_v);
     const float3 normal = (float3)(-slope_u, -slope_v, 1.0f) / length;  // along u, v and the axis
