@@ -146,7 +146,8 @@ TEST_F(SteadyFrame, IrradianceOnWhatTheCameraSeesIsTheFrames) {
   const std::vector<float> found = frame_.irradiance_on(before_);
   ASSERT_EQ(found.size(), irradiance_.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (i % 4 != 3) EXPECT_EQ(found[i], irradiance_[i]) << i;
+    if (i % 4 == 3) continue;
+    EXPECT_EQ(found[i], irradiance_[i]) << i;
   }
 }
 
