@@ -7,8 +7,8 @@
 // D [W/sr] is all light along the direction, I what was injected, T the transmittance of the way. Outside the grid D is the
 // coarser cascade's light.
 //
-// In: `light` (I of each bin), `ways` (T), `border` (D beside the grid, sweep_border.h). Out: `light`, in its place, for each
-// bin the sum of its directions by their shares; `kept`, D in the cells that a finer cascade's border is made of.
+// In: `sources` (I of each bin), `ways` (T), `border` (D beside the grid, sweep_border.h). Out: `sums`, which may be the same
+// memory, for each bin the sum of its directions by their shares; `kept`, D in the cells that a finer cascade's border is made of.
 // `live` holds the last plane of each direction and channel, at first the one before the grid.
 //
 // Two forms. `sweep_bin`, for CPUs: a work-item is a bin, and walks all planes; rows downstream first, so that each plane
@@ -20,8 +20,9 @@
 
 // CLPV_LANES cells of a plane, all channels and parts of a bin. `from`: the plane before.
 CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constant const ClpvSweepDirection* direction,
-                                  CLPV_BUFFER_OUT light, CLPV_BUFFER_IN ways, __global const float* from,
-                                  __global float* to, const int plane, const int row, const int column) {
+                                  CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways, CLPV_BUFFER_OUT sums,
+                                  __global const float* from, __global float* to, const int plane, const int row,
+                                  const int column) {
   const int at = clpv_sweep_at(plane, row, column);
   const int here = CLPV_SWEPT(b, 0, 0) * CLPV_SWEEP_LIVE + clpv_live_at(row, column);
   __global const float* from0 = from + here;
@@ -40,7 +41,7 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
 #endif
   CLPV_REAL injected[3], sum[3];
   for (int channel = 0; channel < 3; ++channel) {
-    injected[channel] = CLPV_SWEEP_LOAD(light + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, at);
+    injected[channel] = CLPV_SWEEP_LOAD(sources + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, at);
     sum[channel] = 0.0f;
   }
 #pragma unroll
@@ -59,7 +60,7 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
     }
   }
   for (int channel = 0; channel < 3; ++channel)
-    CLPV_SWEEP_STORE(light + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, at, sum[channel]);
+    CLPV_SWEEP_STORE(sums + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, at, sum[channel]);
 }
 
 // Puts the light that comes in at the sides of a plane beside it, for the next one: cells of a row, and one of a column.
@@ -79,9 +80,9 @@ CLPV_INLINE void clpv_border_column(CLPV_BUFFER_IN border, __global float* to, c
 #define CLPV_SHELL_LAYER(shell, axis, sign) ((shell).layers[2 * (axis) + ((sign) > 0 ? 0 : 1)])
 
 #define CLPV_SWEEP_ARGUMENTS                                                                                          \
-  __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions, CLPV_BUFFER_OUT light,        \
+  __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions, CLPV_BUFFER_IN sources,       \
       CLPV_BUFFER_IN ways, CLPV_BUFFER_IN border, const ClpvSweepShell shell, __global float *live,                   \
-      CLPV_BUFFER_OUT kept
+      CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT kept
 
 #if CLPV_WHOLE_BINS
 
@@ -140,7 +141,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEE
       const int row = bin.row_sign > 0 ? CLPV_GRID - 1 - r : r;
       for (int c = 0; c <= last_column; c += CLPV_LANES) {
         const int column = bin.column_sign > 0 ? last_column - c : c;
-        clpv_sweep_cells(b, bin, direction, light, ways, live, live, plane, row, column);
+        clpv_sweep_cells(b, bin, direction, sources, ways, sums, live, live, plane, row, column);
       }
     }
     clpv_finish_plane(b, bin, shell, border, live, kept, plane);
@@ -172,7 +173,7 @@ __kernel void sweep_plane(CLPV_SWEEP_ARGUMENTS, const int p) {
   const int place = CLPV_SWEPT(CLPV_SWEEP_BINS, 0, 0) * CLPV_SWEEP_LIVE;  // from even planes to odd ones
   __global float* to = live + (p % 2) * place;
   __global const float* from = live + (1 - p % 2) * place;
-  clpv_sweep_cells(b, bin, directions + b * CLPV_PARTS, light, ways, from, to, plane, row, column);
+  clpv_sweep_cells(b, bin, directions + b * CLPV_PARTS, sources, ways, sums, from, to, plane, row, column);
   const int first = CLPV_SWEPT(b, 0, 0), before = row == 0 ? -1 : row, after = row == CLPV_GRID - 1 ? CLPV_GRID : row;
   for (int swept = first; swept < first + 3 * CLPV_PARTS; ++swept) {
     for (int lane = 0; lane < CLPV_LANES; ++lane) {

@@ -48,8 +48,8 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       accumulated_(volumes(options.cascades, light_shape(options, gathered()), "accumulated light")),
       geometry_(volumes(geometry_volumes(options), geometry_shape(options, *basis_), "geometry volume")),
       ways_(accumulated_.size()),
-      reflected_(accumulated_.size()),
       seen_(accumulated_.size()),
+      reflected_(accumulated_.size()),
       packed_(accumulated_.size()) {
   if (swept_) {
     sweeper_.emplace(session, *basis_, transport_, sweep_options(options));

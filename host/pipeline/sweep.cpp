@@ -151,7 +151,7 @@ void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
     session_.fill_zero(first_light_, first_light_.bytes());
     bouncer_->send_on(cascade, first_light_);
     let_nothing_in();
-    sweep(first_passes_[cascade], cascade, first_light_, {});
+    sweep(first_passes_[cascade], cascade, {first_light_, first_light_}, {});
     bouncer_->meet_again(cascade, first_light_);
   }
 }
@@ -179,21 +179,22 @@ ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& 
   return shell_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
 }
 
-void Sweeper::sweep(Pass& pass, std::size_t cascade, const Buffer& light, const ClpvSweepShell& shell) {
-  pass.sweep.set(bins_, pass.directions, light, through_[cascade], border_, shell, live_, pass.shell);
+void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell) {
+  pass.sweep.set(bins_, pass.directions, light.sources, through_[cascade], border_, shell, live_, light.sums,
+                 pass.shell);
   if (whole_bins()) {
     pass.sweep.launch({kSweepBins}, {1});
     return;
   }
   const auto n = static_cast<std::size_t>(options_.grid);
   for (int plane = 0; plane < options_.grid; ++plane) {
-    pass.sweep.set(bins_, pass.directions, light, through_[cascade], border_, shell, live_, pass.shell,
-                   plane);
+    pass.sweep.set(bins_, pass.directions, light.sources, through_[cascade], border_, shell, live_,
+                   light.sums, pass.shell, plane);
     pass.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});
   }
 }
 
-void Sweeper::sweep(Passes& passes, std::size_t cascade, const Buffer& light,
+void Sweeper::sweep(Passes& passes, std::size_t cascade, const Light& light,
                     const std::vector<ClpvGrid>& grids) {
   let_in(passes, cascade, grids);
   Pass& pass = passes[cascade];
@@ -208,12 +209,10 @@ void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, con
   source_.set(injected.memory(), light_);
   volumes_.launch(source_, 3);
   if (bouncer_) {
-    source_.set(injected.memory(), first_light_);
-    volumes_.launch(source_, 3);
-    sweep(first_passes_, cascade, first_light_, grids);
+    sweep(first_passes_, cascade, {light_, first_light_}, grids);
     bouncer_->bounce(cascade, first_light_, light_);
   }
-  sweep(passes_, cascade, light_, grids);
+  sweep(passes_, cascade, {light_, light_}, grids);
   collect_.set(light_, accumulated.memory());
   volumes_.launch(collect_, 3);
 }

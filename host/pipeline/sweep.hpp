@@ -59,8 +59,12 @@ class Sweeper {
   Passes make_passes(const std::vector<int>& parts);
   void let_nothing_in();
   void let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
-  void sweep(Pass& pass, std::size_t cascade, const Buffer& light, const ClpvSweepShell& shell);
-  void sweep(Passes& passes, std::size_t cascade, const Buffer& light, const std::vector<ClpvGrid>& grids);
+  struct Light {
+    const Buffer& sources;
+    const Buffer& sums;  ///< may be the same
+  };
+  void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell);
+  void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
   bool whole_bins() const;
 
   Session& session_;
