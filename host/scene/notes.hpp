@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/bounds.hpp"
@@ -11,9 +12,9 @@ namespace clpv {
 
 class Notes {
  public:
-  void add(std::string note) {
+  void add(std::string_view note) {
     if (notes_.size() < bounds::kNotes) {
-      notes_.push_back(std::move(note));
+      notes_.emplace_back(note);
     } else {
       ++more_;
     }
