@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench.hpp"
 
+#include <cstdlib>
+
 #include "support/error.hpp"
+#include "support/log.hpp"
 #include "support/progress.hpp"
 
 namespace clpv::bench {
@@ -10,6 +13,25 @@ namespace {
 std::vector<Case> filtered(std::vector<Case> cases, const std::optional<std::regex>& filter) {
   if (filter) std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, *filter); });
   return cases;
+}
+
+/// Ends the process, with what there is told.
+[[noreturn]] void give_up(const BenchOptions& options, const std::string& suite, const std::string& name,
+                          RowLog& log, Results results) {
+  Row row;
+  row.suite = suite;
+  row.name = name;
+  row.status = Status::timed_out;
+  row.reason =
+      fmt::format("not ready, or not run once, within {} s; the run ends with it", options.row_limit);
+  results.rows.push_back(row);
+  try {
+    log.done(row);
+    if (options.hung) options.hung(results);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+  }
+  std::_Exit(static_cast<int>(ExitCode::run_time));  // the device still works, or the driver waits for it
 }
 
 }  // namespace
@@ -28,8 +50,11 @@ Results run_suite(Session& session, const Suite& suite, const BenchOptions& opti
   if (!ceilings_asked) count += ceilings.size();
   Progress progress("bench " + suite.name, count * static_cast<std::size_t>(options.repetitions + 1));
 
-  RunnerOptions runner{options.repetitions, nullptr, &progress};
   Results results;
+  RowLog log(options.log);
+  RowWatch watch(std::chrono::duration<double>(options.row_limit),
+                 [&](const std::string& name) { give_up(options, suite.name, name, log, results); });
+  RunnerOptions runner{options.repetitions, nullptr, &progress, &watch, &log};
   if (ceilings_asked) {
     results.rows = run_cases(session, wanted.front(), runner);
     results.ceilings = ceilings_of(results.rows);

@@ -53,14 +53,26 @@ std::string report_csv(const std::vector<Row>& rows) {
   return text;
 }
 
+std::string report_github_action(const std::vector<Row>& rows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Row& row : rows) {
+    if (row.status != Status::ok) continue;
+    list.push_back({{"name", row.name},
+                    {"unit", "ms"},
+                    {"value", row.times.median},
+                    {"range", fmt::format("{:.4g}", row.times.mad)}});
+  }
+  return list.dump(2) + "\n";
+}
+
 std::string report_table(const std::vector<Row>& rows) {
   std::size_t width = 4;
   for (const Row& row : rows) width = std::max(width, row.name.size());
   std::string text = fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width,
                                  "median ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
   for (const Row& row : rows) {
-    if (row.status == Status::unsupported) {
-      text += fmt::format("{:<{}} unsupported: {}\n", row.name, width, row.reason);
+    if (row.status == Status::unsupported || row.status == Status::timed_out) {
+      text += fmt::format("{:<{}} {}: {}\n", row.name, width, name_of(row.status), row.reason);
       continue;
     }
     text += fmt::format(

@@ -19,6 +19,10 @@ nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilin
 /// samples are left to JSON. By RFC 4180.
 std::string report_csv(const std::vector<Row>& rows);
 
+/// [{"name", "unit": "ms", "value", "range"}, ...] of the rows that went well, medians and their spread: what actions that
+/// keep a history of benchmarks take, smaller being better.
+std::string report_github_action(const std::vector<Row>& rows);
+
 /// Name, median, spread, wall time, GFLOP/s, GB/s, share of the ceiling, error.
 std::string report_table(const std::vector<Row>& rows);
 

@@ -67,6 +67,8 @@ const char* name_of(Status status) {
       return "unsupported";
     case Status::wrong:
       return "wrong";
+    case Status::timed_out:
+      return "timed out";
   }
   return "";
 }
@@ -110,12 +112,16 @@ nlohmann::json to_json(const Row& row, int index) {
                {"mad", row.times.mad},
                {"wall_ms", row.wall_ms},
                {"first_launch_ms", row.first_launch_ms},
-               {"build_ms", row.build_ms}});
+               {"build_ms", row.build_ms},
+               {"device_bytes", row.device_bytes},
+               {"host_bytes", row.host_bytes}});
   json.update({{"flops", row.cost.flops},
                {"bytes", row.cost.bytes},
                {"working_set", row.cost.working_set},
                {"reads_per_cell", row.cost.reads_per_cell},
                {"writes_per_cell", row.cost.writes_per_cell},
+               {"triangles", row.cost.triangles},
+               {"pixels", row.cost.pixels},
                {"gflops", row.gflops()},
                {"gbps", row.gbps()},
                {"ceiling", text_or_null(row.ceiling)},

@@ -36,9 +36,10 @@ struct Cost {
   double working_set = 0;     ///< bytes touched in all: tells which level of the memory binds
   double reads_per_cell = 0;  ///< values (or texels) fetched from volumes, a cell, all channels and all steps
   double writes_per_cell = 0;
+  double triangles = 0, pixels = 0;  ///< of rasterising: those of all views
 };
 
-enum class Status { ok, unsupported, wrong };
+enum class Status { ok, unsupported, wrong, timed_out };
 const char* name_of(Status status);
 
 struct Row {
@@ -58,6 +59,8 @@ struct Row {
   double wall_ms = 0;  ///< median
   bool from_events = true;
   double first_launch_ms = 0, build_ms = 0;
+  std::size_t device_bytes = 0,
+              host_bytes = 0;  ///< the most so far of the run: buffers, and the process's memory
   Cost cost;
   std::string ceiling;  ///< what binds: "fma", "bandwidth" or "launch"; empty where no ceilings were measured
   double ceiling_share = 0;

@@ -2,12 +2,14 @@
 #include "bench/runner.hpp"
 
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <map>
 #include <string>
 
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 
 namespace clpv::bench {
@@ -33,6 +35,7 @@ class Collector : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Iteration) continue;
+      if (run.error_occurred && interrupted()) continue;  // run_cases tells
       if (run.error_occurred)
         throw Error(ExitCode::run_time, "{}: {}", run.run_name.str(), run.error_message);
       cpu_ms[run.run_name.function_name].push_back(run.GetAdjustedCPUTime());
@@ -76,6 +79,19 @@ double run_once(Session& session, Running& running) {
   return ms;
 }
 
+/// Work of a row, under its watch where there is one.
+template <typename Work>
+auto watched(const RunnerOptions& options, const std::string& row, const Work& work) {
+  return options.watch != nullptr ? options.watch->watched(row, work) : work();
+}
+
+/// The most memory that the process had so far [bytes].
+std::size_t most_host_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
 /// Sets a case up and warms it up; false where the device lacks something.
 bool prepare(Session& session, const Case& described, Running& running) {
   running.row = described.row;
@@ -111,6 +127,7 @@ void conclude(Running& running, const std::vector<double>& cpu_ms, const RunnerO
   row.wall_ms = statistics_of(running.wall_ms).median;
   for (const double ms : cpu_ms) row.cpu_ms += ms / static_cast<double>(cpu_ms.size());
   row.cost = running.job.cost;
+  row.host_bytes = most_host_bytes();
   if (options.ceilings != nullptr) bind(*options.ceilings, row);
   verify(running);
 }
@@ -119,7 +136,12 @@ void register_case(Session& session, Running& running, const RunnerOptions& opti
   benchmark::RegisterBenchmark(running.row.name.c_str(),
                                [&session, &running, &options](benchmark::State& state) {
                                  for ([[maybe_unused]] const auto step : state) {
-                                   const double ms = run_once(session, running);
+                                   if (interrupted()) {
+                                     state.SkipWithError("interrupted");
+                                     break;
+                                   }
+                                   const double ms = watched(options, running.row.name,
+                                                             [&] { return run_once(session, running); });
                                    running.row.samples_ms.push_back(ms);
                                    state.SetIterationTime(ms * 1e-3);
                                  }
@@ -140,7 +162,9 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
   bool any = false;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     spdlog::debug("{}", cases[i].row.name);
-    if (prepare(session, cases[i], running[i])) {
+    stop_if_interrupted("the rows that were done are in the log, if one was asked for");
+    if (options.log != nullptr) options.log->begun(cases[i].row.name);
+    if (watched(options, cases[i].row.name, [&] { return prepare(session, cases[i], running[i]); })) {
       register_case(session, running[i], options);
       any = true;
     }
@@ -149,12 +173,18 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
   Collector collector;
   if (any) benchmark::RunSpecifiedBenchmarks(&collector, std::string("all"));
   benchmark::ClearRegisteredBenchmarks();
+  stop_if_interrupted("the rows that were done are in the log, if one was asked for");
   std::vector<Row> rows;
+  const auto keep = [&](const Row& row) {
+    rows.push_back(row);
+    if (options.log != nullptr) options.log->done(row);
+  };
   for (Running& done : running) {
+    done.row.device_bytes = session.most_device_bytes();
     if (done.row.status == Status::ok) conclude(done, collector.cpu_ms[done.row.name], options);
-    rows.push_back(done.row);
+    keep(done.row);
     if (done.row.status != Status::ok || !done.job.more_rows) continue;
-    for (Row& row : done.job.more_rows(done.row)) rows.push_back(std::move(row));
+    for (const Row& row : done.job.more_rows(done.row)) keep(row);
   }
   return rows;
 }

@@ -72,17 +72,14 @@ inline constexpr StageJob kInject{Stage::inject, inject_job},
     kGather{Stage::gather, gather_job, Pass::gather};
 inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kGather};
 
-/// RSM of a scene's finest cascade, or its G-buffer.
-Job rasterize_rsm_job(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options);
-Job rasterize_camera_job(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options);
-
-/// A part of rasterising, and its job.
-struct RasterJob {
-  Pass pass;
-  Job (*make)(Session& session, std::shared_ptr<const Scene> scene, const RenderOptions& options);
-};
-inline constexpr RasterJob kRasterizeRsm{Pass::rasterize_rsm, rasterize_rsm_job},
-    kRasterizeCamera{Pass::rasterize_camera, rasterize_camera_job};
+/// A part of rasterising a scene as `camera` sees it (empty: its first), lit by the first light that shines there: rasterize_camera, the
+/// camera's G-buffer; rasterize_shadow, that light's shadow maps; rasterize_rsm, its RSMs of all cascades. In
+/// bench/rasterize_job.cpp, as the peer.
+Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
+                  const RenderOptions& options);
+/// The same by OpenGL (bench/baseline/rasterize_gl.hpp).
+Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
+                     Pass pass, const RenderOptions& options);
 
 /// Light volumes of n^3 cells in Volume's host order: the largest difference, over the twin's largest value.
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,

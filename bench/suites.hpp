@@ -46,6 +46,8 @@ Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
 Suite baseline_suite();
+Suite rasterize_suite();
+Suite regression_suite();
 
 /// A basis with all else as the options say or by default.
 Variant plain_variant(const SuiteOptions& options, const std::string& basis);

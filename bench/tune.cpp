@@ -7,6 +7,7 @@
 
 #include "pipeline/stencil.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/progress.hpp"
@@ -100,6 +101,7 @@ std::vector<Tuned> tune(Session& session, const TuneOptions& options) {
     const auto bench = make_bench(session, options.suite, options.suite.settings);
     std::vector<Tuned> found;
     for (const Layout layout : layouts) {
+      stop_if_interrupted("nothing was kept");
       Variant variant = plain_variant(options.suite, basis);
       variant.options.layout = layout;
       if (auto tuned = best_shape(*bench, variant, options, progress)) found.push_back(*tuned);

@@ -4,6 +4,16 @@
 include(CMakePackageConfigHelpers)
 if(CLPV_BUILD_PROGRAM)
   install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The man page and the completion are the program's own word on its options.
+  set(pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
+  add_custom_command(OUTPUT ${pages}/clpv.1 ${pages}/clpv
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
+    COMMAND clpv --man-page > ${pages}/clpv.1
+    COMMAND clpv --bash-completion > ${pages}/clpv
+    DEPENDS clpv VERBATIM)
+  add_custom_target(clpv_pages ALL DEPENDS ${pages}/clpv.1 ${pages}/clpv)
+  install(FILES ${pages}/clpv.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${pages}/clpv DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 endif()
 install(DIRECTORY tools/clpv_draw DESTINATION ${CMAKE_INSTALL_DATADIR}/clpv
         FILES_MATCHING PATTERN "*.py" PATTERN "*.html" PATTERN __pycache__ EXCLUDE)
@@ -12,6 +22,9 @@ install(DIRECTORY include/clpv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MAT
 install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
 configure_package_config_file(cmake/clpvConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
+file(RELATIVE_PATH CLPV_PREFIX_FROM_PC /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(cmake/clpv.pc.in ${CMAKE_CURRENT_BINARY_DIR}/clpv.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/clpv.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/clpvConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/clpvConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 // A triangle seen along an axis of a cascade's grid, 8 x 8 samples to a cell's square: what block.cl and reflect.cl go through.
 //
-// Coordinates: u, v along the axes after the one it is seen along, in samples from half a cell before the grid on; w along
-// it in cells from there. A sample counts as covered up to CLPV_BLOCK_SEAM of a sample outside an edge, so that triangles
+// Coordinates: u, v along the axes after the one it is seen along, in samples from half a cell before the region's base on; w
+// along it in cells from there. A sample counts as covered up to CLPV_BLOCK_SEAM of a sample outside an edge, so that triangles
 // that share one leave no gap, whatever rounding does.
 #ifndef CLPV_BLOCK_TRIANGLE_H
 #define CLPV_BLOCK_TRIANGLE_H
 
 #include "lanes.h"
-#include "shared/grid.h"
+#include "region.h"
 #include "texture.h"
 #include "vec.h"
 
 #define CLPV_BLOCK_SAMPLES 8
 #define CLPV_BLOCK_SEAM (1.0f / 256.0f)
-// Where coordinates are kept, in samples, so that whole numbers hold them: a cascade has 513 x 8 at most.
-#define CLPV_BLOCK_FAR 1e6f
+// Where coordinates are kept, in samples, so that whole numbers hold them: a cascade has 513 x 8 at most, as far from its base
+// as five more.
+#define CLPV_BLOCK_FAR 8e6f
 
 #ifndef CLPV_MASKED
 #define CLPV_MASKED 1  // 0: no material has holes
@@ -35,19 +36,20 @@ typedef struct {
   float at[3][3];  // [axis][corner]
 } BlockCorners;
 
-// False for a triangle that lies beside the grid, half a cell more on every side.
-static inline bool clpv_block_corners(const ClpvGrid grid, __global const ClpvVertex* const corner[3],
+// False for a triangle that lies beside the region, half a cell more on every side.
+static inline bool clpv_block_corners(const ClpvRegion* region, __global const ClpvVertex* const corner[3],
                                       BlockCorners* corners) {
-  const float per_sample = CLPV_BLOCK_SAMPLES / grid.cell;
+  const float per_sample = CLPV_BLOCK_SAMPLES / region->cell;
   bool within = true;
   for (int axis = 0; axis < 3; ++axis) {
     float* at = corners->at[axis];
     for (int i = 0; i < 3; ++i) {
-      at[i] = (corner[i]->position[axis] - grid.origin[axis]) * per_sample + CLPV_BLOCK_SAMPLES / 2;
+      at[i] = (corner[i]->position[axis] - region->base[axis]) * per_sample + CLPV_BLOCK_SAMPLES / 2;
       at[i] = clamp(at[i], -CLPV_BLOCK_FAR, CLPV_BLOCK_FAR);
     }
-    within = within && fmax(at[0], fmax(at[1], at[2])) >= 0.0f &&
-             fmin(at[0], fmin(at[1], at[2])) < (float)(CLPV_BLOCK_SAMPLES * (CLPV_GRID + 1));
+    const int first = region->first[axis] + region->all.low[axis], end = region->first[axis] + region->all.high[axis] + 2;
+    within = within && fmax(at[0], fmax(at[1], at[2])) >= (float)(CLPV_BLOCK_SAMPLES * first) &&
+             fmin(at[0], fmin(at[1], at[2])) < (float)(CLPV_BLOCK_SAMPLES * end);
   }
   return within;
 }
@@ -79,12 +81,17 @@ static inline bool clpv_block_triangle(const BlockCorners* corners, const uint a
   return fabs(area) > 0.0f && fabs(t->w_u) <= CLPV_BLOCK_FAR && fabs(t->w_v) <= CLPV_BLOCK_FAR;
 }
 
-// First and last sample between three coordinates, of those of `cells` cells.
-static inline int2 clpv_block_range(const int cells, const float a, const float b, const float c) {
-  const float first = ceil(fmin(a, fmin(b, c)) - 0.5f - CLPV_BLOCK_SEAM);
-  const float last = floor(fmax(a, fmax(b, c)) - 0.5f + CLPV_BLOCK_SEAM);
-  const float most = (float)(CLPV_BLOCK_SAMPLES * cells - 1);
-  return (int2)((int)fmax(first, 0.0f), (int)fmin(last, most));
+// First and last sample between three coordinates, of those of cells `first` to `last`, counted from the base.
+static inline int2 clpv_block_range(const int first, const int last, const float a, const float b, const float c) {
+  const float from = ceil(fmin(a, fmin(b, c)) - 0.5f - CLPV_BLOCK_SEAM);
+  const float to = floor(fmax(a, fmax(b, c)) - 0.5f + CLPV_BLOCK_SEAM);
+  return (int2)((int)fmax(from, (float)(CLPV_BLOCK_SAMPLES * first)),
+                (int)fmin(to, (float)(CLPV_BLOCK_SAMPLES * (last + 1) - 1)));
+}
+
+// The region's first and last cell along an axis, counted from the base.
+static inline int2 clpv_cells_along(const ClpvRegion* region, const uint axis) {
+  return region->first[axis] + (int2)(region->all.low[axis], region->all.high[axis]);
 }
 
 #define CLPV_EIGHT ((float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f))

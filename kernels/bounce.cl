@@ -89,19 +89,6 @@ CLPV_INLINE void clpv_add_turned(const Tile* tile, CLPV_BUFFER_OUT light, const 
   }
 }
 
-// Turned rows of a tile, as rows along x.
-CLPV_INLINE void clpv_load_turned(CLPV_BUFFER_IN swept, const int x, const int y, const int z, Tile* tile) {
-  for (int b = 0; b < CLPV_X_BINS; ++b) {
-    Tile turned;
-    for (int r = 0; r < CLPV_LANES; ++r) {
-      turned.row[r] = 0.0f;
-      if (x + r < CLPV_GRID)
-        turned.row[r] = CLPV_SWEEP_LOAD(swept + b * CLPV_SWEEP_VOLUME, clpv_sweep_at(x + r, z, y));
-    }
-    tile[b] = clpv_turn(turned);
-  }
-}
-
 // What arrives at row r of a tile, y along the grid.
 CLPV_INLINE Coefficients clpv_arriving_at(const Tile* tile, const int r, CLPV_BUFFER_IN swept, const int x, const int y,
                                           const int z) {
@@ -130,7 +117,7 @@ __kernel void bounce(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_BUFFE
   CLPV_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
   Tile tile[CLPV_X_BINS];
-  clpv_load_turned(swept + first, x, y, z, tile);
+  clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
   for (int r = 0; r < CLPV_LANES; ++r) {
     Swept s = clpv_none();
     if (y + r < CLPV_GRID) {
@@ -165,7 +152,7 @@ __kernel void bounce_send(CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT light) {
 __kernel void bounce_meet(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_OUT in_all) {
   CLPV_TILE
   Tile tile[CLPV_X_BINS];
-  clpv_load_turned(swept + first, x, y, z, tile);
+  clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
   for (int r = 0; r < CLPV_LANES; ++r) {
     if (y + r >= CLPV_GRID) break;
     const Coefficients arriving = clpv_arriving_at(tile, r, swept + first, x, y + r, z);

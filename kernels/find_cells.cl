@@ -4,7 +4,9 @@
 // CLPV_GEOMETRY 0, light: a texel's virtual point light is at p + n s/2, half a cell off its surface, so that the surface
 // does not light itself. CLPV_GEOMETRY 1, blocking: its surfel is at p.
 //
-// From the host: CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis. Blocking is told
+// CLPV_POINTS 1: texels are points that no view sees (emit.cl), at `positions`.
+//
+// From the host: CLPV_GEOMETRY, CLPV_POINTS, CLPV_TRILINEAR, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis. Blocking is told
 // its stride (shared/thinned.h); light takes every texel, as literals tell the compiler, which then loads them side by side.
 #include "cell_keys.h"
 #include "shared/grid.h"
@@ -40,7 +42,12 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 //
 // One work-item a strip of CLPV_STRIP taken texels of a row: CPU devices vectorise the loop (which they do not across
 // work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
-__kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global const float* restrict depths,
+__kernel void find_cells(const ClpvView view, const ClpvGrid grid,
+#if CLPV_POINTS
+                         __global const float* restrict positions,
+#else
+                         __global const float* restrict depths,
+#endif
                          __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
                          const float colour_scale, __global uint* restrict keys, __global float* restrict details
 #if CLPV_GEOMETRY
@@ -59,9 +66,14 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid, __global cons
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
     const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px, i = row * width + column;
-    const float depth = depths[texel];
     const float3 normal = clpv_load_normal(normals, texel);
+#if CLPV_POINTS
+    const float depth = 1.0f;
+    const float3 position = (float3)(positions[4 * texel], positions[4 * texel + 1], positions[4 * texel + 2]);
+#else
+    const float depth = depths[texel];
     const float3 position = clpv_position(view, (float)px, (float)py, depth);
+#endif
     float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
           z = (position.z - grid.origin[2]) * per_metre;
     int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);

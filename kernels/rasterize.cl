@@ -7,11 +7,12 @@
 // Then bin.cl sorts the entries by tile, draw_tiles.cl finds out which triangle each pixel sees, resolve.cl what that
 // looks like.
 //
-// A work-item takes eight triangles side by side. Lists are in no particular order: atomics hand out their places, once
+// A work-item takes eight triangles side by side, of the runs that the host lists as being in sight. Lists are in no particular order: atomics hand out their places, once
 // a work-item. counts[CLPV_LISTED] and so on tell how many there are, beyond what lists hold too: the host then makes
 // them longer and starts again.
 #include "clip.h"
 #include "enter.h"
+#include "shared/region.h"
 
 // Eight triangles of the scene on the screen.
 typedef struct {
@@ -156,11 +157,14 @@ static inline void put_aside(const int8 lanes, const uint8 triangle, volatile __
   }
 }
 
-__kernel void set_up(const ClpvView view, const uint first, const uint count, const uint cull, CLPV_MESH, CLPV_LISTS) {
-  const uint i = get_global_id(0) * CLPV_LANES;
-  if (i >= count) return;
+// `runs`: from the `first` on, `count`; `last`: the scene's number of triangles.
+__kernel void set_up(const ClpvView view, __global const uint* runs, const uint first, const uint count, const uint last,
+                     const uint cull, CLPV_MESH, CLPV_LISTS) {
+  const uint item = get_global_id(0), run = item / (CLPV_RUN / CLPV_LANES);
+  if (run >= count) return;
   const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
-  const uint8 triangle = first + min(i + lane, (uint8)(count - 1));
+  const uint8 number = runs[first + run] * CLPV_RUN + item % (CLPV_RUN / CLPV_LANES) * CLPV_LANES + lane;
+  const uint8 triangle = min(number, (uint8)(last - 1));
   Rows rows;
   gather_rows(triangles, triangle, &rows);
   Vec a, b, c;
@@ -169,7 +173,7 @@ __kernel void set_up(const ClpvView view, const uint first, const uint count, co
   position_of(vertices, as_uint8(CLPV_COLUMN(rows, z)), &c);
   const ViewPoint p = view_point(view, a), q = view_point(view, b), r = view_point(view, c);
   const int8 p_is = where_is(view, p), q_is = where_is(view, q), r_is = where_is(view, r);
-  const int8 there = (i + lane < count) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
+  const int8 there = (number < last) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
   if (none(there)) return;
   const int8 clipped = there & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);
   if (!none(clipped)) put_aside(clipped, triangle, counts, to_clip);

@@ -37,10 +37,10 @@ static inline int clpv_least(const int8 a) {
 }
 static inline int clpv_most(const int8 a) { return -clpv_least(-a); }
 
-// Of the square in column i and row j, `rows` being those that the triangle may cover.
+// Of the square in column i and row j, `rows` being those that the triangle may cover, `cells` those along the axis.
 CLPV_INLINE void clpv_square(const BlockTriangle* t, CLPV_REFLECT_SCENE, const int i, const int j, const int2 rows,
-                             Square* square) {
-  int8 lowest = (int8)(CLPV_GRID), highest = (int8)(-1);
+                             const int2 cells, Square* square) {
+  int8 lowest = (int8)(cells.y + 1), highest = (int8)(-1);
   for (int row = 0; row < CLPV_BLOCK_SAMPLES; ++row) {
     const int v = CLPV_BLOCK_SAMPLES * j + row;
     const float u = (float)(CLPV_BLOCK_SAMPLES * i);
@@ -53,11 +53,11 @@ CLPV_INLINE void clpv_square(const BlockTriangle* t, CLPV_REFLECT_SCENE, const i
     const int8 cell = convert_int8(clpv_block_depth(t, u, (float)v) + 1.0f) - 1;
     square->covered[row] = covered;
     square->cell[row] = cell;
-    lowest = min(lowest, covered ? cell : (int8)(CLPV_GRID));
+    lowest = min(lowest, covered ? cell : (int8)(cells.y + 1));
     highest = max(highest, covered ? cell : (int8)(-1));
   }
-  square->first = max(clpv_least(lowest), 0);
-  square->last = min(clpv_most(highest), CLPV_GRID - 1);
+  square->first = max(clpv_least(lowest), cells.x);
+  square->last = min(clpv_most(highest), cells.y);
 }
 
 // The triangle's albedo in eight points (u, v), each the middle of a row of `across` samples.
@@ -123,35 +123,41 @@ CLPV_INLINE void clpv_add_side(const BlockTriangle* t, CLPV_REFLECT_SCENE, const
   atomic_add(side + CLPV_SIDE_COLOUR + 2, clpv_total(weight * counts, albedo.z));
 }
 
-// The words of a side of cell (i, j, k) counted along u, v and the axis.
-static inline uint clpv_side_word(const uint axis, const int i, const int j, const int k, const uint side) {
+// The words of a side of cell (i, j, k) counted along u, v and the axis from the base, or none where it is not made anew.
+#define CLPV_NO_WORD 0xffffffffu
+static inline uint clpv_side_word(const ClpvRegion* region, const uint axis, const int i, const int j, const int k,
+                                  const uint side) {
   int at[3];
   at[(axis + 1) % 3] = i;
   at[(axis + 2) % 3] = j;
   at[axis] = k;
-  return (uint)((at[2] * CLPV_GRID + at[1]) * CLPV_GRID + at[0]) * (CLPV_SIDES * CLPV_SIDE_WORDS) +
-         (2 * axis + side) * CLPV_SIDE_WORDS;
+  const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
+  if (!clpv_in_region(region, x, y, z)) return CLPV_NO_WORD;
+  return (uint)((z * CLPV_GRID + y) * CLPV_GRID + x) * (CLPV_SIDES * CLPV_SIDE_WORDS) + (2 * axis + side) * CLPV_SIDE_WORDS;
 }
 
-// A triangle seen along an axis, where its side lights and is lit; the grid's first cell at 0.
-CLPV_INLINE void clpv_add_triangle(const BlockTriangle* t, CLPV_REFLECT_SCENE, const uint axis, const uint side,
-                                   const float weight, __global volatile uint* sides) {
-  if (t->farthest < 0.0f || t->nearest >= (float)CLPV_GRID) return;
-  const int2 columns = clpv_block_range(CLPV_GRID, t->u[0], t->u[1], t->u[2]);
-  const int2 rows = clpv_block_range(CLPV_GRID, t->v[0], t->v[1], t->v[2]);
+// A triangle seen along an axis, where its side lights and is lit; the base's first light cell at 0.
+CLPV_INLINE void clpv_add_triangle(const ClpvRegion* region, const BlockTriangle* t, CLPV_REFLECT_SCENE, const uint axis,
+                                   const uint side, const float weight, __global volatile uint* sides) {
+  const int2 cells = clpv_cells_along(region, axis), across = clpv_cells_along(region, (axis + 1) % 3),
+             above = clpv_cells_along(region, (axis + 2) % 3);
+  if (t->farthest < (float)cells.x || t->nearest >= (float)(cells.y + 1)) return;
+  const int2 columns = clpv_block_range(across.x, across.y, t->u[0], t->u[1], t->u[2]);
+  const int2 rows = clpv_block_range(above.x, above.y, t->v[0], t->v[1], t->v[2]);
   if (columns.x > columns.y) return;
   for (int j = rows.x / CLPV_BLOCK_SAMPLES; rows.x <= rows.y && j <= rows.y / CLPV_BLOCK_SAMPLES; ++j) {
     for (int i = columns.x / CLPV_BLOCK_SAMPLES; i <= columns.y / CLPV_BLOCK_SAMPLES; ++i) {
       Square square;
-      clpv_square(t, CLPV_PASS_SCENE, i, j, rows, &square);
+      clpv_square(t, CLPV_PASS_SCENE, i, j, rows, cells, &square);
       for (int k = square.first; k <= square.last; ++k) {
-        clpv_add_side(t, CLPV_PASS_SCENE, &square, i, j, k, weight, sides + clpv_side_word(axis, i, j, k, side));
+        const uint word = clpv_side_word(region, axis, i, j, k, side);
+        if (word != CLPV_NO_WORD) clpv_add_side(t, CLPV_PASS_SCENE, &square, i, j, k, weight, sides + word);
       }
     }
   }
 }
 
-// block_triangle.h counts from half a cell before the grid: moved to where the side that faces up the axis, or down it, is lit.
+// block_triangle.h counts from half a cell before the base: moved to where the side that faces up the axis, or down it, is lit.
 static inline BlockTriangle clpv_lit_at(const BlockTriangle* from, const float3 normal) {
   BlockTriangle t = *from;
   const float u = rint(0.5f * CLPV_BLOCK_SAMPLES * normal.x) - CLPV_BLOCK_SAMPLES / 2;
@@ -167,18 +173,17 @@ static inline BlockTriangle clpv_lit_at(const BlockTriangle* from, const float3 
   return t;
 }
 
-// A work-item is a triangle; `first`: of those of the scene, the first of this launch.
-__kernel void reflect_triangles(const ClpvGrid grid, const uint first, const uint count,
-                                __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                                __global const ClpvMaterial* materials, __global const float4* textures,
+// A work-item is a triangle.
+__kernel void reflect_triangles(const ClpvRegion region, CLPV_TRIANGLES, __global const float4* textures,
                                 __global const uint* texels, __global uint* sides) {
-  if (get_global_id(0) >= count) return;
-  const ClpvTriangle triangle = triangles[first + get_global_id(0)];
+  const uint number = CLPV_TRIANGLE_NUMBER;
+  if (number >= triangle_count) return;
+  const ClpvTriangle triangle = triangles[number];
   __global const ClpvVertex* const corner[3] = {vertices + triangle.vertex[0], vertices + triangle.vertex[1],
                                                 vertices + triangle.vertex[2]};
   __global const ClpvMaterial* material = materials + triangle.material;
   BlockCorners corners;
-  if (!clpv_block_corners(grid, corner, &corners)) return;
+  if (!clpv_block_corners(&region, corner, &corners)) return;
   for (uint axis = 0; axis < 3; ++axis) {
     BlockTriangle t;
     if (!clpv_block_triangle(&corners, axis, &t)) continue;
@@ -187,7 +192,7 @@ __kernel void reflect_triangles(const ClpvGrid grid, const uint first, const uin
     const float3 normal = (float3)(-slope_u, -slope_v, 1.0f) / length;  // along u, v and the axis
     const float weight = 1.0f / (fabs(normal.x) + fabs(normal.y) + normal.z);
     const BlockTriangle up = clpv_lit_at(&t, normal), down = clpv_lit_at(&t, -normal);
-    clpv_add_triangle(&up, CLPV_PASS_SCENE, axis, 0, weight, sides);
-    clpv_add_triangle(&down, CLPV_PASS_SCENE, axis, 1, weight, sides);
+    clpv_add_triangle(&region, &up, CLPV_PASS_SCENE, axis, 0, weight, sides);
+    clpv_add_triangle(&region, &down, CLPV_PASS_SCENE, axis, 1, weight, sides);
   }
 }

@@ -13,11 +13,10 @@
 // leave no gap. What lies in the very plane of c hides nothing from it.
 //
 // Triangles of masked materials hide nothing: holes are finer than what is asked here.
-#include "shared/grid.h"
-#include "shared/mesh.h"
+#include "region.h"
 
 #define CLPV_SEE_SEAM 1e-3f     // [cells]
-#define CLPV_SEE_FAR 1e4f       // [cells] where coordinates are kept
+#define CLPV_SEE_FAR 1e6f       // [cells] where coordinates are kept
 #define CLPV_SEE_FIRST 0.125f   // of the points along an axis, the first one
 #define CLPV_SEE_LAST 0.875f
 #define CLPV_SEE_LAYERS 4
@@ -91,33 +90,34 @@ static inline void clpv_see_cube(const float3 v0, const float3 v1, const float3 
   }
 }
 
-// In cells from the first cell's centre.
-static inline float3 clpv_see_at(const ClpvGrid grid, __global const ClpvVertex* vertex) {
+// In cells from the centre of the region's cell 0.
+static inline float3 clpv_see_at(const ClpvRegion* region, __global const ClpvVertex* vertex) {
   const float3 position = (float3)(vertex->position[0], vertex->position[1], vertex->position[2]);
-  const float3 origin = (float3)(grid.origin[0], grid.origin[1], grid.origin[2]);
-  return clamp((position - origin) / grid.cell - 0.5f, -CLPV_SEE_FAR, CLPV_SEE_FAR);
+  const float3 base = (float3)(region->base[0], region->base[1], region->base[2]);
+  return clamp((position - base) / region->cell - 0.5f, -CLPV_SEE_FAR, CLPV_SEE_FAR);
 }
 
-// A work-item is a triangle; `first`: of those of the scene, the first of this launch. `cascade`: whose bytes these are.
-__kernel void see_triangles(const ClpvGrid grid, const uint first, const uint count,
-                            __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                            __global const ClpvMaterial* materials, __global uint* hidden,
-                            const uint cascade) {
-  if (get_global_id(0) >= count) return;
-  const ClpvTriangle triangle = triangles[first + get_global_id(0)];
+// A work-item is a triangle; `cascade`: whose bytes these are.
+__kernel void see_triangles(const ClpvRegion region, CLPV_TRIANGLES, __global uint* hidden, const uint cascade) {
+  const uint number = CLPV_TRIANGLE_NUMBER;
+  if (number >= triangle_count) return;
+  const ClpvTriangle triangle = triangles[number];
   if ((materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) return;
-  const float3 v0 = clpv_see_at(grid, vertices + triangle.vertex[0]);
-  const float3 v1 = clpv_see_at(grid, vertices + triangle.vertex[1]);
-  const float3 v2 = clpv_see_at(grid, vertices + triangle.vertex[2]);
+  const float3 v0 = clpv_see_at(&region, vertices + triangle.vertex[0]);
+  const float3 v1 = clpv_see_at(&region, vertices + triangle.vertex[1]);
+  const float3 v2 = clpv_see_at(&region, vertices + triangle.vertex[2]);
   const float3 normal = cross(v1 - v0, v2 - v0);
-  const int3 low = max(convert_int3(floor(fmin(v0, fmin(v1, v2)))), 0);
-  const int3 high = min(convert_int3(floor(fmax(v0, fmax(v1, v2)))), CLPV_GRID - 2);
+  const int3 first = (int3)(region.first[0], region.first[1], region.first[2]);
+  const int3 least = (int3)(region.all.low[0], region.all.low[1], region.all.low[2]);
+  const int3 most = (int3)(region.all.high[0], region.all.high[1], region.all.high[2]);
+  const int3 low = max(convert_int3(floor(fmin(v0, fmin(v1, v2)))) - first, least);
+  const int3 high = min(convert_int3(floor(fmax(v0, fmax(v1, v2)))) - first, most);
   const float half_slab = 0.5f * clpv_breadth(normal);
   for (int z = low.z; z <= high.z; ++z) {
     for (int y = low.y; y <= high.y; ++y) {
       for (int x = low.x; x <= high.x; ++x) {
-        const float3 cube = (float3)((float)x, (float)y, (float)z);
-        if (fabs(dot(normal, cube + 0.5f - v0)) > half_slab) continue;
+        const float3 cube = convert_float3((int3)(x, y, z) + first);
+        if (fabs(dot(normal, cube + 0.5f - v0)) > half_slab || !clpv_in_region(&region, x, y, z)) continue;
         clpv_see_cube(v0 - cube, v1 - cube, v2 - cube, normal,
                       hidden + 16 * (((size_t)cascade * CLPV_GRID + z) * CLPV_GRID + y) * CLPV_GRID + 16 * x);
       }

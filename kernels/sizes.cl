@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Tells how the device lays out the structs that it shares with the host: sizes and places, in bytes.
+#include "shared/emit.h"
 #include "shared/fields.h"
 #include "shared/grid.h"
 #include "shared/light.h"
 #include "shared/mesh.h"
+#include "shared/region.h"
 #include "shared/sweep.h"
 #include "shared/view.h"
 
@@ -15,10 +17,12 @@ CLPV_ASSERT_SIZE(ClpvVertex, CLPV_SIZEOF_VERTEX)
 CLPV_ASSERT_SIZE(ClpvTriangle, CLPV_SIZEOF_TRIANGLE)
 CLPV_ASSERT_SIZE(ClpvMaterial, CLPV_SIZEOF_MATERIAL)
 CLPV_ASSERT_SIZE(ClpvTexture, CLPV_SIZEOF_TEXTURE)
+CLPV_ASSERT_SIZE(ClpvEmitter, CLPV_SIZEOF_EMITTER)
 CLPV_ASSERT_SIZE(ClpvView, CLPV_SIZEOF_VIEW)
 CLPV_ASSERT_SIZE(ClpvSweepBin, CLPV_SIZEOF_SWEEP_BIN)
 CLPV_ASSERT_SIZE(ClpvSweepDirection, CLPV_SIZEOF_SWEEP_DIRECTION)
 CLPV_ASSERT_SIZE(ClpvSweepShell, CLPV_SIZEOF_SWEEP_SHELL)
+CLPV_ASSERT_SIZE(ClpvRegion, CLPV_SIZEOF_REGION)
 
 // `bytes`: one entry a SIZE and OFFSET of CLPV_EACH_SHARED, in its order. One work-item.
 __kernel void sizes(__global uint* bytes) {

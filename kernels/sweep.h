@@ -70,4 +70,16 @@ CLPV_INLINE Tile clpv_turn(const Tile a) { return a; }
 #define CLPV_WITHIN(x, value) (value)
 #endif
 
+// The tile of cells from (x, y, z) on of each of `volumes` across x, as rows along x.
+CLPV_INLINE void clpv_load_tiles(CLPV_BUFFER_IN first, const int volumes, const int x, const int y, const int z, Tile* tiles) {
+  for (int b = 0; b < volumes; ++b) {
+    Tile turned;
+    for (int r = 0; r < CLPV_LANES; ++r) {
+      turned.row[r] = 0.0f;
+      if (x + r < CLPV_GRID) turned.row[r] = CLPV_SWEEP_LOAD(first + b * CLPV_SWEEP_VOLUME, clpv_sweep_at(x + r, z, y));
+    }
+    tiles[b] = clpv_turn(turned);
+  }
+}
+
 #endif

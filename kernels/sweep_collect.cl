@@ -15,15 +15,7 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   CLPV_BUFFER_IN in = sums + channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
   Tile tile[CLPV_X_BINS];
-  for (int b = 0; b < CLPV_X_BINS; ++b) {
-    Tile turned;
-    for (int r = 0; r < CLPV_LANES; ++r) {
-      turned.row[r] = 0.0f;
-      if (x + r < CLPV_GRID)
-        turned.row[r] = CLPV_SWEEP_LOAD(in + b * CLPV_SWEEP_VOLUME, clpv_sweep_at(x + r, z, y));
-    }
-    tile[b] = clpv_turn(turned);
-  }
+  clpv_load_tiles(in, CLPV_X_BINS, x, y, z, tile);
   for (int r = 0; r < CLPV_LANES; ++r) {
     if (y + r >= CLPV_GRID) break;
     const int across_z = clpv_sweep_at(z, y + r, x), across_y = clpv_sweep_at(y + r, z, x);

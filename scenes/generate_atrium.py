@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes atrium.glb and atrium.json beside itself, a two-storey colonnade round an open court, hung with curtains; and
-atrium_living.gltf and .json, the same for ten seconds of a day.
+"""Writes atrium.glb and atrium.json beside itself, a two-storey colonnade round an open court, hung with curtains;
+atrium_overcast.json, the same without a sun; and atrium_living.gltf and .json, the same for ten seconds of a day.
 
 Python's standard library only; the same bytes every time. `generate_atrium.py [FOLDER]` writes into FOLDER instead.
 
@@ -334,6 +334,11 @@ def living_scene_file():
     }
 
 
+def overcast_scene_file():
+    """No sun, and a sky that is the same all over: 8 pi lux of white on open ground."""
+    return {**scene_file(), "exposure": 0.6, "sky": {"radiance": [7.2, 8.0, 9.2], "ground": [0, 0, 0]}, "lights": []}
+
+
 def write_scene(folder, name, scene):
     with open(os.path.join(folder, name), "w", encoding="utf-8", newline="\n") as file:
         json.dump(scene, file, indent=2)
@@ -352,6 +357,7 @@ def main(folder):
     place_furniture(document)
     glb = document.write(os.path.join(folder, "atrium.glb"))
     write_scene(folder, "atrium.json", scene_file())
+    write_scene(folder, "atrium_overcast.json", overcast_scene_file())
     move_curtain(document)
     throw_ball(document)
     document.write_beside(os.path.join(folder, "atrium_living.gltf"), "atrium.glb", glb)

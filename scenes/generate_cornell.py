@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes cornell.glb and cornell.json beside itself: the Cornell box, by its published corners.
+"""Writes cornell and cornell_lamp, .glb and .json, beside itself: the Cornell box, by its published corners.
 
 Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes into FOLDER instead.
 
 Millimetres, as published (Cornell University Program of Computer Graphics, "The Cornell Box: Data"): the open front
 is at z = 0, the red wall at x = 552.8, the green one at x = 0. The reflectances are the published spectra's usual
-linear RGB. The ceiling's lamp is left out: the light comes through the open front, from two sides, because a single
-direction could reach only one of the two coloured walls. Its walls get a thickness (not published: they have none
+linear RGB. In `cornell` the ceiling's lamp is left out: the light comes through the open front, from two sides, because a
+single direction could reach only one of the two coloured walls. `cornell_lamp` has the lamp, and no other light. Its walls get a thickness (not published: they have none
 there), since light falls on them from outside too.
 """
 import json
@@ -28,6 +28,13 @@ ROOM = [
     ("red", [(552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0)]),
 ]
 
+CEILING = ROOM[1][1]
+LAMP = [(343, 548.8, 227), (343, 548.8, 332), (213, 548.8, 332), (213, 548.8, 227)]
+LAMP_REFLECTANCE = (0.78, 0.78, 0.78)
+# The published spectrum, 0 at 400 nm, 8 at 500, 15.6 at 600 and 18.4 at 700, by the CIE's 1931 observer as linear sRGB, its
+# white that of an even spectrum, as for the reflectances.
+LAMP_RADIANCE = (17.2, 11.5, 3.0)
+
 WALL = 80  # thickness: over a cell of the finest cascade
 
 # The blocks' footprints, counter-clockwise seen from above (from +y, x to the right and z down), and heights.
@@ -37,10 +44,16 @@ BLOCKS = {
 }
 
 
-def room():
+def room(lamp):
     mesh = Mesh()
     for material, corners in ROOM:
-        mesh.quad(material, corners)
+        if lamp and corners is CEILING:
+            for k in range(4):
+                mesh.quad(material, [CEILING[k], CEILING[(k + 1) % 4], LAMP[(k + 1) % 4], LAMP[k]])
+        else:
+            mesh.quad(material, corners)
+    if lamp:
+        mesh.quad("lamp", LAMP)
     return mesh
 
 
@@ -65,15 +78,22 @@ def block(footprint, height):
     return mesh
 
 
-def scene_file():
+def scene_file(lamp):
     front = {"eye": [278, 273, -180], "target": [278, 273, 280], "vertical_fov_degrees": 75}
+    cameras = [
+        {"name": "front", **front},
+        {"name": "published", "eye": [278, 273, -800], "target": [278, 273, 0], "vertical_fov_degrees": 39.3},
+    ]
+    cascades = {"count": 2, "size_metres": 2.0}
+    if lamp:
+        return {"model": "cornell_lamp.glb", "metres_per_unit": 0.001, "exposure": 2.0, "cameras": cameras,
+                "lights": [], "cascades": cascades}
     return {
         "model": "cornell.glb",
         "metres_per_unit": 0.001,
         "exposure": 0.0,
         "cameras": [
-            {"name": "front", **front},
-            {"name": "published", "eye": [278, 273, -800], "target": [278, 273, 0], "vertical_fov_degrees": 39.3},
+            *cameras,
             {"name": "red", **front, "light": "onto red"},
             {"name": "green", **front, "light": "onto green"},
         ],
@@ -81,22 +101,29 @@ def scene_file():
             {"name": "onto red", "kind": "directional", "direction": [0.5, -0.6, 0.6], "illuminance_lux": 4.0},
             {"name": "onto green", "kind": "directional", "direction": [-0.5, -0.6, 0.6], "illuminance_lux": 4.0},
         ],
-        "cascades": {"count": 2, "size_metres": 2.0},
+        "cascades": cascades,
     }
 
 
-def main(folder):
+def write(folder, stem, lamp):
     document = Document("clpv scenes/generate_cornell.py")
     for name, colour in (("white", WHITE), ("red", RED), ("green", GREEN)):
         document.material(name, colour)
-    document.node("room", document.mesh("room", room()))
+    if lamp:
+        document.material("lamp", LAMP_REFLECTANCE, radiance=LAMP_RADIANCE)
+    document.node("room", document.mesh("room", room(lamp)))
     document.node("outside", document.mesh("outside", outside()))
     for name, (footprint, height) in BLOCKS.items():
         document.node(name, document.mesh(name, block(footprint, height)))
-    document.write(os.path.join(folder, "cornell.glb"))
-    with open(os.path.join(folder, "cornell.json"), "w", encoding="utf-8", newline="\n") as file:
-        json.dump(scene_file(), file, indent=2)
+    document.write(os.path.join(folder, stem + ".glb"))
+    with open(os.path.join(folder, stem + ".json"), "w", encoding="utf-8", newline="\n") as file:
+        json.dump(scene_file(lamp), file, indent=2)
         file.write("\n")
+
+
+def main(folder):
+    write(folder, "cornell", lamp=False)
+    write(folder, "cornell_lamp", lamp=True)
 
 
 if __name__ == "__main__":

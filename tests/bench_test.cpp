@@ -220,7 +220,7 @@ std::vector<Rule> row_schema() {
        {"name", "run_name", "suite", "stage", "basis", "layout", "storage", "state", "lobe", "transport"})
     rules.push_back(rule::text(row + key).must());
   rules.push_back(rule::text(row + "run_type", {"iteration"}).must());
-  rules.push_back(rule::text(row + "status", {"ok", "unsupported", "wrong"}).must());
+  rules.push_back(rule::text(row + "status", {"ok", "unsupported", "wrong", "timed out"}).must());
   rules.push_back(rule::text(row + "time_unit", {"ms"}).must());
   rules.push_back(rule::text(row + "ceiling", {"fma", "bandwidth", "launch"}).must());
   rules.push_back(rule::flag(row + "occlusion").must());
@@ -228,9 +228,26 @@ std::vector<Rule> row_schema() {
   rules.push_back(rule::list(row + "samples_ms", 3, 3).must());
   for (const char* key : {"n", "grid", "iterations", "repetitions", "threads", "family_index"})
     rules.push_back(rule::integer(row + key, 0, 1e6).must());
-  for (const char* key : {"min", "median", "p95", "max", "mad", "real_time", "cpu_time", "wall_ms",
-                          "first_launch_ms", "build_ms", "flops", "bytes", "reads_per_cell",
-                          "writes_per_cell", "gflops", "gbps", "max_rel_error", "tolerance"})
+  for (const char* key : {"min",
+                          "median",
+                          "p95",
+                          "max",
+                          "mad",
+                          "real_time",
+                          "cpu_time",
+                          "wall_ms",
+                          "first_launch_ms",
+                          "build_ms",
+                          "device_bytes",
+                          "host_bytes",
+                          "flops",
+                          "bytes",
+                          "reads_per_cell",
+                          "writes_per_cell",
+                          "gflops",
+                          "gbps",
+                          "max_rel_error",
+                          "tolerance"})
     rules.push_back(rule::number(row + key, 0, 1e15).must());
   rules.push_back(rule::number(row + "ceiling_share", 0, 2).must());
   return rules;
@@ -335,6 +352,37 @@ TEST(BenchProgram, PlotDrawsTheRoofline) {
   ASSERT_EQ(out.exit_code, 0) << out.err;
   EXPECT_THAT(test::read_file(folder.path() / "roofline.svg"), HasSubstr("<svg"));
   EXPECT_THAT(test::read_file(folder.path() / "roofline.png"), HasSubstr("PNG"));
+}
+
+/// A device whose every kernel hangs, after so many that do not.
+TEST(BenchProgram, ARowThatHangsIsTimedOutAndTheRestIsTold) {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "rows.jsonl").string();
+  const auto out =
+      test::run("CLPV_SHIM=clFinish:40:hang LD_PRELOAD=" CLPV_OPENCL_SHIM " timeout 120 " + kProgram +
+                " bench ceilings --repetitions 20 --filter launch --row-limit 20 --format json --log " + log);
+  EXPECT_EQ(out.exit_code, 1) << out.err;
+  EXPECT_THAT(out.err, HasSubstr("the run ends with it"));
+  const nlohmann::json rows = nlohmann::json::parse(out.out)["benchmarks"];
+  EXPECT_EQ(rows.back()["status"], "timed out");
+  EXPECT_THAT(rows.back()["name"].get<std::string>(), HasSubstr("launch"));
+  EXPECT_THAT(test::read_file(log), HasSubstr("\"status\":\"timed out\""));
+}
+
+TEST(BenchProgram, RegressionTellsBuildsAsRowsAndSpeaksToActions) {
+  const auto out = test::run(kProgram +
+                             " bench regression --basis sh2 --repetitions 2"
+                             " --filter 'propagate/sh2/soa/float$' --format github-action");
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const nlohmann::json rows = nlohmann::json::parse(out.out);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0]["name"], "propagate/sh2/soa/float");
+  EXPECT_EQ(rows[1]["name"], "build/propagate/sh2/soa/float");
+  for (const auto& row : rows) {
+    EXPECT_EQ(row["unit"], "ms");
+    EXPECT_GT(row["value"], 0);
+  }
+  EXPECT_GT(rows[1]["value"], rows[0]["value"]) << "a build takes longer than a launch";
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct Shares {
 Shares blocked(const Scene& scene) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  SceneBlocker(test_session(), buffers, kGrid, {}).block(kCells, geometry);
+  SceneBlocker(test_session(), buffers, kGrid, 1, {}).block(0, kCells, geometry);
   Shares shares{geometry.read(test_session())};
   const reference::Blocked twin = reference::block(scene, kCells);
   for (std::size_t i = 0; i < shares.values.size(); ++i) {
@@ -115,7 +115,7 @@ TEST(Block, AwkwardTriangles) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(sum(blocked(scene), axis), 0);
   add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, material);  // the horizon
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
-  SceneBlocker(test_session(), upload_scene(test_session(), scene), kGrid, {}).block(kCells, geometry);
+  SceneBlocker(test_session(), upload_scene(test_session(), scene), kGrid, 1, {}).block(0, kCells, geometry);
   EXPECT_EQ(sum({geometry.read(test_session())}, 1), 25);
 }
 

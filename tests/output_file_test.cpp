@@ -92,6 +92,14 @@ TEST_F(OutputFile, FollowsASymbolicLink) {
   EXPECT_EQ(read_file(folder_ / "target"), "new");
 }
 
+// A link to nowhere was replaced by the file.
+TEST_F(OutputFile, FollowsASymbolicLinkToWhatIsNotThereYet) {
+  fs::create_symlink("target", folder_ / "link");
+  write_file(folder_ / "link", std::string_view("new"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read_file(folder_ / "target"), "new");
+}
+
 TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
   const fs::path path = folder_ / "out.txt";
   write_file(path, std::string_view("old"));
@@ -143,6 +151,29 @@ TEST_F(OutputFile, NpyRefusesWhatItCannotHold) {
   std::string huge = good;
   huge.replace(good.find("(4,), }             "), 20, "(999999999, 9999), }");
   refused(huge);
+}
+
+// Found by fuzzing: memcpy from nowhere, though of no bytes, is undefined.
+TEST_F(OutputFile, NpyOfNothingIsAnArrayOfNothing) {
+  const std::size_t shape[] = {0, 3};
+  write_npy(folder_ / "none.npy", {}, shape);
+  const NpyArray array = read_npy(folder_ / "none.npy");
+  EXPECT_TRUE(array.values.empty());
+  EXPECT_EQ(array.shape, std::vector<std::size_t>({0, 3}));
+}
+
+// The standard library's regular expressions recurse once a character.
+TEST_F(OutputFile, NpyHeadersAsLongAsMayBeAreRead) {
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (",
+              file("\x93NUMPY\x01\x00\xff\xff", 10);
+  while (header.size() < 65500) header += "1, ";
+  header += "1,), }";
+  header.resize(65535, ' ');
+  const float one = 1;
+  file += header;
+  file.append(reinterpret_cast<const char*>(&one), sizeof one);
+  write_file(folder_ / "long.npy", file);
+  EXPECT_EQ(read_npy(folder_ / "long.npy").values, std::vector<float>{1});
 }
 
 TEST_F(OutputFile, VtiDescribesTheGridAndItsBytes) {

@@ -3,10 +3,12 @@
 // their cards say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 
 #include "pathtracer/ray_scene.hpp"
+#include "scene/emission.hpp"
 #include "scene/load.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -88,7 +90,7 @@ TEST_P(Generator, WritesTheFilesThatAreThere) {
         << file << " differs from the committed one";
     ++files;
   }
-  EXPECT_EQ(files, name == "atrium" ? 4 : 2) << "a model and a scene file each";
+  EXPECT_EQ(files, name == "atrium" ? 5 : 4) << "models and scene files";
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
@@ -192,6 +194,27 @@ TEST(Cornell, HasThePublishedSizeAndItsLightsReachBothWalls) {
   // The published camera looks along +z with y up: x grows to its left, where the red wall is.
   const glm::vec3 right = glm::cross(scene.cameras[1].forward, scene.cameras[1].up);
   EXPECT_LT(right.x, -0.99f);
+}
+
+TEST(CornellLamp, HasThePublishedLampInItsCeiling) {
+  const Scene scene = load_scene(kScenes / "cornell_lamp.json");
+  EXPECT_EQ(scene.triangles.size(), 48u - 2 + 8 + 2);
+  EXPECT_TRUE(scene.notes.empty()) << scene.notes[0];
+  EXPECT_TRUE(scene.lights.empty());
+  EXPECT_EQ(count_bad_triangles(scene), 0);
+  const std::vector<std::uint32_t> lamp = emissive_triangles(scene);
+  ASSERT_EQ(lamp.size(), 2u);
+  EXPECT_NEAR(most_emitted(scene, lamp, kFar), M_PI * 17.2 * 0.130 * 0.105, 1e-4);
+  const RayScene rays(scene);
+  for (int i = 0; i < 40;
+       ++i) {  // up from the floor: the ceiling has no gap, and the lamp is where it should be
+    const glm::vec3 from(0.02f + 0.013f * static_cast<float>(i), 0.4f, 0.28f);
+    const auto hit = rays.intersect(from, {0, 1, 0}, 0, kFar, Faces::as_seen);
+    ASSERT_TRUE(hit) << i;
+    EXPECT_NEAR(hit->position.y, 0.5488f, 1e-6f) << i;
+    const bool within = from.x > 0.213f && from.x < 0.343f;
+    EXPECT_EQ(std::ranges::count(lamp, hit->point.triangle), within ? 1 : 0) << i;
+  }
 }
 
 /// The least corner of what moves of a scene, and the greatest.

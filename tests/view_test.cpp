@@ -170,6 +170,31 @@ TEST(View, PointViewsSeeEveryDirectionOnce) {
   }
 }
 
+TEST(View, BoxesAreOutOfSightWhereNothingOfThemIsOnTheScreen) {
+  std::vector<ClpvView> views = {camera_view({}, 64, 32)};
+  const auto six = point_views(point_light({1, 2, 3}), kSize, kBounds);
+  views.insert(views.end(), six.begin(), six.end());
+  views.push_back(shadow_views(directional_light({0.3f, -0.8f, 0.2f}), kBounds, kSize)[0]);
+  int left_out = 0, seen = 0;
+  for (const ClpvView& view : views) {
+    for (const glm::vec3& direction : directions(300)) {
+      for (const float size : {0.1f, 2.0f}) {
+        const glm::vec3 middle = 7.0f * direction;
+        const Bounds box{middle - size, middle + size};
+        const bool may_be = may_be_in_sight(view, box);
+        left_out += may_be ? 0 : 1;
+        for (const glm::dvec3& corner : corners(glm::dvec3(box.lower), glm::dvec3(box.upper))) {
+          const bool on = on_screen(view, corner) && project(view, corner).depth < view.far_depth;
+          seen += on ? 1 : 0;
+          EXPECT_TRUE(may_be || !on);
+        }
+      }
+    }
+  }
+  EXPECT_GT(left_out, 1000);
+  EXPECT_GT(seen, 1000);
+}
+
 TEST(View, RangeLimitsHowFarALightLooks) {
   ClpvLight light = point_light({1, 2, 3});
   EXPECT_GT(point_views(light, kSize, kBounds)[0].far_depth, 20);  // the farthest corner of the scene

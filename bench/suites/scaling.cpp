@@ -68,14 +68,14 @@ std::vector<Case> steps(const std::shared_ptr<Bench>& bench, const SuiteOptions&
 }
 
 /// A row for rasterising alone: no basis, no volumes.
-Case raster_case(Session& session, std::shared_ptr<const Scene> scene, const RasterJob& job,
+Case raster_case(Session& session, std::shared_ptr<const Scene> scene, Pass pass,
                  const RenderOptions& settings, const std::string& axis, int value) {
   Case result;
   Row& row = result.row;
-  row.suite = "scaling", row.stage = row.name = name_of(job.pass);
+  row.suite = "scaling", row.stage = row.name = name_of(pass);
   place(row, axis, value);
-  result.make = [&session, scene = std::move(scene), make = job.make, settings] {
-    return make(session, scene, settings);
+  result.make = [&session, scene = std::move(scene), pass, settings] {
+    return rasterize_job(session, scene, {}, pass, settings);
   };
   return result;
 }
@@ -90,18 +90,20 @@ std::vector<Case> rsms(Session& session, const SuiteOptions& options, const std:
     Case made = stage_at(bench, kInject, plain_variant(options, basis), "rsm", size);
     made.make = [bench, make = std::move(made.make)] { return make(); };
     cases.push_back(std::move(made));
-    cases.push_back(raster_case(session, scene, kRasterizeRsm, settings, "rsm", size));
+    cases.push_back(raster_case(session, scene, Pass::rasterize_rsm, settings, "rsm", size));
   }
   return cases;
 }
 
 std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
   std::vector<Case> cases;
+  RenderOptions settings = options.settings;
+  settings.cascades = 1;
   for (const int count : {1000, 4000, 16000, 64000, 256000}) {
     const auto hall = std::make_shared<const Scene>(make_hall(count));
-    for (const RasterJob& job : {kRasterizeRsm, kRasterizeCamera}) {
-      cases.push_back(raster_case(session, hall, job, options.settings, "triangles",
-                                  static_cast<int>(hall->triangles.size())));
+    for (const Pass pass : {Pass::rasterize_rsm, Pass::rasterize_camera}) {
+      cases.push_back(
+          raster_case(session, hall, pass, settings, "triangles", static_cast<int>(hall->triangles.size())));
     }
   }
   return cases;

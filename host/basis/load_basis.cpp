@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 namespace {
@@ -24,9 +24,10 @@ json read_json(const std::string& path) {
     throw Error(ExitCode::bad_input, "{}: {} bytes; a file of centres has at most {}", path, bytes,
                 kMostBytes);
   }
-  std::ifstream in(path, std::ios::binary);
+  const auto text = file_bytes(path, kMostBytes);
+  if (!text) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
   try {
-    return json::parse(in);
+    return json::parse(*text);
   } catch (const json::exception& error) {
     throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
   }

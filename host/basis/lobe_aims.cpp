@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "basis/clamped_cosine.hpp"
 #include "basis/transport.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 namespace {
@@ -36,10 +36,10 @@ WeightedDirection weighted_direction(const json& entry, const std::string& path,
 }
 
 json parsed(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
+  const auto text = file_bytes(path);
+  if (!text) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
   try {
-    return json::parse(in);
+    return json::parse(*text);
   } catch (const json::exception& error) {
     throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
   }

@@ -87,6 +87,21 @@ std::vector<SweepBin> sweep_bins(int parts) {
   return bins;
 }
 
+SweepPart part_along(const glm::dvec3& w, int parts) {
+  const glm::dvec3 size = glm::abs(w);
+  const int n = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+  const int u = (n + 1) % 3, v = (n + 2) % 3, face = 2 * n + (w[n] < 0 ? 1 : 0);
+  const auto lines = [&](int axis) {  // of those inside the bin, how many lie before w
+    int before = 0;
+    while (before + 1 < parts &&
+           size[axis] >= std::tan(std::numbers::pi / 4 * (before + 1) / parts) * size[n])
+      ++before;
+    return before;
+  };
+  const int bin = face * kSide * kSide + (w[v] < 0 ? 0 : kSide) + (w[u] < 0 ? 0 : 1);
+  return {bin, lines(v) * parts + lines(u)};
+}
+
 int coarser_part(int part, int parts, int coarser_parts) {
   const auto along = [&](int i) { return (2 * i + 1) * coarser_parts / (2 * parts); };
   return along(part / parts) * coarser_parts + along(part % parts);
@@ -138,6 +153,13 @@ Matrix swept_projection() {
     }
   }
   return projection;
+}
+
+void close_diagonals(OperatorTransport& ways, double power) {
+  for (auto& way : ways.neighbours) {
+    const double longer = std::pow(glm::length(glm::dvec3(way.offset)), power);
+    for (double& weight : way.blocked_by) weight *= longer;
+  }
 }
 
 OperatorTransport sweep_ways() {

@@ -39,6 +39,12 @@ inline constexpr int kMostSweepParts = 4;
 /// Bins in the order of `bins24`. `parts`: 1 to kMostSweepParts, for 24, 96, 216 or 384 directions.
 std::vector<SweepBin> sweep_bins(int parts);
 
+/// The bin that a unit vector w lies in, and which of its parts^2 parts.
+struct SweepPart {
+  int bin, part;
+};
+SweepPart part_along(const glm::dvec3& w, int parts);
+
 /// Which of `coarser_parts`^2 parts of a bin a part of `parts`^2 lies in, or mostly.
 int coarser_part(int part, int parts, int coarser_parts);
 
@@ -51,6 +57,9 @@ std::unique_ptr<Basis> swept_basis();
 
 /// 9 x 24: the projection on them of light that is the same all over each bin.
 Matrix swept_projection();
+
+/// What blocks along diagonal ways grows by their length to that power: by 1 a wall that fills its faces lets nothing through.
+void close_diagonals(OperatorTransport& ways, double power);
 
 /// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them: an operator transport without weights.
 OperatorTransport sweep_ways();

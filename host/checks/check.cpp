@@ -9,6 +9,8 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
       return check_sizes(session);
     case Stage::rasterize:
       return check_rasterize(session);
+    case Stage::emit:
+      return check_emit(session);
     case Stage::inject:
       return check_inject(session, scope);
     case Stage::block:

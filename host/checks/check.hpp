@@ -44,6 +44,7 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 // One a stage, in checks/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device, but for building kernels.
 CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
 CheckResults check_rasterize(Session& session);
+CheckResults check_emit(Session& session);
 CheckResults check_inject(Session& session, const CheckScope& scope = {});
 CheckResults check_block(Session& session);
 CheckResults check_reflect(Session& session);

@@ -21,7 +21,7 @@ CheckResult check_one(Session& session, const Scene& scene, const Blocked& twin,
   const VolumeShape shape{kGrid + 1, 3, 1};
   clpv::Volume geometry(session, shape, "check: blockers", format);
   const SceneBuffers buffers = upload_scene(session, scene);
-  SceneBlocker(session, buffers, kGrid, format).block(kCells, geometry);
+  SceneBlocker(session, buffers, kGrid, 1, format).block(0, kCells, geometry);
   const std::vector<float> found = geometry.read(session);
   CheckResult result{"block", format_name(format), 0, tolerance_in("block", format), {}};
   for (std::size_t at = 0; at < found.size(); ++at) {

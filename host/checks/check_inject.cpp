@@ -14,6 +14,7 @@
 #include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"
 #include "reference/inject.hpp"
+#include "reference/view.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -80,6 +81,18 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
   return surface;
 }
 
+/// The same as points that no view sees.
+SurfaceImage as_points(SurfaceImage surface) {
+  for (std::size_t i = 0; i < surface.depth.size(); ++i) {
+    const glm::dvec3 at = surface_position(surface.view, static_cast<double>(i % kWidth),
+                                           static_cast<double>(i / kWidth), surface.depth[i]);
+    surface.position.emplace_back(glm::vec3(at), 1);
+    if (surface.depth[i] == 0) surface.normal[i] = glm::vec4(0);
+  }
+  surface.depth.clear();
+  return surface;
+}
+
 /// 26 directions: towards the neighbours of a cell in a cube.
 std::vector<glm::dvec3> directions() {
   std::vector<glm::dvec3> found;
@@ -140,15 +153,16 @@ std::string name_of(const Basis& basis, const char* stage, bool orthographic, Rs
 }
 
 CheckResult check_light(Session& session, const Basis& basis, const InjectOptions& options, bool orthographic,
-                        RsmFormat format) {
-  const Surface surface =
-      upload_surface(session, random_surface(basis, options.lobes, orthographic, true, format, 11), format);
+                        RsmFormat format, bool points = false) {
+  SurfaceImage image = random_surface(basis, options.lobes, orthographic, true, format, 11);
+  if (points) image = as_points(std::move(image));
+  const Surface surface = upload_surface(session, image, format);
   clpv::Volume light(session, {kGrid, basis.size(), 3}, "check: light", options.format);
   Injector(session, basis, options).inject_light(surface, kCells, light);
   Volume twin(kGrid, basis.size(), 3);
   inject_light(read_surface(session, surface), kCells, basis, options, twin);
   return compare(basis, options, light.read(session), twin,
-                 name_of(basis, "light", orthographic, format, options));
+                 name_of(basis, points ? "points" : "light", orthographic, format, options));
 }
 
 /// Two surfaces, so that they are merged.
@@ -223,6 +237,10 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
       results.push_back(
           check_geometry(session, *make_basis("sh2"), areas, orthographic, RsmFormat::float32, stride));
     }
+  }
+  for (const bool trilinear : {false, true}) {
+    const InjectOptions options{.grid = kGrid, .trilinear = trilinear};
+    results.push_back(check_light(session, *make_basis("sh2"), options, false, RsmFormat::float32, true));
   }
   check_formats(session, results);
   return results;

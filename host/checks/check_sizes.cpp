@@ -10,10 +10,12 @@
 #include "checks/check.hpp"
 #include "checks/tolerances.hpp"
 #include "device/kernel.hpp"
+#include "kernels/shared/emit.h"
 #include "kernels/shared/fields.h"
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/mesh.h"
+#include "kernels/shared/region.h"
 #include "kernels/shared/sweep.h"
 #include "kernels/shared/view.h"
 
@@ -26,7 +28,9 @@ static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX);
 static_assert(sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE);
 static_assert(sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL);
 static_assert(sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE);
+static_assert(sizeof(ClpvEmitter) == CLPV_SIZEOF_EMITTER);
 static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
+static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
 
 struct Place {
   const char* name;

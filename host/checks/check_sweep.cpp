@@ -28,16 +28,28 @@ struct Case {
   Blocking blocked_by = Blocking::areas;
   VolumeFormat format = {};
   SweepForm form = SweepForm::bins;
+  bool sky = false;
 
   std::string name() const {
     std::string directions;
     for (const int p : parts)
       directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
-    return fmt::format("{}/{}^3/{}{}{}{}/{}", basis, grid, directions, blocking ? "" : "/free",
+    return fmt::format("{}/{}^3/{}{}{}{}{}/{}", basis, grid, directions, blocking ? "" : "/free",
                        blocked_by == Blocking::areas ? "" : "/two-sided",
-                       form == SweepForm::planes ? "/planes" : "", format_name(format));
+                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", format_name(format));
   }
 };
+
+/// Dark below, of all colours above.
+Sky uneven_sky() {
+  Sky sky;
+  sky.width = 5, sky.height = 4, sky.rotation = 0.7;
+  sky.texels.assign(20, glm::vec3(0));
+  for (int i = 0; i < 12; ++i)
+    sky.texels[static_cast<std::size_t>(i)] = glm::vec3(i % 4, i % 3, 0.3f * static_cast<float>(i));
+  return sky;
+}
+constexpr float kSkyScale = 0.5f;
 
 CheckResult check_one(Session& session, const Case& c) {
   std::mt19937 random(3);
@@ -49,6 +61,11 @@ CheckResult check_one(Session& session, const Case& c) {
   Sweeper sweeper(
       session, *basis, transport,
       {.grid = c.grid, .parts = c.parts, .blocking = c.blocking, .format = c.format, .form = c.form});
+  const Sky sky = uneven_sky();
+  if (c.sky) {
+    sweeper.let_in(sky);
+    sweeper.scale_sky(kSkyScale);
+  }
   const VolumeShape injected{c.grid, basis->size(), 3}, swept{c.grid, swept_basis()->size(), 3},
       corners{c.grid + 1, blocking_size(c.blocked_by, *basis), 1};
   std::vector<Volume> lights, blockers;
@@ -69,7 +86,9 @@ CheckResult check_one(Session& session, const Case& c) {
     found[i] = result.read(session);
   }
   CheckResult result{"sweep", c.name(), 0, tolerance_in("sweep", c.format), {}};
-  const std::vector<Volume> twin = sweep(*basis, transport, cascades);
+  Sky shining = sky;
+  for (glm::vec3& texel : shining.texels) texel *= kSkyScale;
+  const std::vector<Volume> twin = sweep(*basis, transport, cascades, c.sky ? &shining : nullptr);
   for (std::size_t i = 0; i < grids.size(); ++i) compare_cascade(found[i], kept_of(twin[i]), i, result);
   return result;
 }
@@ -81,6 +100,8 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       {.basis = "bins24", .grid = 9, .parts = {2, 1, 1}},
       {.basis = "bins24", .grid = 8, .parts = {2, 2}, .form = SweepForm::planes},
       {.basis = "bins24", .grid = 7, .parts = {1, 1, 2}, .form = SweepForm::planes},
+      {.basis = "bins24", .grid = 9, .parts = {2, 1, 2}, .sky = true},
+      {.basis = "bins24", .grid = 7, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
       {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::two_sided},
       {.basis = "bins96", .grid = 5, .parts = {3, 2}, .blocking = false},
       {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},

@@ -23,6 +23,10 @@ inline constexpr Tolerance kTolerances[] = {
      "share of pixels that differ where a hair's breadth decides (reference/rasterize.hpp): a float32 corner "
      "may "
      "snap to the next 1/256 pixel; measured 7e-4, one pixel"},
+    {"emit", 2e-5,
+     "of the largest flux and position, apart from what rounding can decide (reference/emit.hpp): float32 "
+     "places in a "
+     "texture, and its mean over 64 looks"},
     {"inject", 2e-5,
      "of the functions' values in 26 directions: float32 rounding times the square root of the Gram matrix's "
      "condition number; measured 2e-7 (sh2) to 5e-6 (srbf14)"},

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -18,14 +17,17 @@
 #include "commands/drawing.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
 
+constexpr double kLongestRow = 86400;  // [s]; a day
+
 struct Options {
-  std::string suite, scene, model, filter, format = "table", out, compare, plot;
+  std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
   bool no_tune = false;
   bench::BenchOptions bench;
 };
@@ -67,6 +69,7 @@ nlohmann::json report_of(const Options& options, const Session& session, const b
 std::string as_text(const Options& options, const bench::Suite& suite, const Session& session,
                     const bench::Results& results) {
   if (options.format == "json") return report_of(options, session, results).dump(2) + "\n";
+  if (options.format == "github-action") return bench::report_github_action(results.rows);
   if (options.format == "csv") return bench::report_csv(results.rows);
   return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
          (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
@@ -80,9 +83,9 @@ nlohmann::json earlier_run(const Options& options) {
                 "--compare with --format {}: both would be on stdout; allowed: --format table, or --out",
                 options.format);
   }
-  std::ifstream in(options.compare, std::ios::binary);
-  if (!in) throw Error(ExitCode::bad_input, "--compare {}: cannot be read", options.compare);
-  nlohmann::json report = nlohmann::json::parse(in, nullptr, false);
+  const auto text = file_bytes(options.compare);
+  if (!text) throw Error(ExitCode::bad_input, "--compare {}: cannot be read", options.compare);
+  nlohmann::json report = nlohmann::json::parse(*text, nullptr, false);
   if (report.is_discarded()) throw Error(ExitCode::bad_input, "--compare {}: not JSON", options.compare);
   bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
   return report;
@@ -126,25 +129,35 @@ void judge(const std::vector<bench::Row>& rows) {
               wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
 }
 
+void write(const Options& options, const std::string& text) {
+  if (!options.out.empty()) return write_file(options.out, text);
+  fmt::print("{}", text);
+  std::fflush(stdout);
+}
+
 void run(Options options, const Shared& shared) {
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.suite.tuned = !options.no_tune;
-  if (!options.out.empty()) check_writable(options.out);
+  options.bench.log = options.log;
+  for (const std::string& file : {options.out, options.log}) {
+    if (!file.empty()) check_writable(file);
+  }
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = suite_named(options.suite);
   take_scene(options, suite);
-  Session session(choose_device(shared.device), ProgramCache::of_user());
+  // Of programs out of a cache no build can be told.
+  Session session(choose_device(shared.device),
+                  suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
+  options.bench.hung = [&](const bench::Results& so_far) {
+    write(options, as_text(options, suite, session, so_far));
+    spdlog::error("{}: {}", so_far.rows.back().name, so_far.rows.back().reason);
+  };
   const bench::Results results = bench::run_suite(session, suite, options.bench);
-  const std::string text = as_text(options, suite, session, results);
-  if (options.out.empty()) {
-    fmt::print("{}", text);
-  } else {
-    write_file(options.out, text);
-  }
+  write(options, as_text(options, suite, session, results));
   if (!before.is_null()) {
     fmt::print("{}{}", options.out.empty() ? "\n" : "",
                bench::comparison_table(
@@ -184,9 +197,23 @@ void add_bench(CLI::App& app, Shared& shared) {
   command->add_option("--repetitions", options->bench.repetitions, "how often each row is timed")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMostRepetitions));
-  command->add_option("--format", options->format, "table|json|csv")
+  command
+      ->add_option("--format", options->format,
+                   "table|json|csv, or github-action: name, unit and value of each row, smaller is better")
       ->capture_default_str()
-      ->check(CLI::IsMember({"table", "json", "csv"}));
+      ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
+  command
+      ->add_option(
+          "--row-limit", options->bench.row_limit,
+          "seconds that a row may take to be made ready, or to be run once; one that takes longer ends the "
+          "run, which tells what there is; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, kLongestRow))
+      ->type_name("SECONDS");
+  command
+      ->add_option("--log", options->log,
+                   "rows as they begin and end, a line of JSON each: what a crash leaves")
+      ->type_name("FILE.jsonl");
   command->add_option("-o,--out", options->out, "file to write in place of stdout")->type_name("FILE");
   command
       ->add_option("--compare", options->compare,

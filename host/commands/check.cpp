@@ -9,11 +9,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "checks/junit.hpp"
 #include "commands/choices.hpp"
 #include "commands/commands.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
+#include "support/output_file.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {
@@ -21,8 +24,13 @@ namespace {
 
 struct Options {
   std::vector<Stage> only;
+  std::string junit;
   bool json = false, thorough = false;
 };
+
+auto failures(const reference::CheckResults& results) {
+  return std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
+}
 
 /// The result nearest to its tolerance, or beyond it.
 const reference::CheckResult& worst_of(const reference::CheckResults& results) {
@@ -34,8 +42,7 @@ const reference::CheckResult& worst_of(const reference::CheckResults& results) {
 }
 
 void print(std::string_view stage, const reference::CheckResults& results) {
-  const auto failed =
-      std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
+  const auto failed = failures(results);
   const reference::CheckResult& worst = worst_of(results);
   fmt::print("{:<10} {:>4} of {:<4} {}  worst {:.2e} of {:.0e} allowed ({})\n", stage,
              results.size() - failed, results.size(), failed == 0 ? "ok    " : "FAILED", worst.worst,
@@ -62,6 +69,7 @@ nlohmann::json to_json(const reference::CheckResults& results) {
 }
 
 void run(const Options& options, const Shared& shared) {
+  if (!options.junit.empty()) check_writable(options.junit);
   Session session(choose_device(shared.device));
   spdlog::info("checking {} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
@@ -69,6 +77,8 @@ void run(const Options& options, const Shared& shared) {
   Progress progress("check", values_of<Stage>().size());
   for (const Stage stage : values_of<Stage>()) {
     progress.advance();
+    stop_if_interrupted(
+        fmt::format("{} comparisons were made, {} of them failed", all.size(), failures(all)));
     if (!options.only.empty() && std::ranges::count(options.only, stage) == 0) continue;
     const reference::CheckResults results = reference::check(stage, session, {.thorough = options.thorough});
     if (results.empty())
@@ -76,7 +86,7 @@ void run(const Options& options, const Shared& shared) {
     if (!options.json) print(name_of(stage), results);
     all.insert(all.end(), results.begin(), results.end());
   }
-  const auto failed = std::count_if(all.begin(), all.end(), [](const auto& r) { return !r.passed(); });
+  const auto failed = failures(all);
   if (options.json) {
     const Device& d = session.device();
     fmt::print("{}\n",
@@ -86,6 +96,7 @@ void run(const Options& options, const Shared& shared) {
                               {"checks", to_json(all)}}
                    .dump(2));
   }
+  if (!options.junit.empty()) write_file(options.junit, reference::junit(all, session.device().name));
   if (failed > 0)
     throw Error(ExitCode::validation, "{} of {} comparisons failed on {}", failed, all.size(),
                 session.device().name);
@@ -101,6 +112,9 @@ void add_check(CLI::App& app, Shared& shared) {
   command->add_flag("--thorough", options->thorough,
                     "every basis with every choice of lobes, tables, transport and state; takes minutes");
   command->add_flag("--json", options->json, "JSON on stdout");
+  command
+      ->add_option("--junit", options->junit, "every comparison as a test case, for what shows test results")
+      ->type_name("FILE.xml");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -14,6 +14,12 @@ struct Shared {
   int verbosity = 0;
 };
 
+/// The program's description, the options of all commands, and the commands.
+void add_commands(CLI::App& app, Shared& shared);
+
+/// Parses, and runs the command. Throws CLI::Error, and Error(usage) that names the command meant by a misspelt one.
+void parse_command_line(CLI::App& app, int argc, char** argv);
+
 // Each in commands/NAME.cpp. The callbacks throw clpv::Error; main turns it into an exit code.
 void add_devices(CLI::App& app, Shared& shared);
 void add_render(CLI::App& app, Shared& shared);

@@ -14,6 +14,7 @@
 #include "commands/tracing_options.hpp"
 #include "evaluate/quality_report.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
@@ -122,6 +123,8 @@ std::vector<QualityCell> measure_all(Session& session, const Options& options, c
     for (const Variant& variant : all) {
       VariantRun run(session, options, store, subject, variant);
       for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
+        stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(),
+                                        views * all.size()));
         cells.push_back(run.cell(view));
         progress.advance();
       }

@@ -140,7 +140,7 @@ void add_reference(CLI::App& app, Shared&) {
   command->footer(
       "Diffuse surfaces, hard shadows, one ray a pixel through its centre: `clpv compare` holds a rendered "
       "image\n"
-      "against it pixel by pixel. Emissive surfaces show but do not light. A background pixel is 0 with "
+      "against it pixel by pixel. Emissive surfaces light what they face. A background pixel is 0 with "
       "alpha 0.\n"
       "Time grows with the number of pixels: references of 240 x 135 serve to measure, larger ones to look "
       "at.");

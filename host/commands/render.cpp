@@ -15,6 +15,7 @@
 #include "pipeline/frame_stats.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
@@ -128,8 +129,10 @@ void run(const Options& options, const Shared& shared) {
     if (!options.dump.empty()) dump_volume(session, options, volumes);
   });
   stats.end_first_frame(session);
+  stop_if_interrupted();
   progress.advance();
   for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
+    stop_if_interrupted();
     session.timeline().clear();
     frame.forget_light();
     stats.begin_frame();

@@ -20,6 +20,7 @@
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
@@ -191,8 +192,15 @@ void Sequence::run() {
   Session session(device_, ProgramCache::of_user());
   Frame frame(session, moving_.scene(), resolved_, tuning_);
   Clock::time_point written = started;
+  std::size_t there = static_cast<std::size_t>(options_.frames) - missing.size();
   for (const int number : missing) {
+    if (interrupted()) {
+      write_times();
+      throw Interrupted(fmt::format("{} of {} frames are in {}; the same command goes on", there,
+                                    options_.frames, options_.output));
+    }
     FrameTimes times = render(session, frame, number);
+    ++there;
     times.first = number == missing.front();
     times_.add(number, options_.instant(number), times);
     spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, options_.instant(number), times.frame_ms);
@@ -214,6 +222,7 @@ void Sequence::measure_stability() {
   Frame frame(session, moving_.scene(), resolved_, tuning_);
   SequenceStability stability(session, frame, options_.traced);
   for (int i = 0; i < options_.frames; ++i) {
+    stop_if_interrupted(fmt::format("the frames are in {}, their stability is not told", options_.output));
     moving_.pose(options_.instant(i));
     frame.scene_moved();
     frame.render(camera());
@@ -228,6 +237,7 @@ void Sequence::film(Video& video) {
   Progress progress("film", static_cast<std::uint64_t>(options_.frames));
   const auto curve = named<ToneMap>("--tonemap", options_.request.tonemap);
   for (int i = 0; i < options_.frames; ++i) {
+    stop_if_interrupted(fmt::format("the frames are in {}, the film is not made", options_.output));
     const Image image = read_image(file_of(i));
     video.add(image.encoding == Encoding::srgb
                   ? image

@@ -2,10 +2,10 @@
 #include "commands/sequence_times.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "bench/statistics.hpp"
+#include "support/input_file.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
@@ -52,10 +52,10 @@ SequenceTimes::SequenceTimes() = default;
 SequenceTimes::~SequenceTimes() = default;
 
 void SequenceTimes::keep(const std::filesystem::path& file, const std::vector<int>& frames) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || frames.empty()) return;
+  const auto text = file_bytes(file);
+  if (!text || frames.empty()) return;
   try {
-    const json before = json::parse(in);
+    const json before = json::parse(*text);
     for (const json& frame : before.at("frames")) {
       const int number = frame.at("frame");
       if (std::ranges::find(frames, number) == frames.end()) continue;

@@ -143,7 +143,15 @@ DeviceList list_devices() {
 Device choose_device(std::string_view choice) {
   const char* environment = std::getenv("CLPV_DEVICE");
   if (choice.empty() && environment != nullptr) choice = environment;
-  return choose_device(list_devices().devices, choice);
+  const DeviceList list = list_devices();
+  if (list.devices.empty() && !list.platforms_without_devices.empty()) {
+    throw Error(
+        ExitCode::device,
+        "no OpenCL device found; platforms without one: {} (PoCL has none where it cannot write its cache: "
+        "POCL_CACHE_DIR, XDG_CACHE_HOME or HOME says where)",
+        fmt::join(list.platforms_without_devices, ", "));
+  }
+  return choose_device(list.devices, choice);
 }
 
 Device choose_device(const std::vector<Device>& devices, std::string_view choice) {

@@ -2,10 +2,10 @@
 #include "device/kernel_files.hpp"
 
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 namespace {
@@ -49,11 +49,7 @@ void append_file(std::string& out, const std::string& name, int depth) {
 
 std::string kernel_file(const std::string& name) {
   if (const char* folder = std::getenv("CLPV_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
-    if (std::ifstream file(std::string(folder) + "/" + name, std::ios::binary); file) {
-      std::ostringstream text;
-      text << file.rdbuf();
-      return text.str();
-    }
+    if (auto text = file_bytes(std::string(folder) + "/" + name)) return *text;
   }
   const auto& files = detail::embedded_kernel_files();
   const auto found = files.find(name);

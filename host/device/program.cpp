@@ -84,13 +84,26 @@ std::string lines_round_errors(const std::string& text, const std::string& log) 
   return excerpt;
 }
 
+namespace {
+
+/// The compiler's words; none where the driver has none either.
+std::string build_log(const cl::Program& program, const Device& device) {
+  try {
+    return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle);
+  } catch (const cl::Error& error) {
+    return fmt::format("(no log: {})", cl_error_name(error.err()));
+  }
+}
+
+}  // namespace
+
 cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
                           const std::string& text) {
   cl::Program program(context, text);
   try {
     program.build(device.handle, source.options.c_str());
   } catch (const cl::Error& error) {
-    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle);
+    const std::string log = build_log(program, device);
     throw Error(ExitCode::run_time, "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}\n{}",
                 source.file, device.name, device.driver, source.options, cl_error_name(error.err()), log,
                 lines_round_errors(text, log));

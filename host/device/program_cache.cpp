@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
@@ -103,10 +103,9 @@ fs::path ProgramCache::file_of(const std::string& key) const {
 
 std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) const {
   const fs::path file = file_of(key);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  std::optional<Binary> binary = unpack(bytes, key);
+  const auto bytes = file_bytes(file);
+  if (!bytes) return std::nullopt;
+  std::optional<Binary> binary = unpack(*bytes, key);
   if (!binary) {
     spdlog::debug("{}: damaged, or of another program; building anew", file.string());
     return std::nullopt;

@@ -218,9 +218,9 @@ void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_
       .launch(cl::NDRange(words), cl::NDRange(kGroup));
 }
 
-void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes) {
+void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {
   cl::Event event;
-  queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, 0, bytes, nullptr, &event);
+  queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, &event);
   timeline_.add(event);
 }
 

@@ -70,7 +70,7 @@ class Session {
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
   /// `bytes` from byte `from` on, both multiples of 4.
   void fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from = 0);
-  void copy(const Buffer& from, const Buffer& to, std::size_t bytes);
+  void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte = 0);
 
   template <typename T>
   void write(const Buffer& buffer, const std::vector<T>& values) {

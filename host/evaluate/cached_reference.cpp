@@ -9,6 +9,8 @@
 #include "image/image_io.hpp"
 #include "pathtracer/traced_view.hpp"
 #include "pipeline/view.hpp"
+#include "scene/emission.hpp"
+#include "scene/sky.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/named_enum.hpp"
@@ -25,7 +27,7 @@ std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
   Fingerprint print;
   print.add(CLPV_VERSION).add(kTracerRevision).add(scene_fingerprint(scene));
   for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
-  print.add(std::vector{view}).add(options.bounces).add(options.seed).add(options.emissive_lights);
+  print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
   print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
   return print.hex();
 }
@@ -77,6 +79,7 @@ std::string scene_fingerprint(const Scene& scene) {
   for (const Texture& texture : scene.textures) {
     print.add(texture.width).add(texture.height).add(texture.wrap_u).add(texture.wrap_v).add(texture.rgba);
   }
+  if (scene.sky) add_sky(print, *scene.sky);
   return print.hex();
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "scene/bounds.hpp"
 #include "scene/input.hpp"

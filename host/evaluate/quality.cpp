@@ -5,7 +5,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "device/kernel_files.hpp"
@@ -13,6 +12,7 @@
 #include "image/compare.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/input_file.hpp"
 #include "support/median.hpp"
 #include "support/output_file.hpp"
 
@@ -99,10 +99,10 @@ std::filesystem::path QualityStore::file(const std::string& key) const {
 }
 
 std::optional<QualityCell> QualityStore::find(const std::string& key) const {
-  std::ifstream stream(file(key));
-  if (!stream) return std::nullopt;
+  const auto kept = file_bytes(file(key));
+  if (!kept) return std::nullopt;
   try {
-    return cell_from_json(nlohmann::json::parse(stream));
+    return cell_from_json(nlohmann::json::parse(*kept));
   } catch (const nlohmann::json::exception& error) {
     spdlog::warn("{}: {}; measured anew", file(key).string(), error.what());
     return std::nullopt;

@@ -17,6 +17,7 @@ struct SurfaceImage {
   ClpvView view{};
   std::vector<float> depth;
   std::vector<glm::vec4> normal, colour, emissive;  ///< xyz; w unused
+  std::vector<glm::vec4> position = {};             ///< [m], of points that no view sees: in place of depth
 };
 
 }  // namespace clpv

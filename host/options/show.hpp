@@ -19,6 +19,11 @@ enum class Show : unsigned {
   depth = CLPV_SHOW_DEPTH,
 };
 
+/// Whether a sky is seen where no surface is.
+constexpr bool shows_sky(Show show) {
+  return show == Show::full || show == Show::direct;
+}
+
 constexpr std::string_view name_of(Show show) {
   switch (show) {
     case Show::full:

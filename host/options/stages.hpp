@@ -9,7 +9,20 @@ namespace clpv {
 
 /// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
 /// that both sides share, is none of a frame's: it is checked before all others.
-enum class Stage { sizes, rasterize, inject, block, reflect, propagate, sweep, bounce, see, gather, shade };
+enum class Stage {
+  sizes,
+  rasterize,
+  emit,
+  inject,
+  block,
+  reflect,
+  propagate,
+  sweep,
+  bounce,
+  see,
+  gather,
+  shade
+};
 
 constexpr std::string_view name_of(Stage stage) {
   switch (stage) {
@@ -17,6 +30,8 @@ constexpr std::string_view name_of(Stage stage) {
       return "sizes";
     case Stage::rasterize:
       return "rasterize";
+    case Stage::emit:
+      return "emit";
     case Stage::inject:
       return "inject";
     case Stage::block:
@@ -45,6 +60,7 @@ enum class Pass {
   rasterize_camera,
   rasterize_shadow,  ///< a light
   rasterize_rsm,     ///< a cascade and light
+  emit,              ///< points of surfaces that glow
   inject_light,      ///< a cascade, as are the next five
   inject_geometry,
   block,
@@ -64,6 +80,8 @@ constexpr std::string_view name_of(Pass pass) {
       return "rasterize-shadow";
     case Pass::rasterize_rsm:
       return "rasterize-rsm";
+    case Pass::emit:
+      return "emit";
     case Pass::inject_light:
       return "inject-light";
     case Pass::inject_geometry:

@@ -2,6 +2,7 @@
 #include "pathtracer/path_sampler.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -14,8 +15,9 @@ namespace clpv::reference {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kCertainBounces = 3;      // further ones are played Russian roulette for
-constexpr double kMostSurvival = 0.95;  // of roulette: paths end even between white walls
+constexpr std::uint64_t kOfEmitters = 1, kOfSky = 2;  // streams of their own
+constexpr int kCertainBounces = 3;                    // further ones are played Russian roulette for
+constexpr double kMostSurvival = 0.95;                // of roulette: paths end even between white walls
 
 /// Russian roulette: whether a path goes on, its throughput then raised so that the mean stays.
 bool survives(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
@@ -56,21 +58,73 @@ glm::dvec3 PathSampler::direct(const Hit& hit) {
   return sum;
 }
 
+/// What a point picked on an emissive surface sends to `at`, its share of it (docs/quality.md, 'The truth').
+glm::dvec3 PathSampler::looked_for(const Hit& at, const glm::dvec2& point) {
+  const EmitterPoint there = emitters_.pick(point);
+  const glm::dvec3 way = glm::dvec3(there.position) - glm::dvec3(at.position);
+  const double square = glm::dot(way, way);
+  if (!(square > 0)) return glm::dvec3(0);
+  const glm::dvec3 direction = way / std::sqrt(square), front = emitters_.front(there.point.triangle);
+  const double here = glm::dot(glm::dvec3(at.normal), direction), slant = glm::dot(front, direction);
+  if (here <= 0 || glm::dot(glm::dvec3(at.geometric), direction) <= 0 || slant == 0) return glm::dvec3(0);
+  const glm::dvec3 radiance = emitters_.radiance(there.point, -direction);
+  if (radiance == glm::dvec3(0) || rays_.materials().hole(there.point)) return glm::dvec3(0);
+  Hit end;
+  end.position = there.position, end.geometric = glm::vec3(slant < 0 ? front : -front);
+  const glm::vec3 origin = rays_.leave(at);
+  ++shot_;
+  if (rays_.occluded(origin, rays_.leave(end) - origin, 1)) return glm::dvec3(0);
+  const double factor = here * std::abs(slant) / square;
+  return radiance * factor / (there.density + factor / std::numbers::pi);
+}
+
+/// What an emissive surface that a path met sends back along it, the rest of it.
+glm::dvec3 PathSampler::met(const Hit& at, const glm::dvec3& direction, const Hit& next) const {
+  const glm::dvec3 radiance = emitters_.radiance(next.point, -direction);
+  if (radiance == glm::dvec3(0)) return radiance;
+  const double distance = double{next.distance},
+               slant = std::abs(glm::dot(glm::dvec3(next.geometric), direction));
+  const double by_chance =
+      glm::dot(glm::dvec3(at.normal), direction) * slant / (distance * distance) / std::numbers::pi;
+  return radiance * std::numbers::pi * by_chance / (emitters_.density(next.point.triangle) + by_chance);
+}
+
+/// What a direction picked of the sky sends to `at`, its share of it.
+glm::dvec3 PathSampler::looked_up(const Hit& at, const glm::dvec2& point) {
+  const SkyDirection there = sky_.pick(point);
+  const double here = glm::dot(glm::dvec3(at.normal), there.direction);
+  if (here <= 0 || glm::dot(glm::dvec3(at.geometric), there.direction) <= 0) return glm::dvec3(0);
+  ++shot_;
+  if (rays_.occluded(rays_.leave(at), glm::vec3(there.direction), kInfinity)) return glm::dvec3(0);
+  return there.radiance * here / (there.density + here / std::numbers::pi);
+}
+
+/// What the sky sends along a path that met nothing, the rest of it.
+glm::dvec3 PathSampler::missed(const Hit& at, const glm::dvec3& direction) const {
+  const double here = glm::dot(glm::dvec3(at.normal), direction);
+  if (here <= 0) return glm::dvec3(0);
+  return sky_.radiance(direction) * here / (sky_.density(direction) + here / std::numbers::pi);
+}
+
 glm::dvec3 PathSampler::indirect(const Hit& start, std::uint32_t path, std::uint64_t stream) {
   const Materials& materials = rays_.materials();
   glm::dvec3 sum(0), throughput(1);
   Hit at = start;
   for (int bounce = 1;; ++bounce) {
     const std::uint64_t dimensions = mix(stream, static_cast<std::uint64_t>(bounce));
+    if (!emitters_.none())
+      sum += throughput * looked_for(at, sobol_point(path, mix(dimensions, kOfEmitters)));
+    if (!sky_.none()) sum += throughput * looked_up(at, sobol_point(path, mix(dimensions, kOfSky)));
     const glm::vec3 direction(cosine_direction(glm::dvec3(at.normal), sobol_point(path, dimensions)));
     if (glm::dot(direction, at.geometric) <= 0)
       break;  // into the surface: an interpolated normal leans that far
     ++shot_;
     const std::optional<Hit> next = rays_.intersect(rays_.leave(at), direction, 0, kInfinity, Faces::both);
-    if (!next) break;
-    if (options_.emissive_lights) {
-      sum += throughput * glm::dvec3(materials.emissive(next->point)) * std::numbers::pi;
+    if (!next) {
+      if (!sky_.none()) sum += throughput * missed(at, glm::dvec3(direction));
+      break;
     }
+    if (!emitters_.none()) sum += throughput * met(at, glm::dvec3(direction), *next);
     const glm::dvec3 lit = direct(*next);
     const bool last = bounce == options_.bounces;
     if (last && lit == glm::dvec3(0)) break;  // most last bounces: spares them the look at textures

@@ -10,8 +10,12 @@
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "pathtracer/sampling.hpp"
+#include "pathtracer/sky_sampler.hpp"
+#include "reference/view.hpp"
+#include "scene/emission.hpp"
 #include "scene/light_kind.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -26,17 +30,25 @@ struct Pixel {
   glm::dvec3 sum[2] = {glm::dvec3(0), glm::dvec3(0)};  // irradiance [W/m^2], summed over paths
 };
 
+/// Where a pixel looks.
+glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
+  return glm::normalize(surface_position(view, px, py, 1) - surface_position(view, px, py, 0));
+}
+
 /// The image while it is traced, tile by tile.
 class Work {
  public:
   Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
        const PathTracerOptions& options, const TraceProgress& progress)
       : rays_(scene),
+        emitters_(scene, rays_.materials()),
+        sky_(scene.sky.get()),
         lights_(lights),
         options_(options),
         progress_(progress),
         pixels_(std::size_t{view.width} * view.height) {
     image_.view = view;
+    image_.sky = scene.sky != nullptr;
     threads_ = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   }
 
@@ -50,7 +62,10 @@ class Work {
     each_pixel([&](PathSampler& sampler, std::uint32_t x, std::uint32_t y) {
       const std::size_t i = std::size_t{y} * image_.view.width + x;
       pixels_[i].hit = sampler.see(image_.view, x, y);
-      if (!pixels_[i].hit) return;
+      if (!pixels_[i].hit) {
+        if (image_.sky) image_.emissive[i] = sky_.seen(direction_of(image_.view, x, y));
+        return;
+      }
       const Hit& hit = *pixels_[i].hit;
       image_.depth[i] = hit.distance;
       image_.normal[i] = hit.normal;
@@ -101,8 +116,8 @@ class Work {
     std::uint32_t done = 0;
     std::mutex mutex;
     const auto run = [&] {
-      PathSampler sampler(rays_, lights_, options_);
-      for (std::uint32_t tile; (tile = next.fetch_add(1)) < tiles;) {
+      PathSampler sampler(rays_, lights_, emitters_, sky_, options_);
+      for (std::uint32_t tile; !interrupted() && (tile = next.fetch_add(1)) < tiles;) {
         const std::uint32_t left = tile % columns * kTile, top = tile / columns * kTile;
         for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
           for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x) action(sampler, x, y);
@@ -114,9 +129,12 @@ class Work {
       const std::lock_guard lock(mutex);
       image_.rays += sampler.rays_shot();
     };
-    std::vector<std::jthread> others;
-    for (int t = 1; t < threads_; ++t) others.emplace_back(run);
-    run();
+    {
+      std::vector<std::jthread> others;
+      for (int t = 1; t < threads_; ++t) others.emplace_back(run);
+      run();
+    }
+    stop_if_interrupted();
   }
 
   /// TracedImage::noise of the paths so far. The halves differ by twice the error of their mean, in the mean
@@ -136,6 +154,8 @@ class Work {
   }
 
   RayScene rays_;
+  Emitters emitters_;
+  SkySampler sky_;
   const std::vector<Light>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
@@ -152,7 +172,7 @@ void check(const Scene& scene, const std::vector<Light>& lights, const PathTrace
   }
   if (options.samples == 0 && !(options.noise > 0))
     throw Error(ExitCode::usage, "noise {}: above 0", options.noise);
-  if (lights.empty() && !options.emissive_lights) {
+  if (lights.empty() && !emits(scene) && !scene.sky) {
     throw Error(ExitCode::bad_input, "{}: no light: the whole image would be black", scene.path);
   }
   for (const Light& light : lights) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
 //
-// Every surface is diffuse; lights are points, spots and suns without extent (hard shadows). A pixel is one
+// Every surface is diffuse; lights are points, spots and suns without extent (hard shadows), and surfaces that emit,
+// and a sky beyond them all. A pixel is one
 // ray through its centre, as in the rasteriser, so there is no antialiasing. Its indirect irradiance is
 //   E = pi mean over cosine-distributed directions of the radiance L that arrives along them,
-//   L = albedo / pi (E_direct [+ E of the next bounce]) at the surface the direction meets.
+//   L = emission + albedo / pi (E_direct [+ E of the next bounce]) at the surface the direction meets.
+// What a surface emits is thus counted as what it reflects of a light is; so is the sky, where the direction meets nothing.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +23,12 @@ struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
   static constexpr std::uint32_t kMostSamples = 1u << 24;
 
-  int bounces = 1;            ///< surfaces between a light and the surface seen, or kAllBounces
+  int bounces =
+      1;  ///< surfaces between a light and the surface seen, or kAllBounces; an emissive one is such a surface
   std::uint32_t samples = 0;  ///< paths a pixel; 0: as many as `noise` needs
   double noise = 0.02;        ///< where samples is 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: one a processor
-  /// Emissive surfaces light what they face. Not in what render is held against: theirs only show.
-  bool emissive_lights = false;
 };
 
 /// One value a pixel, row 0 first; 0 where there is no surface.
@@ -36,7 +37,8 @@ struct TracedImage {
   std::vector<float> depth;       ///< [m] along the view's forward axis
   std::vector<glm::vec3> normal;  ///< unit, towards the viewer
   std::vector<glm::vec3> albedo;
-  std::vector<glm::vec3> emissive;    ///< radiance [W/m^2/sr]
+  std::vector<glm::vec3> emissive;    ///< radiance [W/m^2/sr]; where there is no surface, the sky's
+  bool sky = false;                   ///< the scene has one
   std::vector<glm::vec3> direct;      ///< irradiance straight from the lights [W/m^2]
   std::vector<glm::vec3> irradiance;  ///< irradiance from other surfaces [W/m^2]
   std::uint32_t samples = 0;          ///< paths a pixel

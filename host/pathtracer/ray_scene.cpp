@@ -3,13 +3,12 @@
 // is hit.
 #include "pathtracer/ray_scene.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "pathtracer/embree.hpp"
 #include "reference/triangle.hpp"
 #include "reference/view.hpp"
 #include "support/error.hpp"
@@ -77,7 +76,7 @@ namespace {
 
 /// What a ray carries to the filters.
 struct Context {
-  RTCIntersectContext base;
+  RtcContext base;
   const RayScene::Impl* impl;
 };
 
@@ -162,7 +161,7 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice("threads=1,set_affinity=0"));
   if (!impl_->device) check(nullptr);
   impl_->rtc.reset(rtcNewScene(impl_->device.get()));
-  rtcSetSceneFlags(impl_->rtc.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneFlags(impl_->rtc.get(), RTC_SCENE_FLAG_ROBUST | kRtcOwnFilters);
   rtcSetSceneBuildQuality(impl_->rtc.get(), RTC_BUILD_QUALITY_HIGH);
   impl_->attach(kOpaque);
   impl_->attach(kMasked);
@@ -181,12 +180,10 @@ const Materials& RayScene::materials() const {
 std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
                                        float furthest, Faces faces) const {
   Context context{{}, impl_.get()};
-  rtcInitIntersectContext(&context.base);
-  if (faces == Faces::as_seen) context.base.filter = filter_back_faces;
   RTCRayHit query{};
   query.ray = make_ray(origin, direction, nearest, furthest);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->rtc.get(), &context.base, &query);
+  rtc_intersect(impl_->rtc.get(), context.base, faces == Faces::as_seen ? filter_back_faces : nullptr, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Scene& scene = *impl_->scene;
@@ -205,10 +202,8 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
 }
 
 bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay ray = make_ray(origin, direction, 0, furthest);
-  rtcOccluded1(impl_->rtc.get(), &context, &ray);
+  rtc_occluded(impl_->rtc.get(), ray);
   return ray.tfar < 0;
 }
 

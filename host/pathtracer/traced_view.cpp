@@ -33,8 +33,9 @@ Image traced_view(const TracedImage& traced, Show show) {
   Image image = make_image(static_cast<int>(traced.view.width), static_cast<int>(traced.view.height),
                            {"R", "G", "B", "A"});
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-    if (traced.depth[i] <= 0) continue;
-    const glm::vec3 colour = shown(traced, i, show);
+    const bool surface = traced.depth[i] > 0;
+    if (!surface && !(traced.sky && shows_sky(show))) continue;
+    const glm::vec3 colour = surface ? shown(traced, i, show) : traced.emissive[i];
     for (int c = 0; c < 3; ++c) image.pixels[4 * i + c] = colour[c];
     image.pixels[4 * i + 3] = 1;
   }

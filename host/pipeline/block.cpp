@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/block.hpp"
 
-#include <algorithm>
-
 #include "codegen/cell_macros.hpp"
+#include "kernels/shared/block.h"
 
 namespace clpv {
 namespace {
 
 constexpr std::size_t kGroup = 64;
-// Triangles a launch: a device that watches over its display ends what takes seconds.
-constexpr unsigned kMostTriangles = 1u << 20;
-constexpr std::size_t kBytesACorner = 3 * sizeof(cl_ulong);
+constexpr unsigned kMostTriangles = 1u << 20;  // a launch
+
+MarksShape shape_of(int grid, int cascades) {
+  return {grid + 1, grid + 1, CLPV_BLOCK_WORDS, static_cast<std::size_t>(cascades)};
+}
 
 ProgramSource triangles_program(const SceneBuffers& scene, int grid) {
   ProgramSource source{"block.cl", {}, {}};
@@ -28,28 +29,22 @@ ProgramSource shares_program(int grid, const VolumeFormat& format) {
 
 }  // namespace
 
-std::size_t SceneBlocker::bytes(int grid) {
-  const auto corners = static_cast<std::size_t>(grid) + 1;
-  return corners * corners * corners * kBytesACorner;
+std::size_t SceneBlocker::bytes(int grid, int cascades) {
+  return marks_bytes(shape_of(grid, cascades));
 }
 
-SceneBlocker::SceneBlocker(Session& session, const SceneBuffers& scene, int grid, const VolumeFormat& format)
-    : session_(session),
-      scene_(scene),
+SceneBlocker::SceneBlocker(Session& session, const SceneBuffers& scene, int grid, int cascades,
+                           const VolumeFormat& format)
+    : scene_(scene),
       grid_(grid),
-      masks_(session.buffer(bytes(grid), "masks of triangles that block")),
+      masks_(session, scene, shape_of(grid, cascades), kMostTriangles, "masks of triangles that block"),
       triangles_(session, triangles_program(scene, grid), "block_triangles"),
       shares_(session, shares_program(grid, format), "block_shares") {}
 
-void SceneBlocker::block(const ClpvGrid& grid, Volume& geometry) {
-  session_.fill_zero(masks_, bytes(grid_));
-  for (unsigned first = 0; first < scene_.triangle_count; first += kMostTriangles) {
-    const cl_uint count = std::min(scene_.triangle_count - first, kMostTriangles);
-    triangles_.set(grid, cl_uint{first}, count, scene_.vertices, scene_.triangles, scene_.materials,
-                   scene_.textures, scene_.texels, masks_);
-    triangles_.launch(cl::NDRange(count), cl::NDRange(kGroup));
-  }
-  shares_.set(masks_, geometry.memory());
+void SceneBlocker::block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry) {
+  masks_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, masks_.buffer(),
+               masks_.slot(cascade));
+  shares_.set(masks_.buffer(), masks_.slot(cascade), geometry.memory());
   const auto corners = static_cast<std::size_t>(grid_) + 1;
   shares_.launch(cl::NDRange(corners, corners, corners), cl::NDRange(kGroup, 1, 1));
 }

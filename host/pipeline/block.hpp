@@ -7,6 +7,7 @@
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/scene_buffers.hpp"
+#include "pipeline/triangle_marks.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
@@ -15,21 +16,25 @@ namespace clpv {
 /// together: what covers the same is not counted twice. Deterministic: bits are set in whatever order.
 class SceneBlocker {
  public:
-  /// Of cascades of `grid` cells along each axis, into volumes of `format`. `scene` must stay as it is.
+  /// Of `cascades` cascades of `grid` cells along each axis, into volumes of `format`. `scene` must stay as it is, but for
+  /// upload_moving().
   /// Throws Error(run_time) where the device's memory does not suffice.
-  SceneBlocker(Session& session, const SceneBuffers& scene, int grid, const VolumeFormat& format);
+  SceneBlocker(Session& session, const SceneBuffers& scene, int grid, int cascades,
+               const VolumeFormat& format);
 
   /// Overwrites `geometry`: grid + 1 samples a side, 3 numbers, one channel.
-  void block(const ClpvGrid& grid, Volume& geometry);
+  void block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry);
+
+  /// Next time all is made anew.
+  void forget() { masks_.forget(); }
 
   /// Of its masks.
-  static std::size_t bytes(int grid);
+  static std::size_t bytes(int grid, int cascades);
 
  private:
-  Session& session_;
   SceneBuffers scene_;
   int grid_;
-  Buffer masks_;
+  TriangleMarks masks_;
   Kernel triangles_, shares_;
 };
 

@@ -2,9 +2,13 @@
 #include "pipeline/frame.hpp"
 
 #include <algorithm>
+#include <numbers>
 
+#include "basis/sweep.hpp"
 #include "pipeline/frame_volumes.hpp"
+#include "pipeline/sky_background.hpp"
 #include "pipeline/view.hpp"
+#include "support/error.hpp"
 #include "support/fingerprint.hpp"
 
 namespace clpv {
@@ -18,6 +22,23 @@ PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
 /// Where a cascade stands. Where in it the eye is matters to gathering alone.
 MadeOf place_of(const ClpvGrid& grid) {
   return MadeOf().add(grid.origin).add(grid.cell);
+}
+
+/// Steps carry no light from beyond the cascades.
+void require_sweep(const RenderOptions& options, const Scene& scene) {
+  if (!scene.sky || options.transport == TransportKind::sweep) return;
+  throw Error(ExitCode::usage, "transport: found '{}' with a sky, allowed: sweep (or a scene without a sky)",
+              name_of(options.transport));
+}
+
+/// A sky is brighter outside walls than what is behind them by so much that what leaks along diagonal ways is most there.
+constexpr double kClosedUnderASky = 0.75;
+
+Transport transport_for(const RenderOptions& options, const Basis& basis, const Scene& scene) {
+  Transport transport = make_transport(options, basis);
+  if (scene.sky && options.transport == TransportKind::sweep)
+    close_diagonals(std::get<OperatorTransport>(transport.scheme), kClosedUnderASky);
+  return transport;
 }
 
 /// What a scene's triangles are, as far as they can change.
@@ -35,7 +56,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       basis_(make_basis(options)),
       swept_(swept_basis(options)),
       options_(checked(session, options, *basis_)),
-      transport_(make_transport(options, *basis_)),
+      transport_(transport_for(options, *basis_, scene)),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_.unit_flux_lobes)),
@@ -50,14 +71,18 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       ways_(accumulated_.size()),
       seen_(accumulated_.size()),
       reflected_(accumulated_.size()),
-      packed_(accumulated_.size()) {
+      packed_(accumulated_.size()),
+      brightest_sky_(scene.sky ? scene.sky->brightest() : 0) {
+  require_sweep(options, scene);
+  if (emits(scene)) emission_.emplace(session, scene, buffers_);
   if (swept_) {
     sweeper_.emplace(session, *basis_, transport_, sweep_options(options));
+    if (scene.sky) sweeper_->let_in(*scene.sky);
   } else {
     propagator_.emplace(session, *basis_, transport_, tuned(propagate_options(options), tuning));
   }
   if (!geometry_.empty() && !blocked_by_view(options))
-    blocker_.emplace(session, buffers_, options.grid, options.format());
+    blocker_.emplace(session, buffers_, options.grid, options.cascades, options.format());
   if (options.bounces != Bounces::one)
     reflector_.emplace(session, buffers_, options.grid, options.cascades, options.format());
   if (options.gather == Gathering::visible) sight_.emplace(session, buffers_, options.grid, options.cascades);
@@ -87,6 +112,7 @@ void Frame::scene_moved() {
 
 void Frame::forget_light() {
   lights_.forget();
+  if (emission_) emission_->forget();
   for (KeptVolume& injected : injected_) injected.kept.forget();
   for (KeptVolume& accumulated : accumulated_) accumulated.kept.forget();
   for (Kept& packed : packed_) packed.forget();
@@ -97,6 +123,9 @@ void Frame::forget_light() {
 
 void Frame::forget() {
   forget_light();
+  if (blocker_) blocker_->forget();
+  if (reflector_) reflector_->forget();
+  if (sight_) sight_->forget();
   for (KeptVolume& geometry : geometry_) geometry.kept.forget();
   for (Kept& ways : ways_) ways.forget();
   for (Kept& reflected : reflected_) reflected.forget();
@@ -104,7 +133,9 @@ void Frame::forget() {
 }
 
 MadeOf Frame::injected_made_of(int cascade) const {
-  return MadeOf().add(place_of(grid(cascade))).add(lights_.rsms_made_of(cascade));
+  MadeOf made_of = MadeOf().add(place_of(grid(cascade))).add(lights_.rsms_made_of(cascade));
+  if (emission_) made_of.add(emission_->made_of());
+  return made_of;
 }
 
 MadeOf Frame::geometry_made_of(int cascade) const {
@@ -125,10 +156,20 @@ MadeOf Frame::accumulated_made_of(int cascade) const {
   MadeOf made_of = injected_made_of(cascade);
   if (!geometry_.empty()) made_of.add(geometry_made_of(cascade));
   if (!sweeper_) return made_of;
+  if (scene_.sky) made_of.add(lights_.scale());
   if (reflector_) made_of.add(reflected_made_of(cascade));
   made_of.add(sweeper_->shell(static_cast<std::size_t>(cascade), grids_));
   if (cascade + 1 < options_.cascades) made_of.add(accumulated_made_of(cascade + 1));
   return made_of;
+}
+
+void Frame::prepare_light(const Camera& camera) {
+  const double cell = double{grids_.back().cell};
+  double other = emission_ ? emission_->most(cell, triangles_) : 0;
+  if (scene_.sky) other += std::numbers::pi * double{brightest_sky_} * cell * cell;
+  lights_.prepare(camera, grids_, triangles_, other);
+  if (emission_) emission_->prepare(grids_, triangles_, lights_.scale());
+  if (scene_.sky) sweeper_->scale_sky(lights_.scale());
 }
 
 void Frame::rasterize_camera(const Camera& camera) {
@@ -143,10 +184,12 @@ void Frame::inject(int cascade) {
   KeptVolume& injected = of_cascade(injected_, cascade);
   injected.kept.update(injected_made_of(cascade), [&] {
     lights_.rasterize_rsms(cascade);
+    if (emission_) emission_->emit();
     const StageScope scope(session_, {Pass::inject_light, cascade});
     injected.volume->clear(session_);
     for (const Surface* rsm : lights_.rsms(cascade))
       injector_.inject_light(*rsm, grid(cascade), *injected.volume);
+    if (emission_) injector_.inject_light(emission_->points(), grid(cascade), *injected.volume);
   });
 }
 
@@ -155,7 +198,7 @@ void Frame::block(int cascade) {
   geometry.kept.update(geometry_made_of(cascade), [&] {
     if (!blocker_) return inject_geometry(cascade, *geometry.volume);
     const StageScope scope(session_, {Pass::block, cascade});
-    blocker_->block(grid(cascade), *geometry.volume);
+    blocker_->block(static_cast<std::size_t>(cascade), grid(cascade), *geometry.volume);
   });
 }
 
@@ -232,7 +275,7 @@ void Frame::gather(const Surface& surface, Buffer& irradiance) {
 
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   grids_ = cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
-  lights_.prepare(camera, grids_, triangles_);
+  prepare_light(camera);
   rasterize_camera(camera);
   lights_.rasterize_shadows();
   for (int cascade = options_.cascades; cascade-- > 0;) light_cascade(cascade, observer);
@@ -263,7 +306,10 @@ std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
 std::vector<float> Frame::read(Show view) {
   if (view != shown_) shader_.show(view, *camera_surface_, irradiance_, image_);
   shown_ = view;
-  return session_.read<float>(image_, static_cast<std::size_t>(options_.width) * options_.height * 4);
+  std::vector<float> image =
+      session_.read<float>(image_, static_cast<std::size_t>(options_.width) * options_.height * 4);
+  if (scene_.sky && shows_sky(view)) paint_sky(*scene_.sky, camera_surface_->view, image);
+  return image;
 }
 
 }  // namespace clpv

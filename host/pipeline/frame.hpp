@@ -13,6 +13,7 @@
 #include "options/render_options.hpp"
 #include "pipeline/block.hpp"
 #include "pipeline/cascade.hpp"
+#include "pipeline/frame_emission.hpp"
 #include "pipeline/frame_lights.hpp"
 #include "pipeline/gather.hpp"
 #include "pipeline/inject.hpp"
@@ -111,6 +112,7 @@ class Frame {
   void propagate(int cascade);
   void see(int cascade);
 
+  void prepare_light(const Camera& camera);
   void rasterize_camera(const Camera& camera);
   void inject_geometry(int cascade, Volume& geometry);
   void light_cascade(int cascade, const CascadeObserver& observer);
@@ -133,7 +135,8 @@ class Frame {
   Gatherer gatherer_;
   Shader shader_;
   FrameLights lights_;
-  MadeOf triangles_;  ///< the scene's, as they are now
+  std::optional<FrameEmission> emission_;  ///< none: no surface glows
+  MadeOf triangles_;                       ///< the scene's, as they are now
   std::optional<Surface> camera_surface_;
   std::vector<ClpvGrid> grids_;
   std::vector<KeptVolume> injected_, accumulated_;
@@ -144,6 +147,7 @@ class Frame {
   Buffer irradiance_;                 ///< float4 a pixel, as is image_
   Buffer image_;
   Show shown_ = Show::full;
+  float brightest_sky_;  ///< [W/m^2/sr]
 };
 
 }  // namespace clpv

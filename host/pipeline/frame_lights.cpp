@@ -14,7 +14,8 @@ FrameLights::FrameLights(Session& session, const Scene& scene, const SceneBuffer
     : session_(session), scene_(scene), buffers_(buffers), rasterizer_(rasterizer), options_(options) {}
 
 /// Buffers are kept as long as the same lights shine.
-void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& grids, const MadeOf& triangles) {
+void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& grids, const MadeOf& triangles,
+                          double other) {
   grids_ = grids;
   triangles_ = triangles;
   const std::vector<Light> shining = scene_.lights_for(camera);
@@ -31,7 +32,7 @@ void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& gri
     lit.rsms.resize(static_cast<std::size_t>(injected_volumes(options_)));
     all.push_back(lit.light);
   }
-  scale_ = light_scale(options_.format(), all, grids_.back().cell);
+  scale_ = light_scale(options_.format(), all, grids_.back().cell, other);
 }
 
 void FrameLights::rasterize_shadows() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/session.hpp"
+#include "kernels/shared/grid.h"
 #include "options/render_options.hpp"
 #include "pipeline/made_of.hpp"
 #include "pipeline/rasterize.hpp"
@@ -24,8 +25,9 @@ class FrameLights {
               const RenderOptions& options);
 
   /// The lights that shine with `camera`, as the scene has them now, over cascades that stand at `grids`. `triangles`: what
-  /// the scene's are made of now.
-  void prepare(const Camera& camera, const std::vector<ClpvGrid>& grids, const MadeOf& triangles);
+  /// the scene's are made of now; `other`: the most light that is none of theirs, as light_scale() wants it.
+  void prepare(const Camera& camera, const std::vector<ClpvGrid>& grids, const MadeOf& triangles,
+               double other = 0);
 
   /// Brings to date the shadow maps, or the RSMs that light a cascade.
   void rasterize_shadows();

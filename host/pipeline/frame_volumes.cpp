@@ -22,9 +22,7 @@ bool sweeps(const RenderOptions& options) {
 
 /// Of what is hidden, in one buffer.
 std::size_t sight_bytes(const RenderOptions& options, int grid) {
-  return options.gather == Gathering::visible
-             ? SceneSight::bytes(grid) * static_cast<std::size_t>(options.cascades)
-             : 0;
+  return options.gather == Gathering::visible ? SceneSight::bytes(grid, options.cascades) : 0;
 }
 
 /// Bytes of the volumes of a frame at this grid.
@@ -36,8 +34,9 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   };
   const VolumeShape lit = light_shape(tried, basis), blocking = geometry_shape(tried, basis),
                     carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
-  const double masks =
-      options.blockers == Blockers::scene ? static_cast<double>(SceneBlocker::bytes(grid)) : 0;
+  const double masks = options.blockers == Blockers::scene
+                           ? static_cast<double>(SceneBlocker::bytes(grid, options.cascades))
+                           : 0;
   const double reflecting = options.bounces == Bounces::one
                                 ? 0
                                 : (options.bounces == Bounces::all ? 2 : 1) * options.cascades *

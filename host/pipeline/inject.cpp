@@ -56,14 +56,15 @@ bool Injector::looks_up(Kind kind) const {
   return kind == Kind::light || blocks_by_lobes(options_.blocking);
 }
 
-Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format) const {
+Injector::Kernels Injector::make_kernels(const Variant& variant) const {
+  const Kind kind = variant.kind;
   const bool light = kind == Kind::light;
   const Literals both = Literals()
                             .flag("CLPV_GEOMETRY", !light)
                             .flag("CLPV_TRILINEAR", light && options_.trilinear)
-                            .flag("CLPV_SURFACE_PAPER", format == RsmFormat::paper);
+                            .flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
   ProgramSource find{"find_cells.cl", both, {}}, sum{"inject.cl", both, {}};
-  find.literals.number("CLPV_STRIP", strip_);
+  find.literals.number("CLPV_STRIP", strip_).flag("CLPV_POINTS", variant.points);
   sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
   add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
   sum.generated = (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
@@ -73,10 +74,9 @@ Injector::Kernels Injector::make_kernels(Kind kind, RsmFormat format) const {
           Kernel(session_, sum, "join_segments")};
 }
 
-Injector::Kernels& Injector::kernels(Kind kind, RsmFormat format) {
-  const std::pair key(kind, format);
-  auto found = kernels_.find(key);
-  if (found == kernels_.end()) found = kernels_.emplace(key, make_kernels(kind, format)).first;
+Injector::Kernels& Injector::kernels(const Variant& variant) {
+  auto found = kernels_.find(variant);
+  if (found == kernels_.end()) found = kernels_.emplace(variant, make_kernels(variant)).first;
   return found->second;
 }
 
@@ -104,9 +104,10 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
                     height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
   if (texels == 0) return;
   reserve(texels);
-  Kernels& kernel = kernels(kind, surface.format);
-  kernel.find_cells.set(surface.view, grid, surface.depth, surface.normal, surface.colour,
-                        surface.colour_scale, sorter_.keys(), details_);
+  const bool points = surface.position.exists();
+  Kernels& kernel = kernels({kind, surface.format, points});
+  kernel.find_cells.set(surface.view, grid, points ? surface.position : surface.depth, surface.normal,
+                        surface.colour, surface.colour_scale, sorter_.keys(), details_);
   if (!light) kernel.find_cells.add(step);
   kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
                            strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <compare>
 #include <map>
-#include <utility>
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
@@ -26,7 +26,7 @@ class Injector {
  public:
   Injector(Session& session, const Basis& basis, const InjectOptions& options);
 
-  /// Adds the virtual point lights of an RSM to `light` [W/sr]: `grid` cells, 3 channels.
+  /// Adds the virtual point lights of an RSM, or of an Emitter, to `light` [W/sr]: `grid` cells, 3 channels.
   /// Texels that are empty, dark, not finite or outside the grid add nothing.
   void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light);
 
@@ -41,8 +41,14 @@ class Injector {
   struct Kernels {
     Kernel find_cells, sum_segments, join_segments;
   };
-  Kernels make_kernels(Kind kind, RsmFormat format) const;
-  Kernels& kernels(Kind kind, RsmFormat format);
+  struct Variant {
+    Kind kind;
+    RsmFormat format;
+    bool points;  ///< that no view sees
+    auto operator<=>(const Variant&) const = default;
+  };
+  Kernels make_kernels(const Variant& variant) const;
+  Kernels& kernels(const Variant& variant);
   bool looks_up(Kind kind) const;  ///< in the table, where there is one
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
@@ -55,7 +61,7 @@ class Injector {
   LookupTable table_;
   CellSorter sorter_;
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
-  std::map<std::pair<Kind, RsmFormat>, Kernels> kernels_;
+  std::map<Variant, Kernels> kernels_;
   Accumulator accumulator_;
   Buffer details_, partials_, firsts_;
 };

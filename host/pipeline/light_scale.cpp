@@ -28,8 +28,9 @@ double most_flux(const ClpvLight& light, double cell) {
 
 }  // namespace
 
-float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell) {
-  double flux = 0;
+float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
+                  double other) {
+  double flux = other;
   for (const ClpvLight& light : lights) flux += most_flux(light, static_cast<double>(coarsest_cell));
   if (format.storage != Storage::float16 || !(flux > 0)) return 1;
   const double doublings = std::floor(std::log2(kFull * std::numbers::pi / flux));

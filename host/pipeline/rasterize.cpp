@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "kernels/shared/raster.h"
+#include "kernels/shared/region.h"
+#include "pipeline/view.hpp"
 
 namespace clpv {
 namespace {
@@ -11,7 +13,7 @@ namespace {
 static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kLanes = 8;        // triangles a work-item sets up
+constexpr std::size_t kItemsARun = CLPV_RUN / 8;  // a work-item sets eight triangles up
 constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
@@ -55,6 +57,7 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       bin_entries_(session, kBin, "bin_entries") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
+  session_.reserve(runs_, scene.runs->bounds().size() * sizeof(cl_uint), "runs of triangles in sight");
   reserve_list(scene.triangle_count / 2 + kGroup);
   reserve_entries(scene.triangle_count + kGroup);
 }
@@ -114,10 +117,18 @@ void Rasterizer::find_visible(const Pass& pass) {
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   session_.reserve(places_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
-  draw(pass, 0, scene_.triangle_count, true);
+  draw(pass, 0, list_runs(pass.view), true);
 }
 
-/// Lists the triangles of a range that may cover a pixel, and enters them for the tiles they are over.
+/// Runs of triangles that may be in sight; how many these are.
+unsigned Rasterizer::list_runs(const ClpvView& view) {
+  const std::vector<cl_uint> in_sight =
+      scene_.runs->which([&](const Bounds& run) { return may_be_in_sight(view, run); });
+  session_.write(runs_, in_sight);
+  return static_cast<unsigned>(in_sight.size());
+}
+
+/// Lists the triangles of a range of runs that may cover a pixel, and enters them for the tiles they are over.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   Drawing& kernels = drawing(pass.view);
   const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
@@ -125,9 +136,9 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
   kernels.set_up
-      .set(pass.view, first, count, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
-           list_room(), listed_, entry_room(), entries_, places_, to_clip_)
-      .launch((count + kLanes - 1) / kLanes, kGroup);
+      .set(pass.view, runs_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
+           scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, places_, to_clip_)
+      .launch(count * kItemsARun, kGroup);
   kernels.set_up_clipped
       .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, places_, to_clip_)
@@ -145,7 +156,7 @@ void Rasterizer::bin(const ClpvView& view) {
       .launch(groups * kGroup, kGroup);
 }
 
-/// Lists a range of triangles by tile, growing the lists where they are too short; false where they would
+/// Lists the triangles of a range of runs by tile, growing the lists where they are too short; false where they would
 /// grow too long.
 bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
   for (;;) {
@@ -160,7 +171,7 @@ bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
   }
 }
 
-/// Draws a range of triangles; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
+/// Draws a range of runs; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
 /// lists would grow too long.
 void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
   if (list(pass, first, count)) return draw_tiles(pass.view, fresh);

@@ -19,7 +19,7 @@ namespace clpv {
 class Rasterizer {
  public:
   /// Entries of all tiles' lists of triangles held at a time, 4 bytes each. A scene that needs more (hundreds of
-  /// screen-filling layers) is drawn in several goes; the result is the same.
+  /// screen-filling layers) is drawn in several goes, of a run of triangles at least; the result is the same.
   static constexpr std::size_t kMostListed = std::size_t{1} << 25;
 
   /// `scene` must stay as it is while the rasteriser lives (its handles are copied, not its contents).
@@ -65,6 +65,7 @@ class Rasterizer {
   cl_uint entry_room() const;  ///< and entries
   void clear(Surface& surface);
   void find_visible(const Pass& pass);
+  unsigned list_runs(const ClpvView& view);
   void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
   bool list(const Pass& pass, unsigned first, unsigned count);
   void set_up(const Pass& pass, unsigned first, unsigned count);
@@ -77,7 +78,7 @@ class Rasterizer {
   std::map<bool, Drawing> drawing_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_places_, start_places_, bin_entries_;
-  Buffer listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
+  Buffer runs_, listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
 };
 
 }  // namespace clpv

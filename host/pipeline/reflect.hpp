@@ -10,6 +10,7 @@
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/scene_buffers.hpp"
+#include "pipeline/triangle_marks.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
@@ -18,7 +19,8 @@ namespace clpv {
 /// in faces of a cell times its albedo. Deterministic: integers are summed, in whatever order.
 class SceneReflector {
  public:
-  /// Of `cascades` cascades of `grid` cells along each axis, in volumes of `format`. `scene` must stay as it is.
+  /// Of `cascades` cascades of `grid` cells along each axis, in volumes of `format`. `scene` must stay as it is,
+  /// but for upload_moving().
   /// Throws Error(run_time) where the device's memory does not suffice.
   SceneReflector(Session& session, const SceneBuffers& scene, int grid, int cascades,
                  const VolumeFormat& format);
@@ -29,15 +31,17 @@ class SceneReflector {
   /// kReflectingSides numbers, three channels.
   const Volume& reflectors(std::size_t cascade) const { return *reflectors_[cascade]; }
 
-  /// Of what is counted, whatever the number of cascades.
+  /// Next time all is made anew.
+  void forget() { sides_.forget(); }
+
+  /// Of what is counted, whatever the number of cascades: that of one is made anew from all triangles near it.
   static std::size_t bytes(int grid);
 
  private:
-  Session& session_;
   SceneBuffers scene_;
   int grid_;
   std::vector<std::unique_ptr<Volume>> reflectors_;
-  Buffer sides_;
+  TriangleMarks sides_;
   Kernel triangles_, shares_;
 };
 

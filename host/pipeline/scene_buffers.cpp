@@ -134,8 +134,8 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   SceneBuffers buffers;
   buffers.vertices = session.upload(scene.vertices, "vertices");
   buffers.triangles = session.upload(scene.triangles, "triangles");
-  buffers.materials = session.upload(
-      with_textures(scene.materials, static_cast<unsigned>(scene.textures.size())), "materials");
+  buffers.white = static_cast<unsigned>(scene.textures.size());
+  buffers.materials = session.upload(with_textures(scene.materials, buffers.white), "materials");
   buffers.textures = session.upload(table.levels, "texture table");
   buffers.texels = session.upload(table.texels, "textures");
   buffers.vertex_count = static_cast<unsigned>(scene.vertices.size());
@@ -145,11 +145,12 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
   buffers.masked = std::any_of(scene.materials.begin(), scene.materials.end(), is_masked);
   buffers.bounds = bounds_of(scene.vertices);
+  buffers.runs = std::make_shared<TriangleRuns>(scene);
   return buffers;
 }
 
 void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) {
-  for (const Part& part : scene.moving) {
+  for (const Part& part : buffers.runs->move(scene)) {
     session.write(buffers.vertices, std::span(scene.vertices).subspan(part.first_vertex, part.vertices),
                   part.first_vertex);
     session.write(buffers.triangles, std::span(scene.triangles).subspan(part.first_triangle, part.triangles),

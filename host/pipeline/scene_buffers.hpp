@@ -3,9 +3,10 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <memory>
 
 #include "device/session.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/triangle_runs.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -17,11 +18,13 @@ struct SceneBuffers {
   /// ClpvTexture: CLPV_TEXTURE_LEVELS mip levels a texture, the last one repeated; after the scene's textures a
   /// white one.
   Buffer textures;
-  Buffer texels;  ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
+  Buffer texels;       ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
+  unsigned white = 0;  ///< that texture
   unsigned vertex_count = 0, triangle_count = 0;
   /// What the scene has at all: textures, vertex colours other than 1, materials that emit, materials with holes.
   bool textured = false, coloured = false, emissive = false, masked = false;
-  Bounds bounds;  ///< of all vertices [m]
+  Bounds bounds;                       ///< of all vertices [m]
+  std::shared_ptr<TriangleRuns> runs;  ///< where triangles are: one for all copies
 };
 
 /// Copies a scene to the device. Mip levels are box-filtered in linear light; those of a texture that a

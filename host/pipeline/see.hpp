@@ -8,6 +8,7 @@
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "pipeline/scene_buffers.hpp"
+#include "pipeline/triangle_marks.hpp"
 
 namespace clpv {
 
@@ -15,24 +16,26 @@ namespace clpv {
 /// centres of cells, as kernels/see.cl lays them out. Deterministic: bits are set in whatever order.
 class SceneSight {
  public:
-  /// Of `cascades` cascades of `grid` cells along each axis. `scene` must stay as it is.
+  /// Of `cascades` cascades of `grid` cells along each axis. `scene` must stay as it is, but for
+  /// upload_moving().
   /// Throws Error(run_time) where the device's memory does not suffice.
   SceneSight(Session& session, const SceneBuffers& scene, int grid, int cascades);
 
-  /// Makes what is known of a cascade anew.
+  /// Brings what is known of a cascade to where `grid` stands and what the scene is now.
   void see(std::size_t cascade, const ClpvGrid& grid);
 
   /// bytes() a cascade, finest first.
-  const Buffer& hidden() const { return hidden_; }
+  const Buffer& hidden() const { return hidden_.buffer(); }
 
-  /// Of one cascade.
+  /// Next time all is made anew.
+  void forget() { hidden_.forget(); }
+
+  /// Of one cascade; and of so many, with what it takes to make them.
   static std::size_t bytes(int grid);
+  static std::size_t bytes(int grid, int cascades);
 
  private:
-  Session& session_;
-  SceneBuffers scene_;
-  int grid_;
-  Buffer hidden_;
+  TriangleMarks hidden_;
   Kernel triangles_;
 };
 

@@ -82,9 +82,13 @@ SurfaceImage read_surface(Session& session, const Surface& surface) {
   const std::size_t count = pixels(surface.view);
   SurfaceImage image;
   image.view = surface.view;
-  image.depth = session.read<float>(surface.depth, count);
   image.normal = read_texels(session, surface.normal, count, surface.format, 2, -1);
   image.colour = read_texels(session, surface.colour, count, surface.format, surface.colour_scale, 0);
+  if (surface.position.exists()) {
+    image.position = session.read<glm::vec4>(surface.position, count);
+    return image;
+  }
+  image.depth = session.read<float>(surface.depth, count);
   if (surface.emissive.exists()) image.emissive = session.read<glm::vec4>(surface.emissive, count);
   for (std::size_t i = 0; i < count; ++i) {
     glm::vec4& normal = image.normal[i];
@@ -103,7 +107,9 @@ Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat fo
   require_size(image.normal.size(), count, "normals");
   require_size(image.colour.size(), count, "colours");
   require_size(image.emissive.size(), count, "emission");
+  require_size(image.position.size(), count, "positions");
   Surface surface = make_surface(session, image.view, format, !image.emissive.empty());
+  if (!image.position.empty()) surface.position = session.upload(image.position, "positions of a surface");
   surface.colour_scale = colour_scale;
   session.write(surface.depth, image.depth);
   write_texels(session, surface.normal, image.normal, format, 2, -1);

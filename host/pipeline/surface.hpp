@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view sees: an RSM or the camera's G-buffer, on the device and read back.
+// What a view sees: an RSM or the camera's G-buffer, on the device and read back; or points that none sees.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -23,6 +23,8 @@ struct Surface {
   Buffer normal;           ///< unit, world space, turned towards the viewer; 0 where there is no surface
   Buffer colour;           ///< camera: albedo; light: flux of the virtual point light [W]
   Buffer emissive;         ///< camera only: float4, emitted radiance [W/m^2/sr]
+  /// Points that no view sees (Emitter): float4 [m], in place of depth; of `view` the size alone counts.
+  Buffer position;
 };
 
 /// A surface of the view's size for a rasteriser to fill; contents undefined. `with_emissive`: has

@@ -7,6 +7,7 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
+#include "codegen/sky_light.hpp"
 #include "codegen/sweep_source.hpp"
 #include "pipeline/cascade.hpp"
 #include "support/error.hpp"
@@ -72,6 +73,13 @@ ProgramSource border_program(const SweepOptions& options, int parts, int coarser
   return source;
 }
 
+ProgramSource sky_program(const SweepOptions& options, int parts) {
+  ProgramSource source{"sweep_sky.cl", {}, {}};
+  source.literals.integer("CLPV_GRID", options.grid).integer("CLPV_PARTS", squared(parts));
+  add_format_literals(source.literals, options.format, 8);
+  return source;
+}
+
 }  // namespace
 
 double Sweeper::bytes(const SweepOptions& options) {
@@ -131,7 +139,9 @@ Sweeper::Passes Sweeper::make_passes(const std::vector<int>& parts) {
               Kernel(session_, sweep_program(options_, parts[c], whole_bins()),
                      whole_bins() ? "sweep_bin" : "sweep_plane"),
               {},
-              zeroed_buffer(session_, shell_bytes(options_, parts[c], c), "light for a finer cascade")};
+              zeroed_buffer(session_, shell_bytes(options_, parts[c], c), "light for a finer cascade"),
+              {},
+              {}};
     if (coarser > 0)
       pass.let_in.emplace(session_, border_program(options_, parts[c], coarser), "sweep_border");
     passes.push_back(std::move(pass));
@@ -156,6 +166,31 @@ void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
   }
 }
 
+void Sweeper::let_in(const Sky& sky) {
+  let_in(passes_, sky);
+  let_in(first_passes_, sky);
+}
+
+void Sweeper::let_in(Passes& passes, const Sky& sky) {
+  if (passes.empty()) return;
+  Pass& coarsest = passes.back();
+  coarsest.sky = session_.upload(swept_sky(sky, coarsest.parts), "light of the sky");
+  coarsest.let_sky_in.emplace(session_, sky_program(options_, coarsest.parts), "sweep_sky");
+}
+
+/// Where planes of odd number begin: the one before the first is of them.
+std::size_t Sweeper::before_first(const Pass& pass) const {
+  return whole_bins() ? 0 : 3 * directions_of(pass.parts) * sweep_plane_numbers(options_.grid);
+}
+
+void Sweeper::let_sky_in(Pass& pass, float cell) {
+  pass.let_sky_in->set(pass.sky, sky_scale_ * (cell * cell), live_, static_cast<cl_int>(before_first(pass)),
+                       border_);
+  const auto rows = static_cast<std::size_t>(options_.grid) + 2;
+  pass.let_sky_in->launch({(rows + 7) / 8, rows, 9 * directions_of(pass.parts)},
+                          {1, std::min(rows, kRowGroup), 1});
+}
+
 void Sweeper::let_nothing_in() {
   session_.fill_zero(border_, border_.bytes());
   session_.fill_zero(live_, live_.bytes());
@@ -163,13 +198,12 @@ void Sweeper::let_nothing_in() {
 
 void Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   Pass& pass = passes[cascade];
+  if (pass.let_sky_in) return let_sky_in(pass, grids[cascade].cell);
   if (!pass.let_in) return let_nothing_in();
   const std::size_t swept = 3 * directions_of(pass.parts);
-  // Planes of odd number have their own place, and the one before the first is of them.
-  const std::size_t before = whole_bins() ? 0 : swept * sweep_plane_numbers(options_.grid);
   const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
   pass.let_in->set(bins_, pass.directions, passes[cascade + 1].shell, shell_of(options_.grid, offset),
-                   offset[0], offset[1], offset[2], live_, static_cast<cl_int>(before), border_);
+                   offset[0], offset[1], offset[2], live_, static_cast<cl_int>(before_first(pass)), border_);
   const auto rows = static_cast<std::size_t>(options_.grid) + 2;
   pass.let_in->launch({(rows + 7) / 8, rows, 3 * swept}, {1, std::min(rows, kRowGroup), 1});
 }

@@ -15,6 +15,7 @@
 #include "options/stage_options.hpp"
 #include "pipeline/bounce.hpp"
 #include "pipeline/sweep_volumes.hpp"
+#include "scene/sky.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
@@ -36,6 +37,11 @@ class Sweeper {
   /// for what is sent back in all bounces depends on both. `reflectors` must live on.
   void reflect(std::size_t cascade, const Volume& reflectors);
 
+  /// What shines into the coarsest cascade from beyond it, from now on.
+  void let_in(const Sky& sky);
+  /// So many times as bright: what `injected` holds in place of 1 W/sr.
+  void scale_sky(float scale) { sky_scale_ = scale; }
+
   /// Sweeps `injected` through cascade `cascade` of `grids`, whose coarser one has been swept before, and leaves light of
   /// swept_basis(), as radiance times s^2, in `accumulated`. Throws Error(run_time) for grids that are not nested.
   void sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
@@ -52,12 +58,16 @@ class Sweeper {
     int parts;
     Buffer directions;  ///< ClpvSweepDirection
     Kernel sweep;
-    std::optional<Kernel> let_in;  ///< none: nothing is beyond
-    Buffer shell;                  ///< light for the next finer cascade
+    std::optional<Kernel> let_in;      ///< none: no coarser cascade is beyond
+    Buffer shell;                      ///< light for the next finer cascade
+    std::optional<Kernel> let_sky_in;  ///< none: nor is a sky
+    Buffer sky;                        ///< what comes in along each direction, of cells of 1 m^2
   };
   using Passes = std::vector<Pass>;  ///< one a cascade
   Passes make_passes(const std::vector<int>& parts);
+  void let_in(Passes& passes, const Sky& sky);
   void let_nothing_in();
+  void let_sky_in(Pass& pass, float cell);
   void let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   struct Light {
     const Buffer& sources;
@@ -66,6 +76,7 @@ class Sweeper {
   void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell);
   void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
   bool whole_bins() const;
+  std::size_t before_first(const Pass& pass) const;
 
   Session& session_;
   SweepOptions options_;
@@ -78,6 +89,7 @@ class Sweeper {
   std::optional<Bouncer> bouncer_;  ///< none: one bounce
   Passes first_passes_;             ///< of what is to bounce, along 24 directions
   Buffer first_light_;              ///< that these sweep
+  float sky_scale_ = 1;
 };
 
 }  // namespace clpv

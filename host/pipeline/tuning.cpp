@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "options/render_options.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/input_file.hpp"
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
@@ -58,9 +58,9 @@ std::filesystem::path TuningCache::file_of(const Device& device, const TuningSub
 
 std::optional<Tuning> TuningCache::load(const Device& device, const TuningSubject& subject) const {
   const std::filesystem::path file = file_of(device, subject);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  const nlohmann::json entry = nlohmann::json::parse(in, nullptr, false);
+  const auto kept = file_bytes(file);
+  if (!kept) return std::nullopt;
+  const nlohmann::json entry = nlohmann::json::parse(*kept, nullptr, false);
   try {
     if (entry.is_discarded()) throw Error(ExitCode::bad_input, "{}: not JSON", file.string());
     require_sound(entry, file.string());

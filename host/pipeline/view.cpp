@@ -14,6 +14,7 @@ namespace {
 constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be as close as that
 constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
 constexpr double kRelativeMargin = 1e-3;  // the same, as a part of the scene's depth
+constexpr double kRounding = 1e-5;        // of distances from the eye, in kernels
 
 struct Axes {
   glm::dvec3 right, up, forward;
@@ -172,6 +173,25 @@ std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Boun
         perspective_light_view(light_axes(forward), light, 1, size, bounds);
   }
   return views;
+}
+
+bool may_be_in_sight(const ClpvView& view, const Bounds& bounds) {
+  const glm::dvec3 lower(bounds.lower), upper(bounds.upper), half = 0.5 * (upper - lower);
+  const glm::dvec3 centre = 0.5 * (lower + upper) - vector(view.eye);
+  const double margin = kRounding * (glm::length(centre) + glm::length(half));
+  // Whether some of the box may be on the inner side of a border: along . p + offset >= 0, p from the eye.
+  const auto reaches = [&](const glm::dvec3& along, double offset) {
+    return glm::dot(along, centre) + glm::dot(glm::abs(along), half) + offset >= -margin * glm::length(along);
+  };
+  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
+  const bool parallel = view.orthographic != 0;
+  const double width = view.half_width, height = view.half_height;
+  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
+                   higher = parallel ? glm::dvec3(0) : height * forward;
+  const double beside = parallel ? width : 0, above = parallel ? height : 0;
+  return reaches(wider + right, beside) && reaches(wider - right, beside) && reaches(higher + up, above) &&
+         reaches(higher - up, above) && reaches(-forward, view.far_depth) &&
+         (parallel || reaches(forward, -double{view.near_depth}));
 }
 
 bool rsm_follows_cascade(const ClpvLight& light) {

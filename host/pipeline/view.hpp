@@ -10,16 +10,12 @@
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/view.h"
+#include "scene/box.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
 
 static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW && sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
-
-/// An axis-aligned box [m].
-struct Bounds {
-  glm::vec3 lower{0}, upper{0};
-};
 
 /// Outer half-angle [rad] up to which a spot light is looked at through one perspective view; beyond it the
 /// outer texels grow without limit (tan), and it takes the six views of a point light.
@@ -27,6 +23,9 @@ inline constexpr double kWidestSpotView = 1.0472;  // 60 degrees
 
 /// What the camera sees, `width` x `height` pixels, square ones. Nothing is too far to be seen.
 ClpvView camera_view(const Camera& camera, int width, int height);
+
+/// False only where nothing in `bounds` is in sight, by a margin for rounding: all of it is outside one of the view's borders.
+bool may_be_in_sight(const ClpvView& view, const Bounds& bounds);
 
 /// A directional light's orthographic view of a cascade, `size` texels along each side. It covers the
 /// cascade's cube and half a cell round it (virtual point lights move by as much), for any direction of the

@@ -59,8 +59,9 @@ glm::dvec3 ray(const ClpvView& view, std::size_t pixel) {
 
 bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
   const glm::dvec3 normal = vector(surface.normal[pixel]);
-  return surface.depth[pixel] > 0 && std::isfinite(surface.depth[pixel]) && finite(normal) &&
-         glm::dot(normal, normal) > 0;
+  if (!finite(normal) || glm::dot(normal, normal) == 0) return false;
+  if (!surface.position.empty()) return finite(vector(surface.position[pixel]));
+  return surface.depth[pixel] > 0 && std::isfinite(surface.depth[pixel]);
 }
 
 /// One source's blocking shares, before it is merged with others.
@@ -100,14 +101,15 @@ glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const Clpv
   const glm::dvec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
   const auto px = static_cast<double>(pixel % surface.view.width);
   const auto py = static_cast<double>(pixel / surface.view.width);
-  const glm::dvec3 p = surface_position(surface.view, px, py, surface.depth[pixel]);
+  const glm::dvec3 p = surface.position.empty() ? surface_position(surface.view, px, py, surface.depth[pixel])
+                                                : vector(surface.position[pixel]);
   return (p - origin) / static_cast<double>(grid.cell) + (light ? 0.5 : 0.0) * vector(surface.normal[pixel]);
 }
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
                   const InjectOptions& options, Volume& light) {
   const Lobes lobes(basis, options.lobes);
-  for (std::size_t pixel = 0; pixel < rsm.depth.size(); ++pixel) {
+  for (std::size_t pixel = 0; pixel < rsm.normal.size(); ++pixel) {
     const glm::dvec3 flux = vector(rsm.colour[pixel]);
     if (!has_surface(rsm, pixel) || !finite(flux)) continue;
     const std::vector<double> c = lobe(basis, lobes, vector(rsm.normal[pixel]), options.unit_flux_lobes);

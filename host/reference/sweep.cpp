@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "basis/sweep.hpp"
+#include "codegen/sky_light.hpp"
 #include "reference/transmit.hpp"
 
 namespace clpv::reference {
@@ -32,9 +33,11 @@ double sampled(const Volume& field, int channel, const glm::dvec3& at) {
 
 /// What a cascade's border knows of the coarser one.
 struct Beyond {
-  const SweptCascade* cascade = nullptr;  ///< null: nothing comes in
+  const SweptCascade* cascade = nullptr;  ///< null: there is none
   const Fields* fields = nullptr;
   const std::vector<SweepBin>* bins = nullptr;
+  std::vector<glm::dvec3> sky =
+      {};  ///< radiance of each direction, where no cascade is; none: nothing comes in
 };
 
 class Sweep {
@@ -112,7 +115,12 @@ class Sweep {
 
   /// Light of the coarser cascade at a cell outside this grid: the same radiance, D = L s^2 w_m.
   double inflow(int channel, int bin, int part, const SweepDirection& d, const glm::ivec3& cell) const {
-    if (beyond_.cascade == nullptr) return 0;
+    if (beyond_.cascade == nullptr) {
+      if (beyond_.sky.empty()) return 0;
+      const double edge = double{cascade_.grid.cell};
+      return beyond_.sky[static_cast<std::size_t>(bin * cascade_.parts * cascade_.parts + part)][channel] *
+             edge * edge * d.flux;
+    }
     const ClpvGrid &fine = cascade_.grid, &coarse = beyond_.cascade->grid;
     glm::dvec3 at;
     for (int axis = 0; axis < 3; ++axis) {
@@ -157,11 +165,12 @@ Volume collect(const std::vector<SweepBin>& bins, const Fields& fields) {
 }  // namespace
 
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
-                          const std::vector<SweptCascade>& cascades) {
+                          const std::vector<SweptCascade>& cascades, const Sky* sky) {
   std::vector<Volume> results(cascades.size());
   Fields coarser;
   std::vector<SweepBin> coarser_bins;
   Beyond beyond;
+  if (sky != nullptr) beyond.sky = sky_means(*sky, cascades.back().parts);
   for (std::size_t c = cascades.size(); c-- > 0;) {
     std::vector<SweepBin> bins = sweep_bins(cascades[c].parts);
     const Sweep sweep(basis, transport, cascades[c], beyond);

@@ -8,6 +8,7 @@
 #include "basis/transport.hpp"
 #include "kernels/shared/grid.h"
 #include "reference/volume.hpp"
+#include "scene/sky.hpp"
 
 namespace clpv::reference {
 
@@ -20,8 +21,9 @@ struct SweptCascade {
 };
 
 /// Light of `bins24`, radiance times s^2, of every cascade: finest first, as `cascades` are. `transport`: TransportKind::sweep.
+/// `sky`: shines into the coarsest; null: none.
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
-                          const std::vector<SweptCascade>& cascades);
+                          const std::vector<SweptCascade>& cascades, const Sky* sky = nullptr);
 
 /// What is kept of it: light of swept_basis().
 Volume kept_of(const Volume& swept);

@@ -24,6 +24,10 @@ inline constexpr std::uint32_t kImageSide = 16384;
 inline constexpr std::uint64_t kTexelBytes = 1ull << 30;
 inline constexpr std::size_t kTextures = 4096;
 
+// A sky's map, 12 bytes a texel, and its radiance [W/m^2/sr]: the sun's own is 2e7 as radiance, 1.6e9 as luminance.
+inline constexpr int kSkyWidth = 8192, kSkyHeight = 4096, kSkyChannels = 16;
+inline constexpr double kSkyRadiance = 1e10;
+
 // Entries of any one array of the JSON (nodes, meshes, accessors, ...), materials, and depth of the node tree. A
 // material takes tinygltf some 3 kB.
 inline constexpr std::size_t kListEntries = 1u << 18;

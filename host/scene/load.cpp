@@ -76,6 +76,7 @@ void MovingScene::load_described(const std::filesystem::path& path, const LoadOp
   scene_.exposure = description_.exposure;
   scene_.cascade_size = description_.cascade_size;
   scene_.cascades = description_.cascades;
+  scene_.sky = description_.sky;
 }
 
 void MovingScene::show(DescribedViews views) {
@@ -99,7 +100,7 @@ MovingScene::MovingScene(const std::filesystem::path& path, const LoadOptions& o
   if (motion_.empty()) motion_.tree = {};  // of no use any more
   scene_.moving = parts_of(motion_.meshes);
   find_bounds(scene_);
-  add_defaults(scene_, description_.lights.has_value(), notes);
+  add_defaults(scene_, description_.lights.has_value() || scene_.sky, notes);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
   scene_.name = path.stem().string();

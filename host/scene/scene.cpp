@@ -38,11 +38,13 @@ std::vector<Light> Scene::lights_for(const Camera& camera) const {
   return chosen;
 }
 
+void add_part(Fingerprint& print, const Scene& scene, const Part& part) {
+  print.add(std::as_bytes(std::span(scene.vertices).subspan(part.first_vertex, part.vertices)));
+  print.add(std::as_bytes(std::span(scene.triangles).subspan(part.first_triangle, part.triangles)));
+}
+
 void add_moving(Fingerprint& print, const Scene& scene) {
-  for (const Part& part : scene.moving) {
-    print.add(std::as_bytes(std::span(scene.vertices).subspan(part.first_vertex, part.vertices)));
-    print.add(std::as_bytes(std::span(scene.triangles).subspan(part.first_triangle, part.triangles)));
-  }
+  for (const Part& part : scene.moving) add_part(print, scene, part);
 }
 
 }  // namespace clpv

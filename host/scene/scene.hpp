@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 namespace clpv {
 
 class Fingerprint;
+struct Sky;
 
 using Vertex = ClpvVertex;
 using Triangle = ClpvTriangle;
@@ -61,6 +63,7 @@ struct Scene {
   std::vector<Part> moving;     ///< what of its vertices and triangles changes with time
   std::vector<Camera> cameras;  ///< at least one after loading
   std::vector<Light> lights;
+  std::shared_ptr<const Sky> sky;     ///< null: nothing shines from beyond the scene
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
   std::optional<double> start_reach;  ///< reach() at 0 s, of a scene that moves
   float exposure = 0;                 ///< [EV]: the shown image is radiance x 2^exposure
@@ -79,7 +82,8 @@ struct Scene {
   std::vector<Light> lights_for(const Camera& camera) const;
 };
 
-/// Adds what of a scene's triangles changes with time, as it is now.
+/// Adds what of a scene's triangles changes with time, as it is now; or one part of that.
 void add_moving(Fingerprint& print, const Scene& scene);
+void add_part(Fingerprint& print, const Scene& scene, const Part& part);
 
 }  // namespace clpv

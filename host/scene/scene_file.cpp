@@ -13,6 +13,7 @@
 #include "scene/input.hpp"
 #include "scene/light_cone.hpp"
 #include "scene/light_kind.hpp"
+#include "scene/sky.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 
@@ -85,6 +86,12 @@ const std::vector<Rule>& rules() {
         integer("/cascades/count", 1, 16),
         number("/cascades/size_metres", 1e-3, kFar),
         text("/comment"),
+        object("/sky"),
+        vector("/sky/radiance", 3, 0, bounds::kSkyRadiance),
+        vector("/sky/ground", 3, 0, bounds::kSkyRadiance),
+        text("/sky/map"),
+        number("/sky/scale", 0, kBright),
+        number("/sky/rotation_degrees", -360, 360),
     };
     for (const std::vector<Rule>& more :
          {view_rules(), key_rules(keyed_cameras()), key_rules(keyed_lights())})
@@ -237,6 +244,26 @@ json entries_at(const std::vector<KeyedEntry>& entries, double seconds) {
   return list;
 }
 
+/// A constant, or a map that lies beside the scene file or below.
+Sky described_sky(const json& given, const std::filesystem::path& folder, const std::string& file) {
+  if (given.contains("radiance") == given.contains("map")) {
+    refuse(file, "/sky", given.contains("map") ? "radiance and map" : "neither radiance nor map",
+           "one of them");
+  }
+  if (given.contains("radiance")) {
+    for (const char* key : {"scale", "rotation_degrees"}) {
+      if (given.contains(key))
+        refuse(file, pointer_to("/sky", key), "a value", "none, where the sky is even");
+    }
+    const glm::vec3 above(vector_in(given, "radiance"));
+    return given.contains("ground") ? parted_sky(above, glm::vec3(vector_in(given, "ground")))
+                                    : even_sky(above);
+  }
+  if (given.contains("ground")) refuse(file, "/sky/ground", "a value", "none, beside a map");
+  return read_sky(resolve_uri(folder, given["map"], file, "/sky/map"), given.value("scale", 1.0),
+                  given.value("rotation_degrees", 0.0) * kRadians);
+}
+
 }  // namespace
 
 bool SceneDescription::moves() const {
@@ -267,6 +294,8 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
     if (cascades.contains("count")) scene.cascades = cascades["count"].get<int>();
     if (cascades.contains("size_metres")) scene.cascade_size = cascades["size_metres"].get<float>();
   }
+  if (parsed.contains("sky"))
+    scene.sky = std::make_shared<const Sky>(described_sky(parsed["sky"], path.parent_path(), scene.file));
   scene.cameras = read_entries(parsed, "cameras", keyed_cameras(), scene.file);
   scene.lights = read_entries(parsed, "lights", keyed_lights(), scene.file);
   return scene;

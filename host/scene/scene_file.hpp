@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct SceneDescription {
   float exposure = 0;
   std::optional<float> cascade_size;  ///< [m]
   std::optional<int> cascades;
+  std::shared_ptr<const Sky> sky;                          ///< null: not given
   std::optional<std::vector<KeyedEntry>> cameras, lights;  ///< given: they replace the model's
 
   bool moves() const;

@@ -2,13 +2,14 @@
 #include "support/npy.hpp"
 
 #include <bit>
+#include <charconv>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <regex>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -18,7 +19,8 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 
 constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
 constexpr std::size_t kPreamble = kMagic.size() + 2;  // then the header's length, 16 bits
-constexpr std::size_t kAlignment = 64;                // of the data, asked by the format
+constexpr std::uintmax_t kMostArrayBytes = std::uintmax_t{1} << 32;
+constexpr std::size_t kAlignment = 64;  // of the data, asked by the format
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
@@ -36,20 +38,35 @@ std::size_t element_count(const std::filesystem::path& path, std::span<const std
   return count;
 }
 
-std::vector<std::size_t> parse_shape(const std::filesystem::path& path, const std::string& header) {
-  static const std::regex pattern(
-      R"(\{'descr': '<f4', 'fortran_order': False, 'shape': \(((?:\d{1,9}, ?)*(?:\d{1,9})?)\), \}\s*)");
-  std::smatch match;
-  if (!std::regex_match(header, match, pattern)) {
-    refuse(path, fmt::format("header {}; allowed is float32 ('<f4') in C order", header.substr(0, 80)));
-  }
+/// "3, 1, 2" or "4," or nothing, as Python writes the inside of a tuple; nothing where it is none. By hand: the standard
+/// library's regular expressions recurse once a character, and a header may have 65535.
+std::optional<std::vector<std::size_t>> parse_tuple(std::string_view list) {
+  constexpr std::size_t kLargest = 999999999;
   std::vector<std::size_t> shape;
-  const std::string list = match[1];
-  static const std::regex number(R"(\d+)");
-  for (std::sregex_iterator it(list.begin(), list.end(), number), end; it != end; ++it) {
-    shape.push_back(std::stoull(it->str()));
+  while (!list.empty()) {
+    std::size_t extent = 0;
+    const auto [end, error] = std::from_chars(list.data(), list.data() + list.size(), extent);
+    if (error != std::errc{} || extent > kLargest) return std::nullopt;
+    shape.push_back(extent);
+    list.remove_prefix(static_cast<std::size_t>(end - list.data()));
+    if (list.empty()) break;
+    if (list.front() != ',') return std::nullopt;
+    list.remove_prefix(1);
+    if (!list.empty() && list.front() == ' ') list.remove_prefix(1);
   }
   return shape;
+}
+
+std::vector<std::size_t> parse_shape(const std::filesystem::path& path, const std::string& header) {
+  constexpr std::string_view kBefore = "{'descr': '<f4', 'fortran_order': False, 'shape': (", kAfter = "), }";
+  std::string_view text(header);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\n')) text.remove_suffix(1);
+  if (text.size() >= kBefore.size() + kAfter.size() && text.starts_with(kBefore) && text.ends_with(kAfter)) {
+    text.remove_prefix(kBefore.size());
+    text.remove_suffix(kAfter.size());
+    if (auto shape = parse_tuple(text)) return *shape;
+  }
+  refuse(path, fmt::format("header {}; allowed is float32 ('<f4') in C order", header.substr(0, 80)));
 }
 
 }  // namespace
@@ -73,9 +90,9 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
 }
 
 NpyArray read_npy(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) refuse(path, "cannot be opened");
-  const std::string file{std::istreambuf_iterator<char>(stream), {}};
+  const auto bytes_read = file_bytes(path, kMostArrayBytes);
+  if (!bytes_read) refuse(path, "cannot be read");
+  const std::string& file = *bytes_read;
   // The last byte of the magic is the minor version.
   if (file.size() < kPreamble || file.compare(0, kMagic.size() - 1, kMagic, 0, kMagic.size() - 1) != 0) {
     refuse(path, "not a .npy file of version 1");
@@ -90,7 +107,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
     refuse(path, fmt::format("{} bytes of data; the shape asks for {}", bytes, count * sizeof(float)));
   }
   array.values.resize(count);
-  std::memcpy(array.values.data(), file.data() + kPreamble + length, bytes);
+  if (bytes > 0) std::memcpy(array.values.data(), file.data() + kPreamble + length, bytes);
   return array;
 }
 

@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kMostLinks = 40;  // one after the other, as Linux follows
+
 std::string reason(int code) {
   return std::generic_category().message(code);
 }
@@ -69,6 +71,13 @@ fs::path resolve(const fs::path& path) {
   // Absolute first: of a relative path that does not exist yet, weakly_canonical would leave the folder out.
   fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
   if (error) refuse(path, error.message());
+  // What is a link still leads to what is not there yet.
+  for (int hops = 0; fs::is_symlink(fs::symlink_status(target, error)); ++hops) {
+    if (hops == kMostLinks) refuse(path, "too many links");
+    const fs::path next = fs::read_symlink(target, error);
+    if (!error) target = fs::weakly_canonical(target.parent_path() / next, error);
+    if (error) refuse(path, error.message());
+  }
   if (!fs::is_directory(target.parent_path(), error)) {
     refuse(path, fmt::format("there is no folder {}", target.parent_path().string()));
   }

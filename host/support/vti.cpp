@@ -8,26 +8,12 @@
 #include <stdexcept>
 
 #include "support/output_file.hpp"
+#include "support/xml.hpp"
 
 namespace clpv {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out.push_back(c);
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -49,7 +35,7 @@ void write_vti(const std::filesystem::path& path, const VtiGrid& grid, std::span
     file += fmt::format(
         "<DataArray type=\"Float32\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
         "offset=\"{}\"/>\n",
-        escaped(array.name), array.components, data.size());
+        xml_escaped(array.name), array.components, data.size());
     const std::uint64_t bytes = array.values.size_bytes();
     data.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
     data.append(reinterpret_cast<const char*>(array.values.data()), bytes);

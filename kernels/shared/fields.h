@@ -19,6 +19,9 @@
     OFFSET(ClpvMaterial, emissive_texture) OFFSET(ClpvMaterial, flags)                             \
   SIZE(ClpvTexture) OFFSET(ClpvTexture, offset) OFFSET(ClpvTexture, width)                         \
     OFFSET(ClpvTexture, height) OFFSET(ClpvTexture, wrap)                                          \
+  SIZE(ClpvEmitter) OFFSET(ClpvEmitter, triangle) OFFSET(ClpvEmitter, u) OFFSET(ClpvEmitter, v)    \
+    OFFSET(ClpvEmitter, size) OFFSET(ClpvEmitter, rows) OFFSET(ClpvEmitter, first)                 \
+    OFFSET(ClpvEmitter, side)                                                                      \
   SIZE(ClpvView) OFFSET(ClpvView, eye) OFFSET(ClpvView, orthographic) OFFSET(ClpvView, right)      \
     OFFSET(ClpvView, half_width) OFFSET(ClpvView, up) OFFSET(ClpvView, half_height)                \
     OFFSET(ClpvView, forward) OFFSET(ClpvView, near_depth) OFFSET(ClpvView, width)                 \
@@ -29,7 +32,10 @@
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
     OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \
   SIZE(ClpvSweepShell) OFFSET(ClpvSweepShell, first) OFFSET(ClpvSweepShell, side)                  \
-    OFFSET(ClpvSweepShell, layers)
+    OFFSET(ClpvSweepShell, layers)                                                                 \
+  SIZE(ClpvRegion) OFFSET(ClpvRegion, base) OFFSET(ClpvRegion, cell) OFFSET(ClpvRegion, first)     \
+    OFFSET(ClpvRegion, boxes) OFFSET(ClpvRegion, moved) OFFSET(ClpvRegion, all)                    \
+    OFFSET(ClpvRegion, box)
 // clang-format on
 
 #endif

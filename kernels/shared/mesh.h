@@ -30,7 +30,7 @@ typedef struct {
 
 typedef struct {
   float base_colour[4];  // linear albedo and alpha, times the texture's and the vertex's
-  float emissive[3];     // radiance [W/m^2/sr], added when seen; it does not light
+  float emissive[3];     // radiance [W/m^2/sr] of the front, and of the back where double sided
   float alpha_cutoff;
   unsigned int texture;           // index, or CLPV_NO_TEXTURE
   unsigned int emissive_texture;  // index, or CLPV_NO_TEXTURE; looked up with the same uv

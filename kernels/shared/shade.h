@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What an image can show of a frame, as host and kernels both name it; every one is RGBA, alpha 1 where a surface is
-// and all 0 elsewhere.
+// and all 0 elsewhere; of the first two, a sky is what is seen there, with alpha 1.
 #ifndef CLPV_SHARED_SHADE_H
 #define CLPV_SHARED_SHADE_H
 

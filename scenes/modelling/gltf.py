@@ -32,14 +32,19 @@ class Document:
         d.setdefault("textures", []).append({"source": len(d["images"]) - 1, "sampler": 0})
         return len(d["textures"]) - 1
 
-    def material(self, name, colour, texture=None, double_sided=False):
-        """`colour`: linear reflectance, which multiplies the texture's."""
+    def material(self, name, colour, texture=None, double_sided=False, radiance=None):
+        """`colour`: linear reflectance, which multiplies the texture's. `radiance`: emitted, linear RGB."""
         pbr = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}
         if texture is not None:
             pbr["baseColorTexture"] = {"index": texture}
         entry = {"name": name, "pbrMetallicRoughness": pbr}
         if double_sided:
             entry["doubleSided"] = True
+        if radiance is not None:
+            strength = max(radiance)
+            entry["emissiveFactor"] = [c / strength for c in radiance]
+            entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+            self._json["extensionsUsed"] = ["KHR_materials_emissive_strength"]
         self._materials[name] = len(self._json["materials"])
         self._json["materials"].append(entry)
 

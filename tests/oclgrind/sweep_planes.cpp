@@ -12,6 +12,7 @@ int main() {
   const Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
   Sweeper sweeper(session, *basis, transport,
                   {.grid = kGrid, .parts = {1, 1}, .blocking = true, .form = SweepForm::planes});
+  sweeper.let_in(even_sky(glm::vec3(1)));
   const Volume light(session, {kGrid, kSweepBins, 3}, "light"),
       blockers(session, {kGrid + 1, 3, 1}, "blockers");
   Volume swept(session, {kGrid, swept_basis()->size(), 3}, "swept");

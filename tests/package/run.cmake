@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# cmake -DBUILD=build -DSOURCE=project -DWORK=folder -DGENERATOR=g -P run.cmake
+# cmake -DBUILD=build -DSOURCE=project -DWORK=folder -DGENERATOR=g -DCOMPILER=c++ -DARCHITECTURE=a-b-c -P run.cmake
 # Installs clpv into a folder of its own, builds examples/ against that alone and runs both programs; then configures the
 # library without the program, which asks for nothing of the program's.
 function(run)
@@ -15,6 +15,22 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCM
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
 run(${WORK}/prefix/bin/clpv devices)
+# The same program by pkg-config, where there is one.
+find_program(PKG_CONFIG pkg-config)
+if(PKG_CONFIG)
+  set(ENV{PKG_CONFIG_PATH} ${WORK}/prefix/lib/pkgconfig:${WORK}/prefix/lib/${ARCHITECTURE}/pkgconfig)
+  execute_process(COMMAND ${PKG_CONFIG} --cflags --libs clpv OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE
+                  COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags)
+  run(${COMPILER} ${SOURCE}/examples/render_cornell.cpp ${flags} -o ${WORK}/by_pkg_config)
+  run(${WORK}/by_pkg_config ${SOURCE}/scenes/cornell.json ${WORK}/cornell_by_pkg_config.png)
+endif()
+# Pages made from the options came along.
+foreach(page share/man/man1/clpv.1 share/bash-completion/completions/clpv)
+  if(NOT EXISTS ${WORK}/prefix/${page})
+    message(FATAL_ERROR "${page}: not installed")
+  endif()
+endforeach()
 # What is installed names nothing of the house: one folder of headers, which include each other and the standard library's.
 file(GLOB_RECURSE headers RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
 foreach(header IN LISTS headers)

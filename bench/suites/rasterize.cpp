@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Suite `rasterize`: the camera's view, a light's shadow map and its reflective shadow maps, beside the same by OpenGL in the
+// same run.
+#include "pipeline/rasterize.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/suites.hpp"
+
+namespace clpv::bench {
+namespace {
+
+constexpr const char* kPeer = "/opengl";
+constexpr Pass kPasses[] = {Pass::rasterize_camera, Pass::rasterize_shadow, Pass::rasterize_rsm};
+
+std::vector<Case> cases(Session& session, const SuiteOptions& options) {
+  std::vector<Case> cases;
+  const auto scene = scene_of(options);
+  for (const Pass pass : kPasses) {
+    for (const bool peer : {false, true}) {
+      Case made;
+      made.row.suite = "rasterize", made.row.stage = name_of(pass);
+      made.row.name = std::string(name_of(pass)) + (peer ? kPeer : "");
+      made.make = [&session, scene, pass, camera = options.camera, settings = options.settings,
+                   make = peer ? rasterize_gl_job : rasterize_job] {
+        return make(session, scene, camera, pass, settings);
+      };
+      cases.push_back(std::move(made));
+    }
+  }
+  return cases;
+}
+
+/// By the host's clock, which OpenGL is timed by.
+double wall_of(const std::vector<Row>& rows, const std::string& name) {
+  const auto found = std::ranges::find(rows, name, &Row::name);
+  return found == rows.end() || found->status == Status::unsupported ? 0 : found->wall_ms;
+}
+
+std::string table(const std::vector<Row>& rows) {
+  std::string text = fmt::format("{:<28} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", "wall ms", "mad",
+                                 "M triangles/s", "ns/triangle", "ns/pixel", "opengl / clpv");
+  for (const Row& row : rows) {
+    if (row.status == Status::unsupported) {
+      text += fmt::format("{:<28} unsupported: {}\n", row.name, row.reason);
+      continue;
+    }
+    const double peer = wall_of(rows, row.name + kPeer);
+    text += fmt::format("{:<28} {:>10.2f} {:>9.2f} {:>14.1f} {:>12.1f} {:>9.1f} {:>14}{}\n", row.name,
+                        row.wall_ms, row.times.mad, row.cost.triangles / row.wall_ms * 1e-3,
+                        row.wall_ms * 1e6 / row.cost.triangles, row.wall_ms * 1e6 / row.cost.pixels,
+                        peer > 0 ? fmt::format("{:.2f}", peer / row.wall_ms) : "-",
+                        row.status == Status::wrong ? "  WRONG: " + row.reason : "");
+  }
+  return text;
+}
+
+}  // namespace
+
+Suite rasterize_suite() {
+  return {"rasterize",
+          "the camera's view, shadow map and RSMs: a triangle, a pixel, and against OpenGL (llvmpipe)",
+          [](Session& session, const SuiteOptions& options) {
+            return std::vector<Group>{{[&session, options] { return cases(session, options); }}};
+          },
+          table};
+}
+
+}  // namespace clpv::bench

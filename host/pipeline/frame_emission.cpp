@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame_emission.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "support/fingerprint.hpp"
+
+namespace clpv {
+namespace {
+
+/// Whether a triangle is of a part that moves.
+bool moves(const Scene& scene, std::uint32_t triangle) {
+  return std::ranges::any_of(scene.moving, [&](const Part& part) {
+    return triangle >= part.first_triangle && triangle - part.first_triangle < part.triangles;
+  });
+}
+
+}  // namespace
+
+FrameEmission::FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers)
+    : session_(session), scene_(scene), triangles_(emissive_triangles(scene)), emitter_(session, buffers) {
+  moving_ = std::ranges::any_of(triangles_, [&](std::uint32_t t) { return moves(scene, t); });
+}
+
+double FrameEmission::most(double cell, const MadeOf& triangles) {
+  MadeOf wanted = MadeOf().add(cell);
+  if (moving_) wanted.add(triangles);
+  measured_.update(wanted, [&] { most_ = most_emitted(scene_, triangles_, cell); });
+  return most_;
+}
+
+void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, const MadeOf& triangles, float scale) {
+  MadeOf wanted;
+  for (const ClpvGrid& grid : grids) wanted.add(grid.origin).add(grid.cell);
+  if (moving_) wanted.add(triangles);
+  planned_.update(wanted, [&] { plan_ = plan_emission(scene_, triangles_, grids); });
+  if (plan_.coarsened > coarsened_) {
+    spdlog::warn("emissive surfaces: points {} times as far apart as usual, so that there are at most {}",
+                 1 << plan_.coarsened, kMostEmittedPoints);
+    coarsened_ = plan_.coarsened;
+  }
+  Fingerprint print;
+  print.add(plan_.parts);
+  scale_ = scale;
+  made_of_ = MadeOf().add(print.value()).add(scale);
+  if (moving_) made_of_.add(triangles);
+}
+
+void FrameEmission::emit() {
+  emitted_.update(made_of_, [&] {
+    const StageScope scope(session_, {Pass::emit});
+    emitter_.emit(plan_, scale_);
+  });
+}
+
+}  // namespace clpv

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// What a scene's triangles leave in the cells of cascades, made anew only in cells that are new to a cascade and where
+// something moved (kernels/marks.cl).
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device/kernel.hpp"
+#include "device/session.hpp"
+#include "kernels/shared/grid.h"
+#include "kernels/shared/region.h"
+#include "pipeline/scene_buffers.hpp"
+
+namespace clpv {
+
+static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
+
+/// Marks of a cascade: 32-bit words, so many a cell, cells along x first.
+struct MarksShape {
+  int cells;             ///< along each axis
+  int valid;             ///< of these, the first ones, which may hold marks; the others hold zeros
+  std::size_t words;     ///< a cell
+  std::size_t cascades;  ///< 1: of whichever it was last brought to, made anew where it moved
+
+  std::size_t words_a_cascade() const;
+  std::size_t bytes() const { return words_a_cascade() * cascades * sizeof(cl_uint); }
+};
+
+/// Bytes on the device that TriangleMarks takes for them.
+std::size_t marks_bytes(const MarksShape& shape);
+
+class TriangleMarks {
+ public:
+  /// `scene` must stay as it is, but for upload_moving(). `most`: triangles a launch, of which some device may need seconds
+  /// otherwise. Throws Error(run_time) where the device's memory does not suffice.
+  TriangleMarks(Session& session, const SceneBuffers& scene, const MarksShape& shape, unsigned most,
+                const std::string& what);
+
+  /// Brings a cascade's marks to where `grid` stands and to what the scene is now, by `leave`, a kernel that marks what of
+  /// the region given triangles are in, whatever their order: its arguments are the region, those of CLPV_TRIANGLES
+  /// (kernels/region.h), and the rest.
+  template <KernelArgument... Rest>
+  void bring(std::size_t cascade, const ClpvGrid& grid, Kernel& leave, const Rest&... rest) {
+    const std::optional<ClpvRegion> region = prepare(cascade, grid);
+    if (!region) return;
+    const unsigned step = std::max(most_ / CLPV_RUN, 1u);
+    for (unsigned first = 0; first < near_; first += step) {
+      const cl_uint count = std::min(near_ - first, step);
+      leave.set(*region, runs_, cl_uint{first}, count, scene_.triangle_count, scene_.vertices,
+                scene_.triangles, scene_.materials, rest...);
+      leave.launch(cl::NDRange(std::size_t{count} * CLPV_RUN), cl::NDRange(CLPV_RUN));
+    }
+  }
+
+  /// Of all cascades, finest first.
+  const Buffer& buffer() const { return marks_; }
+  /// Which of `MarksShape::cascades` a cascade's are.
+  cl_uint slot(std::size_t cascade) const;
+
+  /// Next time all is made anew.
+  void forget();
+
+ private:
+  struct State {  ///< what a cascade's marks are of
+    ClpvRegion place;
+    unsigned instant;
+  };
+  std::optional<ClpvRegion> prepare(std::size_t cascade, const ClpvGrid& grid);
+  ClpvRegion stale(const State& state, ClpvRegion place) const;
+  void add_new_cells(ClpvRegion& region) const;
+  void add_moved(ClpvRegion& region) const;
+  void add_box(ClpvRegion& region, const ClpvBox& box) const;
+  ClpvRegion whole(ClpvRegion place) const;
+  bool is_whole(const ClpvRegion& region) const;
+  void clear(std::size_t cascade, const ClpvRegion& region);
+  void list_runs(const ClpvRegion& region);
+
+  Session& session_;
+  SceneBuffers scene_;
+  MarksShape shape_;
+  unsigned most_, near_ = 0;  ///< near_: runs listed
+  std::vector<std::optional<State>> states_;
+  Buffer marks_, spare_, runs_;
+  Kernel move_, clear_;
+};
+
+}  // namespace clpv

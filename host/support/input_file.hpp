@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Small files read whole, and only where they are files: a folder of that name opens like one, and then throws a
+// library's words.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace clpv {
+
+inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{1}
+                                                 << 28;  ///< of caches and reports: far more than any has
+
+/// A regular file's bytes. Nothing where there is none, where it cannot be read, or where it is longer than `most`.
+std::optional<std::string> file_bytes(const std::filesystem::path& path,
+                                      std::uintmax_t most = kMostFileBytes);
+
+}  // namespace clpv

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// Surfaces that glow: how much light leaves them, from where, and what it does in a frame.
+#include "pipeline/emit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "checks/check.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/inject.hpp"
+#include "pipeline/view.hpp"
+#include "reference/emit.hpp"
+#include "support/error.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/traced_scenes.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+using reference::PathTracerOptions;
+using reference::TracedImage;
+using std::numbers::pi;
+
+unsigned add_lamp_material(Scene& scene, const glm::vec3& radiance, unsigned flags = 0) {
+  const unsigned material = add_material(scene, glm::vec3(0), flags);
+  for (int i = 0; i < 3; ++i) scene.materials[material].emissive[i] = radiance[i];
+  return material;
+}
+
+std::vector<ClpvGrid> grids_about(const glm::vec3& eye, int count = 2) {
+  return cascade_grids(eye, count, 4, 8);
+}
+
+/// Points by the kernel, as injection gets them.
+SurfaceImage emitted(const Scene& scene, const EmissionPlan& plan, float scale = 1) {
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  Emitter emitter(test_session(), buffers);
+  emitter.emit(plan, scale);
+  return read_surface(test_session(), emitter.points());
+}
+
+EmissionPlan plan_of(const Scene& scene, const std::vector<ClpvGrid>& grids) {
+  return plan_emission(scene, emissive_triangles(scene), grids);
+}
+
+glm::dvec3 total(const SurfaceImage& points) {
+  glm::dvec3 sum(0);
+  for (const glm::vec4& flux : points.colour) sum += glm::dvec3(flux);
+  return sum;
+}
+
+TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
+  for (const unsigned sides : {1u, 2u}) {
+    Scene scene;
+    const unsigned flags = sides == 2 ? CLPV_MATERIAL_DOUBLE_SIDED : 0;
+    add_quad(scene, {-0.6f, 0.3f, 0.1f}, {0.7f, 0.2f, 0}, {0, 0.3f, 0.5f},
+             add_lamp_material(scene, {5, 1, 0.25f}, flags));
+    const double area = glm::length(glm::cross(glm::dvec3(0.7f, 0.2f, 0), glm::dvec3(0, 0.3f, 0.5f)));
+    const glm::dvec3 flux = total(emitted(scene, plan_of(scene, grids_about({0, 0, 0})), 2));
+    EXPECT_NEAR(flux.x, sides * 2 * pi * 5 * area, 1e-4 * flux.x);
+    EXPECT_NEAR(flux.y, sides * 2 * pi * 1 * area, 1e-4 * flux.y);
+    EXPECT_NEAR(flux.z, sides * 2 * pi * 0.25 * area, 1e-4 * flux.z);
+  }
+}
+
+// A spot of some texels anywhere on a texture far finer than the points are apart: neither missed nor counted twice.
+TEST(Emit, ASmallBrightSpotCountsOnceWhereverItIs) {
+  for (const unsigned at : {3u, 517u, 1020u}) {
+    Scene scene;
+    Texture spot{.width = 1024, .height = 1024, .rgba = {}, .name = "spot"};
+    spot.wrap_u = spot.wrap_v = CLPV_WRAP_CLAMP;
+    spot.rgba.assign(4u * 1024 * 1024, 0);
+    for (unsigned y = 300; y < 304; ++y) {
+      for (unsigned x = at; x < at + 4; ++x) spot.rgba[4 * (y * 1024 + x)] = 255;
+    }
+    scene.textures.push_back(spot);
+    const unsigned material = add_lamp_material(scene, glm::vec3(1e4f));
+    scene.materials[material].emissive_texture = 0;
+    add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, material);
+    const SurfaceImage points = emitted(scene, plan_of(scene, grids_about({0, 0, 0})));
+    const double wanted = pi * 1e4 * 4 * 16 / (1024.0 * 1024);
+    EXPECT_NEAR(total(points).x, wanted, 0.05 * wanted) << at;
+    // And it shines from where it is: v goes along x, u along z.
+    for (std::size_t i = 0; i < points.colour.size(); ++i) {
+      if (points.colour[i].x < 0.1 * wanted) continue;
+      EXPECT_NEAR(points.position[i].x, -1 + 2 * 302.0 / 1024, 0.15) << at;
+      EXPECT_NEAR(points.position[i].z, -1 + 2 * (at + 2.0) / 1024, 0.15) << at;
+    }
+  }
+}
+
+TEST(Emit, HolesDoNotGlow) {
+  Scene scene;
+  scene.textures.push_back({.width = 2,
+                            .height = 1,
+                            .wrap_u = CLPV_WRAP_CLAMP,
+                            .rgba = {255, 255, 255, 255, 255, 255, 255, 0},
+                            .name = "half a hole"});
+  const unsigned material = add_lamp_material(scene, glm::vec3(2), CLPV_MATERIAL_MASKED);
+  scene.materials[material].texture = 0, scene.materials[material].alpha_cutoff = 0.5f;
+  add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, material);
+  const double flux = total(emitted(scene, plan_of(scene, grids_about({0, 0, 0})))).x;
+  EXPECT_NEAR(flux, pi * 2 * 4 / 2, 0.02 * flux);
+}
+
+// What reaches through all cascades is cut up: fine near the eye, coarse far off, nowhere twice, nothing outside.
+TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
+  Scene scene;
+  add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, add_lamp_material(scene, glm::vec3(1)));
+  const std::vector<ClpvGrid> grids = grids_about({0.3f, 0.2f, -0.4f}, 3);
+  const EmissionPlan plan = plan_of(scene, grids);
+  EXPECT_EQ(plan.coarsened, 0);
+  std::vector<double> areas(grids.size(), 0);
+  for (const reference::EmittedPoint& point : reference::emit(scene, plan)) {
+    for (std::size_t c = 0; c < grids.size(); ++c) {
+      const ClpvGrid& grid = grids[c];
+      const glm::dvec3 within =
+          (point.position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell};
+      if (std::min({within.x, within.y, within.z}) < 0 || std::max({within.x, within.y, within.z}) > grid.n)
+        continue;
+      areas[c] += point.flux.x / pi;
+      if (c > 0) continue;
+      const double apart = std::sqrt(point.flux.x / pi / (double{grid.cell} * grid.cell));
+      EXPECT_LE(apart, 1.0 / kEmittedPointsPerCell);
+    }
+  }
+  for (std::size_t c = 0; c < grids.size(); ++c) {
+    const double edge = grids[c].n * double{grids[c].cell};
+    EXPECT_NEAR(areas[c], edge * edge, 0.02 * edge * edge) << c;
+  }
+  EXPECT_LT(plan.points, 60'000u);
+}
+
+TEST(Emit, PointsAreBoundedBeforeTheyAreMade) {
+  Scene scene;
+  const unsigned lamp = add_lamp_material(scene, glm::vec3(1));
+  add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, lamp);
+  const std::vector<ClpvGrid> grids = grids_about({0, 0, 0});
+  const std::vector<std::uint32_t> triangles = emissive_triangles(scene);
+  const EmissionPlan all = plan_emission(scene, triangles, grids);
+  const EmissionPlan few = plan_emission(scene, triangles, grids, all.points - 1);
+  EXPECT_EQ(few.coarsened, 1);
+  EXPECT_LT(few.points, all.points);
+  EXPECT_NEAR(total(emitted(scene, few)).x, total(emitted(scene, all)).x, 1e-3);
+  EXPECT_THROW(plan_emission(scene, triangles, grids, 1), Error);
+  for (int i = 0; i < 50; ++i) add_triangle(scene, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, lamp);  // of no area
+  EXPECT_EQ(plan_of(scene, grids).points, all.points);
+}
+
+TEST(Emit, WhatIsMostIsWhatOneCellOrTheWholeSends) {
+  Scene scene;
+  add_quad(scene, {0, 0, 0}, {0, 0, 1}, {2, 0, 0}, add_lamp_material(scene, {3, 1, 1}));
+  const std::vector<std::uint32_t> triangles = emissive_triangles(scene);
+  EXPECT_NEAR(most_emitted(scene, triangles, 0.5), pi * 3 * 0.25, 1e-6);
+  EXPECT_NEAR(most_emitted(scene, triangles, 100), pi * 3 * 2, 1e-6);
+  EXPECT_FALSE(emits(floor_scene(0.5)));
+  EXPECT_TRUE(emits(scene));
+}
+
+TEST(Emit, KernelAgreesWithItsTwin) {
+  expect_passed(reference::check_emit(test_session()), 2);
+}
+
+/// A small lamp under the ceiling of nothing, over a floor that a frame shows.
+Scene lamp_over_floor(float edge = 0.5f) {
+  Scene scene = floor_scene(0.5f);
+  add_quad(scene, {-edge / 2, 1.5f, -edge / 2}, {edge, 0, 0}, {0, 0, edge},
+           add_lamp_material(scene, {8, 4, 2}));
+  scene.cameras.push_back({});
+  scene.cameras[0].eye = {0, 1.2f, 0}, scene.cameras[0].forward = {0, -1, 0},
+  scene.cameras[0].up = {0, 0, -1};
+  scene.lower = {-10, 0, -10}, scene.upper = {10, 1.5f, 10};
+  return scene;
+}
+
+RenderOptions small_frame() {
+  RenderOptions options;
+  options.width = 24, options.height = 24, options.cascades = 2, options.cascade_size = 4;
+  options.rsm_size = 16, options.shadow_size = 16;
+  return options;
+}
+
+double mean(const std::vector<float>& rgba, int channel) {
+  double sum = 0;
+  for (std::size_t i = static_cast<std::size_t>(channel); i < rgba.size(); i += 4) sum += double{rgba[i]};
+  return 4 * sum / static_cast<double>(rgba.size());
+}
+
+// A square over a parallel plane: the mean of E over what is seen, against path tracing, which is against closed forms.
+TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
+  const Scene scene = lamp_over_floor();
+  Frame frame(test_session(), scene, small_frame());
+  frame.render(scene.cameras[0]);
+  const std::vector<float> found = frame.read(Show::irradiance);
+  PathTracerOptions options;
+  options.samples = 256;
+  const TracedImage truth = reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 24, 24), options);
+  double wanted = 0;
+  for (const glm::vec3& e : truth.irradiance) wanted += e.x / truth.irradiance.size();
+  EXPECT_NEAR(mean(found, 0), wanted, 0.15 * wanted)
+      << "few directions lead from a small lamp to a far floor";
+  EXPECT_NEAR(mean(found, 1), mean(found, 0) / 2, 1e-3 * wanted);
+  EXPECT_NEAR(mean(found, 2), mean(found, 0) / 4, 1e-3 * wanted);
+}
+
+// The same through the transports in steps: it is the same injection.
+TEST(EmissiveFrame, LightsByEveryTransport) {
+  Scene scene = lamp_over_floor(2);
+  for (const TransportKind transport : {TransportKind::sampled, TransportKind::upwind}) {
+    RenderOptions options = small_frame();
+    options.transport = transport, options.blockers = Blockers::seen, options.gather = Gathering::all;
+    options.basis = "sh2", options.rsm_format = RsmFormat::paper;
+    options.cascade_size = 16, options.cascades = 1;  // three cells from lamp to floor
+    Frame frame(test_session(), scene, options);
+    frame.render(scene.cameras[0]);
+    EXPECT_GT(mean(frame.read(Show::irradiance), 0), 0.05) << static_cast<int>(transport);
+  }
+}
+
+TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
+  Scene scene = lamp_over_floor();
+  const auto passes = [](Frame& frame, const Camera& camera) {
+    test_session().timeline().clear();
+    frame.render(camera);
+    int emitted = 0, injected = 0;
+    for (const StageTime& time : test_session().timeline().times()) {
+      emitted += time.mark.pass == Pass::emit;
+      injected += time.mark.pass == Pass::inject_light;
+    }
+    return std::pair(emitted, injected);
+  };
+  scene.moving = {{4, 4, 2, 2}};  // the lamp
+  Frame frame(test_session(), scene, small_frame());
+  Camera camera = scene.cameras[0];
+  EXPECT_EQ(passes(frame, camera), std::pair(1, 2));
+  EXPECT_EQ(passes(frame, camera), std::pair(0, 0));
+  for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].position[1] -= 0.3f;
+  frame.scene_moved();
+  EXPECT_EQ(passes(frame, camera), std::pair(1, 2));
+  const std::vector<float> moved = frame.read(Show::irradiance);
+  Frame anew(test_session(), scene, small_frame());
+  anew.render(camera);
+  EXPECT_TRUE(anew.read(Show::irradiance) == moved);
+  camera.eye.x += 0.2f;  // cells of 1/8 and 1/4 m, and the lamp as near as before
+  EXPECT_EQ(passes(frame, camera).first, 0);
+}
+
+TEST(EmissiveFrame, AtRestItsPointsDoNotDependOnWhatElseMoves) {
+  Scene scene = lamp_over_floor();
+  scene.moving = {{0, 4, 0, 2}};  // the floor
+  Frame frame(test_session(), scene, small_frame());
+  frame.render(scene.cameras[0]);
+  for (std::size_t i = 0; i < 4; ++i) scene.vertices[i].position[1] -= 0.1f;
+  frame.scene_moved();
+  test_session().timeline().clear();
+  frame.render(scene.cameras[0]);
+  for (const StageTime& time : test_session().timeline().times()) EXPECT_NE(time.mark.pass, Pass::emit);
+}
+
+}  // namespace
+}  // namespace clpv

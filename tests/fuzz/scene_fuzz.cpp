@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// A scene file, with a sound model (sound.gltf) beside it.
+#include "tests/fuzz/model.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  clpv::fuzz::load_model("scene.json", clpv::fuzz::text_of(data, size));
+  return 0;
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// A texture: bytes of a buffer, which say themselves whether they are a PNG or a JPEG.
+#include <span>
+
+#include "scene/image_header.hpp"
+#include "scene/texture_image.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace {
+
+/// A larger one takes a decoder seconds, and finds nothing that a small one does not.
+constexpr std::uint32_t kSide = 512;
+
+bool is_small(std::span<const std::uint8_t> bytes) {
+  const auto header = clpv::read_image_header(bytes);
+  return !header || (header->width <= kSide && header->height <= kSide);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace clpv;
+  if (size == 0 || !is_small({data, size})) return 0;
+  GltfDocument document;
+  document.file = "fuzzed.glb";
+  document.buffers.emplace_back(data, data + size);
+  tinygltf::BufferView view;
+  view.buffer = 0;
+  view.byteOffset = 0;
+  view.byteLength = size;
+  document.model.bufferViews.push_back(view);
+  document.images.push_back({{}, 0});
+  fuzz::read_or_refuse({ExitCode::bad_input}, [&] { load_textures(document, {{0, 0, 0}}); });
+  return 0;
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Runs that are ended from outside: killed at moments drawn with a fixed seed, after which there is no half file and the
+// next run is right; interrupted, told what is kept; their reader gone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "image/image_io.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace clpv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using ::testing::HasSubstr;
+
+/// Moments a command is killed at; more by CLPV_KILLED_MOMENTS.
+int moments() {
+  const char* wish = std::getenv("CLPV_KILLED_MOMENTS");
+  return wish != nullptr ? std::atoi(wish) : 2;
+}
+
+/// A process of its own group, so that a signal meets it and what it started.
+class Child {
+ public:
+  Child(const std::string& command, const fs::path& said) {
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    ::setpgid(0, 0);
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>" + said.string()).c_str(), nullptr);
+    ::_exit(127);
+  }
+  ~Child() {
+    if (pid_ > 0) end(SIGKILL);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  bool running() const { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
+  /// The exit code, or 128 + the signal that ended it.
+  int end(int signal) {
+    ::kill(pid_, signal);
+    ::waitpid(pid_, &status_, 0);
+    pid_ = -1;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+  }
+
+ private:
+  pid_t pid_ = -1;
+  mutable int status_ = 0;
+};
+
+class Killed : public ::testing::Test {
+ protected:
+  std::string program() const {
+    return "env CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + (folder_ / "cache").string() + " " CLPV_PROGRAM " ";
+  }
+
+  /// Runs `arguments` to their end, which tells how long they take; then kills them at moments within that time, and
+  /// calls `look` after each. At last a whole run must go well.
+  template <typename Look>
+  void kill_at_moments(const std::string& arguments, const Look& look) {
+    ASSERT_EQ(run(program() + arguments).exit_code, 0) << "compiles, and keeps what it compiled";
+    const auto started = Clock::now();
+    const Outcome whole = run(program() + arguments);
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    const double span = std::chrono::duration<double>(Clock::now() - started).count();
+    std::mt19937 random(20261122);
+    std::uniform_real_distribution<double> moment(0, span);
+    for (int i = 0; i < moments(); ++i) {
+      Child child(program() + arguments, folder_ / "said");
+      std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+      child.end(SIGKILL);
+      look();
+    }
+    const Outcome again = run(program() + arguments);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    look();
+  }
+
+  /// Each .json below that folder can be read.
+  static void expect_whole_json(const fs::path& folder) {
+    if (!fs::exists(folder)) return;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(".") || (!name.ends_with(".json") && !name.ends_with(".tuning"))) continue;
+      EXPECT_TRUE(nlohmann::json::accept(read_file(entry.path()))) << entry.path();
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
+const std::string kSmall = " --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 ";
+
+TEST_F(Killed, WhileItRenders) {
+  const fs::path image = folder_ / "a.exr";
+  std::string wanted;
+  kill_at_moments(
+      "render " + kTiny + kSmall +
+          "--basis sh2 --transport sampled --gather all --blockers seen --width 96 --height 72 -o " +
+          image.string(),
+      [&] {
+        if (wanted.empty()) wanted = read_file(image);
+        EXPECT_TRUE(read_file(image) == wanted) << "half an image, or another";
+      });
+}
+
+TEST_F(Killed, WhileItJudges) {
+  const fs::path json = folder_ / "q.json";
+  kill_at_moments("quality " + kTiny + kSmall +
+                      "--basis sh2 --gather all --blockers seen --vary transport=sampled,upwind --width 24 "
+                      "--height 18 --spp 4 --frames 1 --cache " +
+                      (folder_ / "kept").string() + " --json " + json.string(),
+                  [&] {
+                    expect_whole_json(folder_ / "kept");
+                    EXPECT_TRUE(nlohmann::json::accept(read_file(json)));
+                    for (const auto& entry : fs::directory_iterator(folder_ / "kept/references")) {
+                      if (entry.path().extension() == ".exr") {
+                        EXPECT_NO_THROW(read_image(entry.path()));
+                      }
+                    }
+                  });
+}
+
+TEST_F(Killed, WhileItTimes) {
+  const fs::path json = folder_ / "b.json", log = folder_ / "b.jsonl";
+  kill_at_moments(
+      "bench regression --basis sh2 --repetitions 2 --filter 'sh2/soa/float$' --format json --out " +
+          json.string() + " --log " + log.string(),
+      [&] { EXPECT_TRUE(nlohmann::json::accept(read_file(json))); });
+  EXPECT_THAT(read_file(log), HasSubstr("{\"begun\":\"propagate/sh2/soa/float\"}"));
+  EXPECT_THAT(read_file(log), HasSubstr("{\"row\":"));
+}
+
+TEST_F(Killed, WhileItTunes) {
+  kill_at_moments("tune --basis sh2 --grid 8 --layout soa --repetitions 1 --json",
+                  [&] { expect_whole_json(folder_ / "cache"); });
+}
+
+/// Long enough to be met at work: frames without end.
+std::string sequence(const fs::path& folder) {
+  return "sequence " CLPV_SOURCE_DIR
+         "/scenes/atrium_living.json --frames 1000 --fps 24 --width 16 --height 9" +
+         kSmall + "--basis sh2 --transport sampled --gather all --blockers seen -o " + folder.string();
+}
+
+TEST_F(Killed, AnInterruptIsTold) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const fs::path film = folder_ / ("film" + std::to_string(signal)), said = folder_ / "said";
+    Child child(program() + sequence(film), said);
+    for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i) std::this_thread::sleep_for(100ms);
+    ASSERT_TRUE(child.running()) << read_file(said);
+    EXPECT_EQ(child.end(signal), 128 + signal);
+    EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; "));
+    EXPECT_THAT(read_file(said),
+                HasSubstr(" of 1000 frames are in " + film.string() + "; the same command goes on"));
+    EXPECT_TRUE(nlohmann::json::accept(read_file(film / "times.json")));
+    for (const auto& entry : fs::directory_iterator(film)) {
+      EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+      if (entry.path().extension() == ".exr") {
+        EXPECT_NO_THROW(read_image(entry.path()));
+      }
+    }
+  }
+}
+
+TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
+  const fs::path image = folder_ / "truth.exr", said = folder_ / "said";
+  Child child(
+      program() + "reference " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " + image.string(), said);
+  std::this_thread::sleep_for(1500ms);
+  ASSERT_TRUE(child.running()) << read_file(said);
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; nothing was written"));
+  EXPECT_FALSE(fs::exists(image));
+}
+
+TEST_F(Killed, AReaderThatIsGone) {
+  // As any program: the signal of the pipe ends it, with nothing said.
+  const Outcome outcome =
+      run("{ " CLPV_PROGRAM " basis; echo $? >" + (folder_ / "code").string() + "; } | exec true");
+  EXPECT_THAT(outcome.err, ::testing::IsEmpty());
+  const std::string code = read_file(folder_ / "code");
+  EXPECT_TRUE(code == "141\n" || code == "0\n") << code;  // 0: it was done before
+}
+
+TEST_F(Killed, DataThatDoesNotFitIsNotLostUnsaid) {
+  const Outcome outcome = run(CLPV_PROGRAM " devices --json >/dev/full");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));
+}
+
+TEST_F(Killed, AFolderThatGoesAwayIsTold) {
+  const fs::path film = folder_ / "film", said = folder_ / "said";
+  Child child(program() + sequence(film), said);
+  for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i) std::this_thread::sleep_for(100ms);
+  fs::rename(film, folder_ / "gone");
+  int left = 600;
+  while (child.running() && --left > 0) std::this_thread::sleep_for(100ms);
+  EXPECT_GT(left, 0) << "it goes on, writing nowhere";
+  EXPECT_THAT(read_file(said), HasSubstr("there is no folder " + film.string()));
+}
+
+}  // namespace
+}  // namespace clpv::test

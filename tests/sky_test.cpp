@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// Light from beyond a scene: maps of the sky, what of them light is swept from, and what it does to surfaces.
+#include "scene/sky.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "basis/sweep.hpp"
+#include "codegen/sky_light.hpp"
+#include "image/image.hpp"
+#include "image/image_io.hpp"
+#include "pathtracer/sky_sampler.hpp"
+#include "pathtracer/traced_view.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/view.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/traced_scenes.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+using reference::PathTracerOptions;
+using reference::TracedImage;
+using std::numbers::pi;
+
+Sky map_of(int width, int height, const std::function<float(int x, int y)>& radiance) {
+  Sky sky;
+  sky.width = width, sky.height = height;
+  sky.texels.clear();
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) sky.texels.emplace_back(radiance(x, y), 0.5f * radiance(x, y), 0);
+  }
+  return sky;
+}
+
+TEST(Sky, TheMiddleOfAMapLooksAheadAndItsRightIsOurs) {
+  Sky sky = map_of(8, 4, [](int x, int y) { return static_cast<float>(10 * y + x); });
+  const double edge = 1e-3;
+  EXPECT_NEAR(glm::length(sky.direction(4, 2) - glm::dvec3(0, 0, -1)), 0, 1e-12);
+  EXPECT_NEAR(glm::length(sky.direction(6, 2) - glm::dvec3(1, 0, 0)), 0, 1e-12);
+  EXPECT_NEAR(glm::length(sky.direction(1, 0) - glm::dvec3(0, 1, 0)), 0, 1e-12);
+  EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(edge, edge, -1))).x, 14);
+  EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(-edge, -edge, -1))).x, 23);
+  EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(edge, -1, -2 * edge))).x, 30 + 4);
+  sky.rotation = pi / 2;  // what was ahead is to the right
+  EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(1, edge, edge))).x, 14);
+  for (const auto& [x, y] : {std::pair{0.3, 0.4}, {7.9, 3.7}, {4.1, 1.2}}) {
+    const auto at = static_cast<std::size_t>(static_cast<int>(y) * 8 + static_cast<int>(x));
+    EXPECT_EQ(sky.texel_at(sky.direction(x, y)), at) << x << ' ' << y;
+  }
+  EXPECT_EQ(sky.seen(sky.direction(2.5, 1.5)).x, 12) << "the middle of a texel";
+  EXPECT_NEAR(sky.seen(sky.direction(3.0, 2.0)).x, (12 + 13 + 22 + 23) / 4.0, 1e-5);
+  EXPECT_NEAR(sky.seen(sky.direction(0, 1.5)).x, (10 + 17) / 2.0, 1e-5) << "round the seam";
+  double all = 0;
+  for (int y = 0; y < 4; ++y) all += 8 * sky.solid_angle(y);
+  EXPECT_NEAR(all, 4 * pi, 1e-12);
+}
+
+TEST(SkyLight, EachDirectionLiesInItsOwnPart) {
+  for (const int parts : {1, 2, 3, 4}) {
+    const std::vector<SweepBin> bins = sweep_bins(parts);
+    for (int b = 0; b < kSweepBins; ++b) {
+      for (int part = 0; part < parts * parts; ++part) {
+        const SweepPart found =
+            part_along(bins[static_cast<std::size_t>(b)].directions[static_cast<std::size_t>(part)].w, parts);
+        EXPECT_EQ(found.bin, b);
+        EXPECT_EQ(found.part, part);
+      }
+    }
+  }
+}
+
+TEST(SkyLight, MeansKeepAllThatAMapSends) {
+  Sky sky = map_of(37, 19, [](int x, int y) { return static_cast<float>((x * 7 + y * 13) % 11); });
+  sky.texels[200] = glm::vec3(5000);  // a small sun
+  sky.rotation = 0.3;
+  glm::dvec3 wanted(0);
+  for (int y = 0; y < sky.height; ++y) {
+    for (int x = 0; x < sky.width; ++x)
+      wanted += sky.solid_angle(y) * glm::dvec3(sky.texels[static_cast<std::size_t>(y * sky.width + x)]);
+  }
+  for (const int parts : {1, 2, 3}) {
+    const std::vector<glm::dvec3> means = sky_means(sky, parts);
+    const std::vector<SweepBin> bins = sweep_bins(parts);
+    glm::dvec3 sent(0);
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      const std::size_t of_bin = static_cast<std::size_t>(parts * parts);
+      sent += bins[i / of_bin].directions[i % of_bin].solid_angle * means[i];
+    }
+    EXPECT_NEAR(sent.x, wanted.x, 1e-9 * wanted.x) << parts;
+    EXPECT_NEAR(sent.y, wanted.y, 1e-9 * wanted.y) << parts;
+  }
+}
+
+TEST(SkyLight, LightComesFromWhereTheSkyIsBright) {
+  for (const glm::dvec3& mean : sky_means(even_sky({1, 2, 3}), 2))
+    EXPECT_NEAR(glm::length(mean - glm::dvec3(1, 2, 3)), 0, 1e-12);
+  const std::vector<glm::dvec3> above =
+      sky_means(map_of(1, 2, [](int, int y) { return y == 0 ? 1.f : 0.f; }), 2);
+  const std::vector<SweepBin> bins = sweep_bins(2);
+  for (std::size_t i = 0; i < above.size(); ++i)
+    EXPECT_NEAR(above[i].x, bins[i / 4].directions[i % 4].w.y < 0 ? 1 : 0, 5e-3) << "downwards";
+}
+
+/// A black floor under `sky`; the camera looks at a patch of it about the origin from .3 m.
+Scene under(const Sky& sky, float half = 10) {
+  Scene scene;
+  scene.path = "under the sky";
+  add_grey(scene, 0);
+  add_quad(scene, {-half, 0, -half}, {0, 0, 2 * half}, {2 * half, 0, 0}, 0);
+  scene.sky = std::make_shared<const Sky>(sky);
+  scene.cameras.push_back({});
+  scene.cameras[0].eye = {0, 0.3f, 0}, scene.cameras[0].forward = {0, -1, 0},
+  scene.cameras[0].up = {0, 0, -1};
+  scene.cameras[0].vertical_fov = 0.3f;
+  scene.lower = {-half, 0, -half}, scene.upper = {half, 2, half};
+  return scene;
+}
+
+void add_black_wall(Scene& scene, float x, float height) {  // faces -x
+  add_quad(scene, {x, 0, -10}, {0, 0, 20}, {0, height, 0}, 0);
+}
+
+RenderOptions small_frame() {
+  RenderOptions options;
+  options.width = options.height = 16, options.cascades = 2, options.cascade_size = 4;
+  options.rsm_size = options.shadow_size = 16;
+  return options;
+}
+
+double lit(const Scene& scene, const RenderOptions& options = small_frame()) {
+  Frame frame(test_session(), scene, options);
+  frame.render(scene.cameras[0]);
+  const std::vector<float> found = frame.read(Show::irradiance);
+  double sum = 0;
+  for (std::size_t i = 0; i < found.size(); i += 4) sum += double{found[i]};
+  return 4 * sum / static_cast<double>(found.size());
+}
+
+double traced(const Scene& scene, int bounces = 1, std::uint32_t samples = 1024) {
+  PathTracerOptions options;
+  options.samples = samples, options.bounces = bounces;
+  const TracedImage image = reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options);
+  double sum = 0;
+  for (const glm::vec3& e : image.irradiance) sum += double{e.x};
+  return sum / static_cast<double>(image.irradiance.size());
+}
+
+TEST(SkyFrame, AnOpenPlaneGetsPiTimesTheRadiance) {
+  const Scene scene = under(even_sky({2, 1, 1}));
+  EXPECT_NEAR(traced(scene), 2 * pi, 1e-3);
+  EXPECT_NEAR(lit(scene), 2 * pi, 0.03 * 2 * pi);
+  RenderOptions options = small_frame();
+  options.storage = Storage::float32, options.directions = options.coarser_directions = Directions::of24;
+  EXPECT_NEAR(lit(scene, options), 2 * pi, 0.03 * 2 * pi);
+}
+
+// Lux of a bright day or a candle's: volumes of 16 bits hold both.
+TEST(SkyFrame, BrightSkiesAndDarkOnes) {
+  const double one = lit(under(even_sky(glm::vec3(1))));
+  for (const float radiance : {1e-5f, 3e4f})
+    EXPECT_NEAR(lit(under(even_sky(glm::vec3(radiance)))) / double{radiance}, one, 2e-3 * one);
+}
+
+TEST(SkyFrame, ABrightHalfOfTheSkyLightsHalfAsMuch) {
+  const Sky east = map_of(2, 1, [](int x, int) { return x == 1 ? 1.0f : 0.0f; });
+  const Scene scene = under(east);
+  EXPECT_NEAR(traced(scene), pi / 2, 2e-3);
+  EXPECT_NEAR(lit(scene), pi / 2, 0.03 * pi);
+  const Sky below = map_of(1, 2, [](int, int y) { return y == 1 ? 1.0f : 0.0f; });
+  EXPECT_EQ(traced(under(below)), 0);
+  EXPECT_LT(lit(under(below)), 0.15 * pi) << "what leaks through a floor";
+}
+
+// A long wall of height h at a distance d leaves (1 + cos(atan(h / d))) / 2 of an even sky.
+TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
+  for (const float distance : {0.5f, 1.5f}) {  // the wall, as any, lets a third through on diagonal ways
+    Scene scene = under(even_sky(glm::vec3(1)));
+    add_black_wall(scene, distance, 1.5f);
+    const double wanted = pi / 2 * (1 + std::cos(std::atan(1.5 / double{distance})));
+    EXPECT_NEAR(traced(scene), wanted, 0.01 * pi) << distance;
+    EXPECT_NEAR(lit(scene), wanted, 0.12 * pi) << distance;
+  }
+}
+
+TEST(SkyFrame, ALargePlaneHighUpShutsItOut) {
+  Scene scene = under(even_sky(glm::vec3(1)));
+  add_quad(scene, {-9, 1.2f, -9}, {18, 0, 0}, {0, 0, 18}, 0);
+  const double wanted = traced(scene);
+  EXPECT_LT(wanted, 0.05 * pi);
+  EXPECT_LT(lit(scene), 0.45 * pi)
+      << "a third passes a single plane, and what is beyond the cascades blocks nothing";
+}
+
+// A texel of the sun's size far brighter than the sky: found by those that look for it.
+TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
+  constexpr int kWidth = 512, kHeight = 256, kX = 300, kY = 60;
+  const Sky sky = map_of(kWidth, kHeight, [](int x, int y) { return x == kX && y == kY ? 1e5f : 0.1f; });
+  const double cosine = std::cos(pi * (kY + 0.5) / kHeight);
+  const double wanted = 0.1 * pi + 1e5 * sky.solid_angle(kY) * cosine;
+  EXPECT_NEAR(traced(under(sky), 1, 256), wanted, 0.003 * wanted);
+}
+
+TEST(PathTracer, TheSkyIsPickedByWhatItSends) {
+  const Sky sky = map_of(7, 5, [](int x, int y) { return static_cast<float>((x + y) % 3); });
+  const reference::SkySampler sampler(&sky);
+  double share = 0, whole = 0;
+  constexpr int kSide = 200;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto found = sampler.pick({(i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide});
+    EXPECT_EQ(sky.radiance(found.direction), glm::vec3(found.radiance));
+    EXPECT_NEAR(sampler.density(found.direction), found.density, 1e-12);
+    share += found.radiance.x / found.density / (kSide * kSide);
+  }
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 7; ++x)
+      whole += sky.solid_angle(y) * sky.texels[static_cast<std::size_t>(y * 7 + x)].x;
+  }
+  EXPECT_NEAR(share, whole, 1e-6 * whole);
+  EXPECT_TRUE(reference::SkySampler(nullptr).none());
+}
+
+// What the floor sends on to a wall, and the wall to the floor: as many bounces, the same paths.
+TEST(SkyFrame, TheSkyIsCarriedAsTheFirstBounceIs) {
+  Scene scene = under(even_sky(glm::vec3(1)));
+  for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;
+  add_black_wall(scene, 1, 1.5f);
+  RenderOptions options = small_frame();
+  const double one = lit(scene, options), truth_one = traced(scene, 1), truth_two = traced(scene, 2);
+  options.bounces = Bounces::two;
+  const double two = lit(scene, options);
+  EXPECT_GT(truth_two, 1.1 * truth_one);
+  EXPECT_NEAR(two - one, truth_two - truth_one, 0.5 * (truth_two - truth_one));
+  EXPECT_NEAR(two, truth_two, 0.15 * truth_two);
+}
+
+TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
+  const Sky sky = map_of(16, 8, [](int x, int y) { return static_cast<float>(x + y); });
+  Scene scene = under(sky);
+  scene.cameras[0].forward = {0, 0, -1}, scene.cameras[0].up = {0, 1, 0}, scene.cameras[0].vertical_fov = 1;
+  Frame frame(test_session(), scene, small_frame());
+  frame.render(scene.cameras[0]);
+  const std::vector<float> full = frame.read(Show::full), indirect = frame.read(Show::indirect);
+  PathTracerOptions options;
+  options.samples = 2;
+  const TracedImage image = reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options);
+  const Image truth = reference::traced_view(image, Show::full);
+  for (std::size_t i = 0; i < 4 * 16; ++i) EXPECT_NEAR(full[i], truth.pixels[i], 1e-4) << i;  // the top row
+  EXPECT_EQ(full[3], 1);
+  EXPECT_GT(full[0], 0);
+  EXPECT_EQ(indirect[0] + indirect[3], 0);
+  EXPECT_TRUE(frame.read(Show::full) == full);
+}
+
+TEST(SkyFrame, StepsRefuseIt) {
+  const Scene scene = under(even_sky(glm::vec3(1)));
+  RenderOptions options = small_frame();
+  options.transport = TransportKind::upwind;
+  try {
+    Frame frame(test_session(), scene, options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_NE(std::string(error.what()).find("transport: found 'upwind' with a sky"), std::string::npos);
+  }
+}
+
+/// A scene file with that member "sky", beside a map of two texels whose red is `value` in the second.
+class SkyFile : public ::testing::Test {
+ protected:
+  std::string refusal(const std::string& sky, float value = 1,
+                      std::vector<std::string> channels = {"R", "G", "B"}) {
+    Image image = make_image(2, 1, channels);
+    std::fill(image.pixels.begin(), image.pixels.end(), 0.5f);
+    image.pixels[channels.size()] = value;
+    write_exr(folder_.path() / "map.exr", image);
+    std::ofstream(folder_.path() / "scene.json")
+        << R"({"model": ")" << CLPV_SOURCE_DIR << R"(/scenes/cornell.glb", "sky": )" << sky << "}";
+    try {
+      scene_ = load_scene(folder_.path() / "scene.json");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return error.what();
+    }
+    return "none";
+  }
+  TemporaryFolder folder_;
+  Scene scene_;
+};
+
+TEST_F(SkyFile, IsAConstantOrAMap) {
+  EXPECT_EQ(refusal(R"({"radiance": [1, 2, 3]})"), "none");
+  EXPECT_EQ(scene_.sky->texels[0], glm::vec3(1, 2, 3));
+  EXPECT_TRUE(scene_.lights.empty()) << "a sky is light enough";
+  EXPECT_EQ(refusal(R"({"radiance": [1, 2, 3], "ground": [0.5, 0, 0]})"), "none");
+  EXPECT_EQ(scene_.sky->radiance({0, 1, 0}), glm::vec3(1, 2, 3));
+  EXPECT_EQ(scene_.sky->radiance(glm::normalize(glm::dvec3(1, -0.01, 1))), glm::vec3(0.5f, 0, 0));
+  EXPECT_EQ(refusal(R"({"map": "map.exr", "scale": 4, "rotation_degrees": 90})", 3), "none");
+  EXPECT_EQ(scene_.sky->texels[1].x, 12);
+  EXPECT_EQ(scene_.sky->texels[0].x, 2);
+  EXPECT_NEAR(scene_.sky->rotation, pi / 2, 1e-12);
+}
+
+TEST_F(SkyFile, RefusesWhatCannotShine) {
+  const std::string map = R"({"map": "map.exr", "scale": 2})";
+  EXPECT_NE(refusal(map, -0.5f).find("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"),
+            std::string::npos);
+  EXPECT_NE(refusal(map, std::numeric_limits<float>::quiet_NaN()).find("pixel 1,0 channel R: found nan"),
+            std::string::npos);
+  EXPECT_NE(refusal(map, std::numeric_limits<float>::infinity()).find("found inf"), std::string::npos);
+  EXPECT_NE(refusal(map, 1, {"R", "G"}).find("no channel B"), std::string::npos);
+  EXPECT_NE(refusal("{}").find("/sky: found neither radiance nor map"), std::string::npos);
+  EXPECT_NE(refusal(R"({"map": "map.exr", "radiance": [1, 1, 1]})").find("/sky: found radiance and map"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"radiance": [1, -1, 1]})").find("/sky/radiance"), std::string::npos);
+  EXPECT_NE(refusal(R"({"radiance": [1, 1, 1], "scale": 2})").find("/sky/scale"), std::string::npos);
+  EXPECT_NE(refusal(R"({"map": "map.exr", "ground": [1, 1, 1]})").find("/sky/ground"), std::string::npos);
+  EXPECT_NE(refusal(R"({"map": "../map.exr"})").find("leaves"), std::string::npos);
+  EXPECT_NE(refusal(R"({"map": "none.exr"})").find("none.exr"), std::string::npos);
+  EXPECT_NE(refusal(R"({"map": "scene.json"})").find("extension"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace clpv

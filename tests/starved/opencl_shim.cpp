@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// A device that fails on command: preloaded (LD_PRELOAD) before the OpenCL loader, it passes every call on, but for one.
+//
+//   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns that OpenCL code
+//   CLPV_SHIM=CALL:N:hang    does not return
+//   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that were not released
+//
+// "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue.
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace {
+
+std::mutex guard;
+std::map<std::string, long> calls;
+std::map<cl_mem, long> references;
+
+/// What a call returns in place of being made; nothing where it is to be made.
+bool fails(const char* kind, const char* name, cl_int& code) {
+  const std::lock_guard lock(guard);
+  const long of_name = ++calls[name], of_kind = ++calls[kind];
+  const char* wish = std::getenv("CLPV_SHIM");
+  if (wish == nullptr) return false;
+  char which[64] = "", when[16] = "", what[16] = "";
+  if (std::sscanf(wish, "%63[^:]:%15[^:]:%15s", which, when, what) != 3) return false;
+  const bool by_name = std::string(which) == name, by_kind = std::string(which) == kind;
+  if (!by_name && !by_kind) return false;
+  if (std::string(when) != "*" && std::atol(when) != (by_name ? of_name : of_kind)) return false;
+  if (std::string(what) == "hang") {
+    for (;;) ::pause();
+  }
+  code = std::atoi(what);
+  return true;
+}
+
+template <typename Function>
+Function next(const char* name) {
+  return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
+}
+
+cl_mem counted(cl_mem made) {
+  const std::lock_guard lock(guard);
+  if (made != nullptr) references[made] = 1;
+  return made;
+}
+
+cl_mem refused(cl_int* error, cl_int code) {
+  if (error != nullptr) *error = code;
+  return nullptr;
+}
+
+__attribute__((destructor)) void report() {
+  const char* file = std::getenv("CLPV_SHIM_REPORT");
+  std::FILE* out = file != nullptr ? std::fopen(file, "w") : nullptr;
+  if (out == nullptr) return;
+  const std::lock_guard lock(guard);
+  for (const auto& [name, count] : calls) std::fprintf(out, "%s %ld\n", name.c_str(), count);
+  std::fprintf(out, "live %zu\n", references.size());
+  std::fclose(out);
+}
+
+}  // namespace
+
+#define CLPV_NEXT(name) static const auto call = next<decltype(&name)>(#name)
+#define CLPV_MAY_FAIL(kind, name) \
+  CLPV_NEXT(name);                \
+  cl_int code = CL_SUCCESS;       \
+  const bool failed = fails(kind, #name, code)
+
+extern "C" {
+
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+  CLPV_MAY_FAIL("memory", clCreateBuffer);
+  return failed ? refused(error, code) : counted(call(context, flags, size, host, error));
+}
+
+cl_mem clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
+                     const cl_image_desc* desc, void* host, cl_int* error) {
+  CLPV_MAY_FAIL("memory", clCreateImage);
+  return failed ? refused(error, code) : counted(call(context, flags, format, desc, host, error));
+}
+
+cl_int clRetainMemObject(cl_mem memory) {
+  CLPV_NEXT(clRetainMemObject);
+  {
+    const std::lock_guard lock(guard);
+    ++references[memory];
+  }
+  return call(memory);
+}
+
+cl_int clReleaseMemObject(cl_mem memory) {
+  CLPV_NEXT(clReleaseMemObject);
+  {
+    const std::lock_guard lock(guard);
+    if (--references[memory] == 0) references.erase(memory);
+  }
+  return call(memory);
+}
+
+cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
+                           const cl_device_id* devices,
+                           void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user,
+                           cl_int* error) {
+  CLPV_MAY_FAIL("context", clCreateContext);
+  if (!failed) return call(properties, count, devices, notify, user, error);
+  if (error != nullptr) *error = code;
+  return nullptr;
+}
+
+cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
+                      void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+  CLPV_MAY_FAIL("build", clBuildProgram);
+  return failed ? code : call(program, count, devices, options, notify, user);
+}
+
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
+                              const cl_event* events, cl_event* event) {
+  CLPV_MAY_FAIL("enqueue", clEnqueueNDRangeKernel);
+  return failed ? code : call(queue, kernel, dimensions, offset, global, local, waits, events, event);
+}
+
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
+                           size_t size, void* to, cl_uint waits, const cl_event* events, cl_event* event) {
+  CLPV_MAY_FAIL("enqueue", clEnqueueReadBuffer);
+  return failed ? code : call(queue, memory, blocking, offset, size, to, waits, events, event);
+}
+
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
+                            size_t size, const void* from, cl_uint waits, const cl_event* events,
+                            cl_event* event) {
+  CLPV_MAY_FAIL("enqueue", clEnqueueWriteBuffer);
+  return failed ? code : call(queue, memory, blocking, offset, size, from, waits, events, event);
+}
+
+cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern, size_t pattern_size,
+                           size_t offset, size_t size, cl_uint waits, const cl_event* events,
+                           cl_event* event) {
+  CLPV_MAY_FAIL("enqueue", clEnqueueFillBuffer);
+  return failed ? code : call(queue, memory, pattern, pattern_size, offset, size, waits, events, event);
+}
+
+cl_int clFinish(cl_command_queue queue) {
+  CLPV_MAY_FAIL("finish", clFinish);
+  return failed ? code : call(queue);
+}
+
+}  // extern "C"

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Devices and disks that give out in mid-work: every allocation, enqueue and build of a frame failing in turn (by a shim of
+// the OpenCL loader, tests/starved/opencl_shim.cpp), and no room for what is written. Each ends with a word and exit code
+// 1, leaves no device memory behind and no file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include "tests/support/run_program.hpp"
+
+namespace clpv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kFrame = " render " CLPV_SOURCE_DIR
+                           "/tests/oclgrind/tiny.gltf --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 "
+                           "--shadow-size 8 --basis sh2 "
+                           "--transport sampled --gather all --blockers seen ";
+const std::string kTiny = kFrame + "--width 12 --height 9 ";
+
+class Starved : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    cache_ = new TemporaryFolder;
+    run(program() + kTiny + "-o " + (*cache_ / "first.exr").string());  // compiles, where no test before it did
+  }
+  static void TearDownTestSuite() { delete cache_; }
+
+  /// Programs are compiled once for all tests, each of which is a process of its own: kept beside the program.
+  static fs::path compiled() { return fs::path(CLPV_PROGRAM).parent_path() / "starved_cache"; }
+
+  /// `timeout` goes first: the shim is for the program alone.
+  static std::string program() {
+    return "timeout 120 env CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() +
+           " CLPV_SHIM_REPORT=" + (*cache_ / "report").string() +
+           " LD_PRELOAD=" CLPV_OPENCL_SHIM " " CLPV_PROGRAM;
+  }
+
+  /// Calls by name, and "live".
+  static std::map<std::string, long> report() {
+    std::istringstream in(read_file(*cache_ / "report"));
+    std::map<std::string, long> counts;
+    std::string name;
+    for (long count = 0; in >> name >> count;) counts[name] = count;
+    return counts;
+  }
+
+  /// A frame whose n-th call fails with a code, whose name must be said.
+  void expect_told(const std::string& call, long n, const std::string& code, const std::string& name) {
+    SCOPED_TRACE(call + " " + std::to_string(n));
+    const fs::path image = folder_ / "a.exr";
+    const Outcome outcome = run("CLPV_SHIM=" + call + ":" + std::to_string(n) + ":" + code + " " + program() +
+                                kTiny + "-o " + image.string());
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(name));
+    EXPECT_THAT(outcome.err, Not(HasSubstr("terminate")));
+    EXPECT_FALSE(fs::exists(image));
+    EXPECT_EQ(report()["live"], 0) << "memory objects left";
+  }
+
+  TemporaryFolder folder_;
+  static TemporaryFolder* cache_;
+};
+
+TemporaryFolder* Starved::cache_ = nullptr;
+
+/// How many there are of a call in a frame that goes well, where nothing is left either.
+#define CLPV_COUNT_OF(call, most)                                                                                   \
+  const Outcome sound = run(program() + kTiny + "-o " + (folder_ / "sound.exr").string());                          \
+  ASSERT_EQ(sound.exit_code, 0) << sound.err;                                                                       \
+  ASSERT_EQ(report()["live"], 0);                                                                                   \
+  const long count = report()[call];                                                                                \
+  ASSERT_GT(count, 0);                                                                                              \
+  /* The first of them asks whether the clock of events is to be trusted (device.cpp); its failure is an answer. */ \
+  const long first = 1 + (most)
+
+/// From one failure to the next: of `usual`, or as CLPV_STARVED_STEP says (1: each).
+long step_or(long usual) {
+  const char* wish = std::getenv("CLPV_STARVED_STEP");
+  return wish != nullptr ? std::max(1, std::atoi(wish)) : usual;
+}
+
+TEST_F(Starved, OfDeviceMemoryAtSomeAllocations) {
+  CLPV_COUNT_OF("memory", 1);
+  for (long n = first; n <= count; n += step_or(9))
+    expect_told("memory", n, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
+}
+
+TEST_F(Starved, OfItsDeviceAtSomeEnqueues) {
+  CLPV_COUNT_OF("enqueue", 1);
+  for (long n = first; n <= count; n += step_or(61))
+    expect_told("enqueue", n, "-2", "CL_DEVICE_NOT_AVAILABLE");
+}
+
+TEST_F(Starved, OfItsDeviceAtTheStart) {
+  expect_told("context", 2, "-2", "CL_DEVICE_NOT_AVAILABLE");
+}
+
+TEST_F(Starved, OfACompiler) {
+  const Outcome outcome = run("CLPV_SHIM=clBuildProgram:*:-11 CLPV_SHIM_REPORT= LD_PRELOAD=" CLPV_OPENCL_SHIM
+                              " CLPV_PROGRAM_CACHE=off timeout 120 " CLPV_PROGRAM +
+                              kTiny + "-o " + (folder_ / "a.exr").string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("does not build"));
+  EXPECT_THAT(outcome.err, HasSubstr("no log"));  // of a program that its driver has not seen
+  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+}
+
+/// A limit on the size of files stands in for a full disk where nothing may be mounted: writing says "File too large".
+/// Not where there is a device: drivers write as well.
+TEST_F(Starved, OfDisk) {
+  const std::string image = CLPV_SOURCE_DIR "/docs/images/front.png";
+  const fs::path difference = folder_ / "a.png", truth = folder_ / "a.exr";
+  const std::map<fs::path, std::string> writers = {
+      {difference, " compare " + image + " " + image},
+      {truth, " reference " CLPV_SOURCE_DIR "/scenes/cornell.json --width 8 --height 6 --spp 1"}};
+  for (const auto& [path, command] : writers) {
+    SCOPED_TRACE(command);
+    // What is said goes through a pipe: it may not go into a file either.
+    const Outcome outcome = run("( trap '' XFSZ; ulimit -f 0; " CLPV_PROGRAM + command + " -o " +
+                                path.string() + " 2>&1; echo exit $? ) | cat >&2");
+    EXPECT_THAT(outcome.err, HasSubstr("exit 1\n"));
+    EXPECT_THAT(outcome.err, HasSubstr(path.string() + ": cannot be written: File too large"));
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
+  }
+}
+
+/// A disk of 64 KiB, where one may be mounted: neither the image nor the compiled programs fit.
+TEST_F(Starved, OfASmallDisk) {
+  const std::string disk = folder_.path().string(), mount = "mount -t tmpfs -o size=64k none " + disk;
+  if (run("unshare -rm " + mount).exit_code != 0) GTEST_SKIP() << "no tmpfs may be mounted here";
+  const Outcome outcome =
+      run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + (compiled() / "pocl").string() +
+          " CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM + kFrame +
+          "--width 400 --height 300 -o " + disk + "/a.exr; code=$?; ls -A " + disk + " >&2; exit $code'");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: No space left on device"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
+}
+
+}  // namespace
+}  // namespace clpv::test

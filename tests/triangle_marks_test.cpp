@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// What triangles leave in cells is the same whether it was made from nothing or brought along with a cascade and with what
+// moved.
+#include "pipeline/triangle_marks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "basis/bounce.hpp"
+#include "pipeline/block.hpp"
+#include "pipeline/reflect.hpp"
+#include "pipeline/see.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 8;
+constexpr float kCell = 0.4f;
+
+/// A grid whose first cell is `first` cells from the world's origin along each axis.
+ClpvGrid grid_at(const glm::ivec3& first) {
+  ClpvGrid grid{{}, kCell, kGrid, {}};
+  for (int a = 0; a < 3; ++a) grid.origin[a] = kCell * static_cast<float>(first[a]);
+  return grid;
+}
+
+/// Triangles from specks to walls, in and round a space of some 20 cells; the last 40 move.
+Scene soup() {
+  Scene scene;
+  const unsigned materials[] = {add_material(scene, {0.8f, 0.5f, 0.3f}),
+                                add_material(scene, {0.2f, 0.7f, 0.9f})};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto anywhere = [&](float reach) {
+    return reach * glm::vec3(unit(random), unit(random), unit(random));
+  };
+  for (int i = 0; i < 700; ++i) {
+    const glm::vec3 at = anywhere(i < 660 ? 4.0f : 1.5f);
+    const float size = i % 50 == 0 ? 9.0f : i % 5 == 0 ? 1.0f : 0.2f;
+    add_triangle(scene, at, at + anywhere(size), at + anywhere(size), materials[i % 2]);
+  }
+  scene.moving = {{3 * 660, 3 * 20, 660, 20}, {3 * 680, 3 * 20, 680, 20}};
+  return scene;
+}
+
+void shift(Scene& scene, const Part& part, const glm::vec3& by) {
+  for (unsigned v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
+    for (int a = 0; a < 3; ++a) scene.vertices[v].position[a] += by[a];
+  }
+}
+
+/// All that triangles leave in a cascade.
+struct Left {
+  std::vector<std::uint8_t> hidden;
+  std::vector<float> blocked, reflected;
+  bool operator==(const Left&) const = default;
+};
+
+/// The three stages that mark cells, of two cascades: the first stays where it was put first.
+class Stages {
+ public:
+  explicit Stages(const SceneBuffers& buffers)
+      : sight_(test_session(), buffers, kGrid, 2),
+        blocker_(test_session(), buffers, kGrid, 2, {}),
+        reflector_(test_session(), buffers, kGrid, 1, {}) {}
+
+  Left bring(const ClpvGrid& grid) {
+    sight_.see(1, grid);
+    blocker_.block(1, grid, geometry_);
+    reflector_.reflect(0, grid);
+    const std::size_t bytes = SceneSight::bytes(kGrid);
+    const auto hidden = test_session().read<std::uint8_t>(sight_.hidden(), 2 * bytes);
+    return {{hidden.begin() + static_cast<std::ptrdiff_t>(bytes), hidden.end()},
+            geometry_.read(test_session()),
+            reflector_.reflectors(0).read(test_session())};
+  }
+
+ private:
+  SceneSight sight_;
+  SceneBlocker blocker_;
+  SceneReflector reflector_;
+  Volume geometry_{test_session(), {kGrid + 1, 3, 1}, "test: geometry"};
+};
+
+Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
+  return Stages(upload_scene(test_session(), scene)).bring(grid);
+}
+
+TEST(TriangleMarks, WalkWithACascade) {
+  const Scene scene = soup();
+  Stages kept(upload_scene(test_session(), scene));
+  // A cell, several along two and three axes, back, farther than the grid is wide, past a base (32 cells apart), and nowhere.
+  const glm::ivec3 places[] = {{-4, -4, -4}, {-3, -4, -4}, {-3, -6, -1}, {-1, -5, -2},
+                               {-4, -4, -4}, {5, -4, -4},  {11, -4, 2},  {17, -4, 2},
+                               {15, -4, 2},  {16, -3, 2},  {16, -3, 2}};
+  for (const glm::ivec3& place : places) {
+    EXPECT_TRUE(kept.bring(grid_at(place)) == from_nothing(scene, grid_at(place)))
+        << place.x << " " << place.y << " " << place.z;
+  }
+}
+
+TEST(TriangleMarks, FollowWhatMoves) {
+  Scene scene = soup();
+  SceneBuffers buffers = upload_scene(test_session(), scene);
+  Stages kept(buffers);
+  glm::ivec3 place(-4, -4, -4);
+  Left before = kept.bring(grid_at(place));
+  for (int step = 0; step < 4; ++step) {
+    shift(scene, scene.moving[static_cast<std::size_t>(step % 2)], {0.3f, -0.2f, 0.25f});
+    upload_moving(test_session(), scene, buffers);
+    if (step >= 2) ++place[step - 2];
+    if (step == 3) {  // an instant that was not looked at
+      shift(scene, scene.moving[0], {-1, 0.5f, 0});
+      upload_moving(test_session(), scene, buffers);
+    }
+    const Left now = kept.bring(grid_at(place));
+    EXPECT_TRUE(now == from_nothing(scene, grid_at(place))) << step;
+    EXPECT_FALSE(now == before) << step;
+    before = now;
+  }
+}
+
+TEST(TriangleMarks, AreMadeOnlyWhereSomethingIsNew) {
+  const Scene scene = soup();
+  SceneBuffers buffers = upload_scene(test_session(), scene);
+  SceneSight sight(test_session(), buffers, kGrid, 2);
+  sight.see(0, grid_at({-4, -4, -4}));
+  const auto before = test_session().read<std::uint8_t>(sight.hidden(), SceneSight::bytes(kGrid));
+  // Vertices that no one said have moved: what is not made anew does not show it.
+  Scene other = scene;
+  for (Vertex& vertex : other.vertices) vertex.position[1] += 0.1f;
+  test_session().write(buffers.vertices, other.vertices);
+  sight.see(0, grid_at({-3, -4, -4}));
+  const auto after = test_session().read<std::uint8_t>(sight.hidden(), SceneSight::bytes(kGrid));
+  const auto cube = [](int x, int y, int z) {
+    return static_cast<std::size_t>(((z * kGrid + y) * kGrid + x) * 64);
+  };
+  int fresh = 0;
+  for (int z = 0; z < kGrid - 1; ++z) {
+    for (int y = 0; y < kGrid - 1; ++y) {
+      for (int x = 0; x < kGrid - 2; ++x)
+        EXPECT_TRUE(
+            std::equal(&after[cube(x, y, z)], &after[cube(x, y, z)] + 64, &before[cube(x + 1, y, z)]));
+      fresh += std::any_of(&after[cube(kGrid - 2, y, z)], &after[cube(kGrid - 2, y, z)] + 64,
+                           [](std::uint8_t bits) { return bits != 0; });
+    }
+  }
+  EXPECT_GT(fresh, 5);
+}
+
+TEST(TriangleRuns, BoundTheirTrianglesAndTellWhatMoved) {
+  Scene scene = soup();
+  TriangleRuns runs(scene);
+  ASSERT_EQ(runs.bounds().size(), (700u + CLPV_RUN - 1) / CLPV_RUN);
+  EXPECT_EQ(runs.instant(), 0u);
+  EXPECT_TRUE(runs.move(scene).empty()) << "nothing did";
+  shift(scene, scene.moving[1], {3, 0, 0});
+  ASSERT_EQ(runs.move(scene).size(), 1u);
+  EXPECT_EQ(runs.instant(), 2u);
+  ASSERT_EQ(runs.moved().size(), 1u);
+  for (unsigned t = 0; t < 700; ++t) {
+    const Bounds run = runs.bounds()[t / CLPV_RUN];
+    for (const unsigned vertex : scene.triangles[t].vertex) {
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_LE(run.lower[a], scene.vertices[vertex].position[a]);
+        EXPECT_GE(run.upper[a], scene.vertices[vertex].position[a]);
+        if (t < 680) continue;
+        EXPECT_GE(runs.moved()[0].upper[a], scene.vertices[vertex].position[a]);
+        EXPECT_LE(runs.moved()[0].lower[0], scene.vertices[vertex].position[0] - 3);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clpv
