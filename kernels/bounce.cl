@@ -4,9 +4,12 @@
 //   bounce         light to sweep += what is sent back of what was swept
 //   bounce_send    light to sweep += what is sent back of 1 W on each face
 //   bounce_meet    from that, swept: what surfaces send back, and all that is sent back of it further on
+//   bounce_keep    `arriving`: what falls on each whole face, of what was swept
+//   bounce_finer   light to sweep += what the next finer cascade sends back of that
 //
 // In: `swept` (sweep.cl), as radiance times s^2; `reflectors`, six numbers a cell and channel (reflect.cl), or those that
-// bounce_meet makes of them. In and out: `light`, a volume for each channel and bin (sweep.h).
+// bounce_meet makes of them. In and out: `light`, a volume for each channel and bin (sweep.h). `arriving`: a volume for each channel
+// and side, its planes across z.
 //
 // Of 1 W that leaves a side, others send back E, what falls on that side where each of them sends back what it does of 1 W on its
 // face: light goes both ways alike. Where they send back what they do in all their bounces, so is E.
@@ -17,6 +20,7 @@
 //   Swept clpv_leaving(Coefficients)     light of flux that leaves each side [W/sr]
 // A work-item is a tile of CLPV_LANES x CLPV_LANES cells of a slice of one channel. Tiles without a surface are left alone.
 #include "coefficients.h"
+#include "finer.h"
 #include "shared/sweep.h"
 #include "sweep.h"
 #include "volume/light.h"
@@ -113,40 +117,37 @@ CLPV_INLINE Coefficients clpv_arriving_at(const Tile* tile, const int r, CLPV_BU
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;                                                 \
   const int first = channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
 
+// Adds what a tile's cells send back: flux `sent` in row r.
+CLPV_INLINE void clpv_put_row(const Swept s, const int r, Tile* tile) {
+#define CLPV_DO(b) tile[b].row[r] = s.c##b;
+  CLPV_EACH_X_BIN(CLPV_DO)
+#undef CLPV_DO
+}
+#define CLPV_SEND_BACK(sent)                       \
+  for (int r = 0; r < CLPV_LANES; ++r) {           \
+    Swept s = clpv_none();                         \
+    if (y + r < CLPV_GRID) {                       \
+      s = clpv_leaving(sent);                      \
+      clpv_add_row(s, light + first, x, y + r, z); \
+    }                                              \
+    clpv_put_row(s, r, tile);                      \
+  }                                                \
+  clpv_add_turned(tile, light + first, x, y, z);
+
 __kernel void bounce(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT light) {
   CLPV_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
   Tile tile[CLPV_X_BINS];
   clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
-  for (int r = 0; r < CLPV_LANES; ++r) {
-    Swept s = clpv_none();
-    if (y + r < CLPV_GRID) {
-      const Coefficients arriving = clpv_arriving_at(tile, r, swept + first, x, y + r, z);
-      s = clpv_leaving(clpv_sent_back(arriving, light_load(reflectors, channel, x, y + r, z)));
-      clpv_add_row(s, light + first, x, y + r, z);
-    }
-#define CLPV_DO(b) tile[b].row[r] = s.c##b;
-    CLPV_EACH_X_BIN(CLPV_DO)
-#undef CLPV_DO
-  }
-  clpv_add_turned(tile, light + first, x, y, z);
+  CLPV_SEND_BACK(clpv_sent_back(clpv_arriving_at(tile, r, swept + first, x, y + r, z),
+                                light_load(reflectors, channel, x, y + r, z)))
 }
 
 __kernel void bounce_send(CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT light) {
   CLPV_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
   Tile tile[CLPV_X_BINS];
-  for (int r = 0; r < CLPV_LANES; ++r) {
-    Swept s = clpv_none();
-    if (y + r < CLPV_GRID) {
-      s = clpv_leaving(light_load(reflectors, channel, x, y + r, z));
-      clpv_add_row(s, light + first, x, y + r, z);
-    }
-#define CLPV_DO(b) tile[b].row[r] = s.c##b;
-    CLPV_EACH_X_BIN(CLPV_DO)
-#undef CLPV_DO
-  }
-  clpv_add_turned(tile, light + first, x, y, z);
+  CLPV_SEND_BACK(light_load(reflectors, channel, x, y + r, z))
 }
 
 __kernel void bounce_meet(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_OUT in_all) {
@@ -158,4 +159,55 @@ __kernel void bounce_meet(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_
     const Coefficients arriving = clpv_arriving_at(tile, r, swept + first, x, y + r, z);
     light_store(in_all, channel, x, y + r, z, clpv_in_all(arriving, light_load(reflectors, channel, x, y + r, z)));
   }
+}
+
+__kernel void bounce_keep(CLPV_BUFFER_IN swept, CLPV_BUFFER_OUT arriving) {
+  CLPV_TILE
+  CLPV_BUFFER_OUT out = arriving + channel * CLPV_N * CLPV_SWEEP_VOLUME;
+  Tile tile[CLPV_X_BINS];
+  clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
+  for (int r = 0; r < CLPV_LANES; ++r) {
+    if (y + r >= CLPV_GRID) break;
+    const Coefficients all = clpv_arriving_at(tile, r, swept + first, x, y + r, z);
+    const int at = clpv_sweep_at(z, y + r, x);
+#define CLPV_DO(i) CLPV_SWEEP_STORE(out + i * CLPV_SWEEP_VOLUME, at, CLPV_WITHIN(x, all.c##i));
+    CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  }
+}
+
+// What falls on a side of finer cells, a row of them from (x, y, z) on: of a coarser face, they have a quarter of the area.
+CLPV_INLINE CLPV_REAL clpv_from_coarser(CLPV_BUFFER_IN arriving, const int x, const int y, const int z) {
+  CLPV_BUFFER_IN from = arriving + clpv_sweep_at(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
+  const float tz = CLPV_UPPER_WEIGHT(z), ty = CLPV_UPPER_WEIGHT(y);
+#define CLPV_ACROSS(at)                                                                              \
+  ((1.0f - tz) * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, at) + ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PITCH)) + \
+   tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PLANE) +                              \
+         ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PLANE + CLPV_SWEEP_PITCH)))
+  const CLPV_REAL v = CLPV_ACROSS(0);
+#if CLPV_LANES == 8
+  return 0.25f * (x & 1 ? CLPV_ODD(v) : CLPV_EVEN(v));
+#else
+  const float tx = CLPV_UPPER_WEIGHT(x);
+  return 0.25f * ((1.0f - tx) * v + tx * CLPV_ACROSS(1));
+#endif
+}
+
+CLPV_INLINE Coefficients clpv_all_from_coarser(CLPV_BUFFER_IN arriving, const int x, const int y, const int z) {
+  Coefficients all;
+#define CLPV_DO(i) all.c##i = clpv_from_coarser(arriving + i * CLPV_SWEEP_VOLUME, x, y, z);
+  CLPV_EACH_COEFFICIENT(CLPV_DO)
+#undef CLPV_DO
+  return all;
+}
+
+// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells (finer.h).
+__kernel void bounce_finer(CLPV_BUFFER_IN arriving, const int dx, const int dy, const int dz, CLPV_VOLUME_IN reflectors,
+                           CLPV_BUFFER_OUT light) {
+  CLPV_TILE
+  if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
+  CLPV_BUFFER_IN in = arriving + channel * CLPV_N * CLPV_SWEEP_VOLUME;
+  Tile tile[CLPV_X_BINS];
+  CLPV_SEND_BACK(clpv_sent_back(clpv_all_from_coarser(in, x + dx, y + r + dy, z + dz),
+                                light_load(reflectors, channel, x, y + r, z)))
 }

@@ -9,7 +9,7 @@ namespace clpv {
 /// Surfaces of a cell are known by which way along the axes they face: +x, -x, +y, -y, +z, -z.
 inline constexpr int kReflectingSides = 6;
 
-/// Of light that bounces on, after the second bounce: what is left then is next to nothing but in a closed white room.
+/// Of light that bounces on, after the third bounce: what is left then is next to nothing but in a closed white room.
 inline constexpr int kFurtherBounces = 6;
 
 /// 6 x 24: the flux [W] that falls on a whole face of a cell, from what a sweep leaves in its bins (radiance times s^2).

@@ -14,34 +14,62 @@ constexpr int kChannels = 3;
 Bouncer::Bouncer(Session& session, const SweepOptions& options)
     : volumes_(session, options.grid, options.format),
       reflectors_(options.parts.size()),
-      sending_(options.parts.size()),
-      bounce_(session, volumes_.program("bounce.cl", bounce_source_text()), "bounce"),
-      send_(session, volumes_.program("bounce.cl", bounce_source_text()), "bounce_send"),
-      meet_(session, volumes_.program("bounce.cl", bounce_source_text()), "bounce_meet") {
+      bounce_(session, volumes_.program("bounce.cl", bounce_source_text()), "bounce") {
   if (options.bounces != Bounces::all) return;
-  const VolumeShape shape{options.grid, kReflectingSides, kChannels};
-  for (std::size_t c = 0; c < options.parts.size(); ++c)
-    in_all_.push_back(std::make_unique<Volume>(session, shape, "reflectors of all bounces", options.format));
+  const ProgramSource program = volumes_.program("bounce.cl", bounce_source_text());
+  send_.emplace(session, program, "bounce_send");
+  meet_.emplace(session, program, "bounce_meet");
+  keep_.emplace(session, program, "bounce_keep");
+  finer_.emplace(session, program, "bounce_finer");
+  in_all_ = std::make_unique<Volume>(session, VolumeShape{options.grid, kReflectingSides, kChannels},
+                                     "reflectors of all bounces", options.format);
+  for (std::size_t coarser = 1; coarser < options.parts.size(); ++coarser)
+    arriving_.push_back(
+        volumes_.make(kChannels * kReflectingSides, "light on surfaces of a coarser cascade"));
+}
+
+double Bouncer::bytes(const SweepOptions& options) {
+  if (options.bounces != Bounces::all) return 0;
+  const double arriving =
+      kChannels * kReflectingSides * static_cast<double>(SweepVolumes::bytes(options.grid, options.format));
+  return static_cast<double>(stored_bytes(options.format, {options.grid, kReflectingSides, kChannels})) +
+         static_cast<double>(options.parts.size() - 1) * arriving;
 }
 
 void Bouncer::reflect(std::size_t cascade, const Volume& reflectors) {
-  reflectors_[cascade] = sending_[cascade] = &reflectors;
+  reflectors_[cascade] = &reflectors;
+  if (cascade + 1 == reflectors_.size()) sending_ = &reflectors;
 }
 
-void Bouncer::send_on(std::size_t cascade, const Buffer& light) {
-  send_.set(sending_[cascade]->memory(), light);
-  volumes_.launch(send_, kChannels);
+void Bouncer::send_on(const Buffer& light) {
+  send_->set(sending_->memory(), light);
+  volumes_.launch(*send_, kChannels);
 }
 
-void Bouncer::meet_again(std::size_t cascade, const Buffer& swept) {
-  meet_.set(swept, reflectors_[cascade]->memory(), in_all_[cascade]->memory());
-  volumes_.launch(meet_, kChannels);
-  sending_[cascade] = in_all_[cascade].get();
+void Bouncer::meet_again(const Buffer& swept) {
+  meet_->set(swept, reflectors_.back()->memory(), in_all_->memory());
+  volumes_.launch(*meet_, kChannels);
+  sending_ = in_all_.get();
 }
 
 void Bouncer::bounce(std::size_t cascade, const Buffer& swept, const Buffer& light) {
-  bounce_.set(swept, sending_[cascade]->memory(), light);
+  bounce_.set(swept, reflectors_[cascade]->memory(), light);
   volumes_.launch(bounce_, kChannels);
+}
+
+void Bouncer::bounce_on(const Buffer& swept, const Buffer& light) {
+  bounce_.set(swept, sending_->memory(), light);
+  volumes_.launch(bounce_, kChannels);
+}
+
+void Bouncer::keep(std::size_t cascade, const Buffer& swept) {
+  keep_->set(swept, arriving_[cascade - 1]);
+  volumes_.launch(*keep_, kChannels);
+}
+
+void Bouncer::bounce_finer(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& light) {
+  finer_->set(arriving_[cascade], offset[0], offset[1], offset[2], reflectors_[cascade]->memory(), light);
+  volumes_.launch(*finer_, kChannels);
 }
 
 }  // namespace clpv

@@ -3,7 +3,9 @@
 // bounces').
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "device/kernel.hpp"
@@ -17,26 +19,40 @@ namespace clpv {
 /// Between sweeps: `light`, `swept` and so on hold a volume for each channel and bin. Deterministic to the bit.
 class Bouncer {
  public:
-  /// Of options.bounces beyond one: one bounce more, or all.
+  /// Of options.bounces beyond one: one bounce more, or all. Of all, the coarsest cascade finds out what is sent back further, and the
+  /// finer ones go by what falls on surfaces there.
   Bouncer(Session& session, const SweepOptions& options);
 
   /// What reflects in a cascade from now on (SceneReflector::reflectors, which must live on), once.
   void reflect(std::size_t cascade, const Volume& reflectors);
 
-  /// What reflects in a cascade sends back 1 W on each face, and what it sends back further, as is known by now: into `light`,
-  /// which holds zeros.
-  void send_on(std::size_t cascade, const Buffer& light);
+  /// What reflects in the coarsest cascade sends back 1 W on each face, and what it sends back further, as is known by now: into
+  /// `light`, which holds zeros.
+  void send_on(const Buffer& light);
   /// What was left of that, swept: from here on light on its way from surface to surface is known for one bounce more.
-  void meet_again(std::size_t cascade, const Buffer& swept);
+  void meet_again(const Buffer& swept);
 
   /// Adds to `light` what surfaces send back of `swept`.
   void bounce(std::size_t cascade, const Buffer& swept, const Buffer& light);
+  /// Adds what those of the coarsest cascade send back of it, and all that is sent back of that further on, from where they are.
+  void bounce_on(const Buffer& swept, const Buffer& light);
+
+  /// What falls on surfaces in a cascade is `swept`, all bounces in it: for the next finer one.
+  void keep(std::size_t cascade, const Buffer& swept);
+  /// Adds to `light` what surfaces send back of what was kept of the next coarser cascade. `offset`: offset_in_coarser().
+  void bounce_finer(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& light);
+
+  /// Device memory of what is kept between frames [bytes].
+  static double bytes(const SweepOptions& options);
 
  private:
   SweepVolumes volumes_;
-  std::vector<const Volume*> reflectors_, sending_;  ///< once; in all bounces known
-  std::vector<std::unique_ptr<Volume>> in_all_;      ///< none where there is but one bounce more
-  Kernel bounce_, send_, meet_;
+  std::vector<const Volume*> reflectors_;
+  const Volume* sending_ = nullptr;  ///< of the coarsest: once, or in all bounces known
+  std::unique_ptr<Volume> in_all_;   ///< null where there is but one bounce more
+  std::vector<Buffer> arriving_;     ///< on each side, of all cascades but the finest; none as well
+  Kernel bounce_;
+  std::optional<Kernel> send_, meet_, keep_, finer_;
 };
 
 }  // namespace clpv

@@ -39,8 +39,7 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
                            : 0;
   const double reflecting = options.bounces == Bounces::one
                                 ? 0
-                                : (options.bounces == Bounces::all ? 2 : 1) * options.cascades *
-                                          bytes({grid, kReflectingSides, 3}) +
+                                : options.cascades * bytes({grid, kReflectingSides, 3}) +
                                       static_cast<double>(SceneReflector::bytes(grid));
   const auto sight = static_cast<double>(sight_bytes(options, grid));
   if (sweeps(options)) {

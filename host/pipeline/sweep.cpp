@@ -91,10 +91,12 @@ double Sweeper::bytes(const SweepOptions& options) {
   for (std::size_t c = 0; c < options.parts.size(); ++c) {
     most = std::max(most, static_cast<double>(3 * directions_of(options.parts[c])));
     shells += static_cast<double>(shell_bytes(options, options.parts[c], c));
-    if (!once) shells += static_cast<double>(shell_bytes(options, kFirstParts, c));
+    if (options.bounces == Bounces::two) shells += static_cast<double>(shell_bytes(options, kFirstParts, c));
   }
   const double ways = options.blocking ? static_cast<double>(options.parts.size()) * sweep_way_count() : 0;
-  return ((once ? 3 : 6) * kSweepBins + ways) * volume + most * 2 * plane * (sizeof(float) + number) + shells;
+  const int lights = once ? 1 : (options.bounces == Bounces::two ? 2 : 3);
+  return (3 * lights * kSweepBins + ways) * volume + most * 2 * plane * (sizeof(float) + number) + shells +
+         Bouncer::bytes(options);
 }
 
 Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transport,
@@ -121,8 +123,10 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   passes_ = make_passes(options.parts);
   if (options.bounces == Bounces::one) return;
   bouncer_.emplace(session, options);
-  first_passes_ = make_passes(std::vector<int>(options.parts.size(), kFirstParts));
+  const bool all = options.bounces == Bounces::all;
+  first_passes_ = make_passes(std::vector<int>(all ? 1 : options.parts.size(), kFirstParts));
   first_light_ = volumes_.make(3 * kSweepBins, "light to bounce");
+  if (all) second_light_ = volumes_.make(3 * kSweepBins, "light to bounce on");
 }
 
 bool Sweeper::whole_bins() const {
@@ -156,13 +160,13 @@ void Sweeper::block(std::size_t cascade, const Volume& geometry) {
 
 void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
   bouncer_.value().reflect(cascade, reflectors);
-  if (options_.bounces != Bounces::all) return;
+  if (options_.bounces != Bounces::all || cascade + 1 < options_.parts.size()) return;
   for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
     session_.fill_zero(first_light_, first_light_.bytes());
-    bouncer_->send_on(cascade, first_light_);
+    bouncer_->send_on(first_light_);
     let_nothing_in();
-    sweep(first_passes_[cascade], cascade, {first_light_, first_light_}, {});
-    bouncer_->meet_again(cascade, first_light_);
+    sweep(first_passes_.back(), cascade, {first_light_, first_light_}, {});
+    bouncer_->meet_again(first_light_);
   }
 }
 
@@ -196,10 +200,15 @@ void Sweeper::let_nothing_in() {
   session_.fill_zero(live_, live_.bytes());
 }
 
+/// Into the coarsest cascade.
+void Sweeper::let_beyond_in(Pass& pass, float cell) {
+  if (pass.let_sky_in) return let_sky_in(pass, cell);
+  let_nothing_in();
+}
+
 void Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   Pass& pass = passes[cascade];
-  if (pass.let_sky_in) return let_sky_in(pass, grids[cascade].cell);
-  if (!pass.let_in) return let_nothing_in();
+  if (!pass.let_in) return let_beyond_in(pass, grids[cascade].cell);
   const std::size_t swept = 3 * directions_of(pass.parts);
   const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
   pass.let_in->set(bins_, pass.directions, passes[cascade + 1].shell, shell_of(options_.grid, offset),
@@ -238,15 +247,39 @@ void Sweeper::sweep(Passes& passes, std::size_t cascade, const Light& light,
   sweep(pass, cascade, light, kept);
 }
 
+/// Adds to light_ what surfaces send back.
+void Sweeper::bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
+  if (options_.bounces == Bounces::two) {
+    sweep(first_passes_, cascade, {light_, first_light_}, grids);
+    bouncer_->bounce(cascade, first_light_, light_);
+  } else if (cascade + 1 == options_.parts.size()) {
+    bounce_in_all(grids[cascade].cell);
+  } else {
+    bouncer_->bounce_finer(cascade, offset_in_coarser(grids[cascade + 1], grids[cascade]), light_);
+  }
+}
+
+/// In the coarsest cascade: twice in earnest, and from where the second one leaves light goes on as reflect() found.
+void Sweeper::bounce_in_all(float cell) {
+  Pass& pass = first_passes_.back();
+  const std::size_t coarsest = options_.parts.size() - 1;
+  let_beyond_in(pass, cell);
+  sweep(pass, coarsest, {light_, first_light_}, {});
+  bouncer_->bounce(coarsest, first_light_, light_);
+  session_.fill_zero(second_light_, second_light_.bytes());
+  bouncer_->bounce(coarsest, first_light_, second_light_);
+  let_nothing_in();
+  sweep(pass, coarsest, {second_light_, second_light_}, {});
+  bouncer_->bounce_on(second_light_, light_);
+}
+
 void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
                     Volume& accumulated) {
   source_.set(injected.memory(), light_);
   volumes_.launch(source_, 3);
-  if (bouncer_) {
-    sweep(first_passes_, cascade, {light_, first_light_}, grids);
-    bouncer_->bounce(cascade, first_light_, light_);
-  }
+  if (bouncer_) bounce(cascade, grids);
   sweep(passes_, cascade, {light_, light_}, grids);
+  if (options_.bounces == Bounces::all && cascade > 0) bouncer_->keep(cascade, light_);
   collect_.set(light_, accumulated.memory());
   volumes_.launch(collect_, 3);
 }

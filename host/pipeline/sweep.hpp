@@ -68,6 +68,7 @@ class Sweeper {
   void let_in(Passes& passes, const Sky& sky);
   void let_nothing_in();
   void let_sky_in(Pass& pass, float cell);
+  void let_beyond_in(Pass& pass, float cell);
   void let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   struct Light {
     const Buffer& sources;
@@ -75,6 +76,8 @@ class Sweeper {
   };
   void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell);
   void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
+  void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  void bounce_in_all(float cell);
   bool whole_bins() const;
   std::size_t before_first(const Pass& pass) const;
 
@@ -87,8 +90,10 @@ class Sweeper {
   std::optional<Kernel> ways_;
   Passes passes_;
   std::optional<Bouncer> bouncer_;  ///< none: one bounce
-  Passes first_passes_;             ///< of what is to bounce, along 24 directions
-  Buffer first_light_;              ///< that these sweep
+  Passes
+      first_passes_;  ///< of what is to bounce, along 24 directions: of each cascade; for all bounces, of the coarsest
+  Buffer first_light_;   ///< that these sweep
+  Buffer second_light_;  ///< sent back of it, where that bounces on; none else
   float sky_scale_ = 1;
 };
 

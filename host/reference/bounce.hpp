@@ -13,7 +13,7 @@ namespace clpv::reference {
 Volume reflectors_in_all(const Transport& transport, const SweptCascade& cascade, const Volume& reflectors);
 
 /// Light to sweep of every cascade, of bins24 [W/sr]: what is injected, and what `reflectors` (reflect.hpp), one a cascade,
-/// send back of it.
+/// send back of it. Of all bounces finer cascades take what falls on their surfaces from the next coarser one.
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces);
 
