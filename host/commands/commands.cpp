@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "commands/commands.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+
 #include "commands/manual.hpp"
 #include "commands/misspelt.hpp"
+#include "parallel/launched.hpp"
+#include "parallel/team.hpp"
 #include "support/log.hpp"
+#include "support/progress.hpp"
 
 namespace clpv {
 namespace {
@@ -13,7 +21,41 @@ void add_page(CLI::App& app, const std::string& option, const std::function<std:
   app.add_flag_callback(option, [page] { throw CLI::CallForVersion(page(), 0); })->group("");
 }
 
+/// What each rank tells: all of it is rank 0's to tell, what goes wrong any rank's.
+void set_talk(const Shared& shared) {
+  const std::optional<Launched> started = launched();
+  const bool one = !started || started->size == 1;
+  const bool others = !one && started->rank > 0 && shared.verbosity == 0 && !shared.quiet;
+  set_log_level(shared.quiet, shared.verbosity);
+  if (others) spdlog::set_level(spdlog::level::warn);
+  if (!one) set_progress_style(started->rank == 0 ? ProgressStyle::lines : ProgressStyle::none);
+}
+
+/// Commands that ranks do together; each of them would do all of any other one.
+void refuse_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    const std::string name = command->get_name();
+    if (std::ranges::count(names, name) > 0) continue;
+    command->parse_complete_callback([name, names] {
+      const std::optional<Launched> started = launched();
+      if (!started || started->size == 1) return;
+      throw Error(ExitCode::usage, "{}: not for several processes (found: rank {} of {}); allowed: {}", name,
+                  started->rank, started->size ? std::to_string(*started->size) : "some",
+                  fmt::join(names, ", "));
+    });
+  }
+}
+
 }  // namespace
+
+Team& Shared::team() {
+  if (!begun) {
+    const std::optional<Launched> started = launched();
+    const bool one = !started || started->size == 1;
+    begun = std::make_shared<Team>(one ? Team() : Team(start_messages()));
+  }
+  return *begun;
+}
 
 void add_commands(CLI::App& app, Shared& shared) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
@@ -29,7 +71,7 @@ void add_commands(CLI::App& app, Shared& shared) {
   add_page(app, "--bash-completion", [&app] { return bash_completion(app); });
   app.require_subcommand(1);
   app.fallthrough();
-  app.parse_complete_callback([&] { set_log_level(shared.quiet, shared.verbosity); });
+  app.parse_complete_callback([&] { set_talk(shared); });
   add_devices(app, shared);
   add_render(app, shared);
   add_sequence(app, shared);
@@ -43,6 +85,7 @@ void add_commands(CLI::App& app, Shared& shared) {
   add_bench(app, shared);
   add_tune(app, shared);
   add_report(app, shared);
+  refuse_ranks_but_to(app, {"quality", "sequence", "reference", "bench"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"

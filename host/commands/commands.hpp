@@ -3,15 +3,21 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 
 namespace clpv {
+
+class Team;
 
 /// What every command shares.
 struct Shared {
   std::string device;  ///< --device
   bool quiet = false;
   int verbosity = 0;
+  /// The processes that a launcher started this one with; begun when it is first asked for.
+  Team& team();
+  std::shared_ptr<Team> begun;  ///< none yet, until it is
 };
 
 /// The program's description, the options of all commands, and the commands.

@@ -6,18 +6,19 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
+#include "commands/quality_cells.hpp"
 #include "commands/quality_subjects.hpp"
 #include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
 #include "evaluate/quality_report.hpp"
+#include "parallel/rank_device.hpp"
 #include "support/error.hpp"
-#include "support/interrupt.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
-#include "support/progress.hpp"
 
 namespace clpv {
 namespace {
@@ -61,76 +62,15 @@ RenderOptions with(const Options& options, const Variant& variant, const Scene& 
   return resolve_options(given, scene);
 }
 
-/// Measures the cells of one variant and scene, the frame made when the first of them is not kept already.
-class VariantRun {
- public:
-  VariantRun(Session& session, const Options& options, const QualityStore& store, const Subject& subject,
-             const Variant& variant)
-      : session_(session),
-        options_(options),
-        store_(store),
-        subject_(subject),
-        variant_(variant),
-        frame_options_(with(options, variant, subject.scene)),
-        show_(named<Show>("--view", options.view)) {}
-
-  QualityCell cell(std::size_t view) {
-    const reference::Reference& truth = subject_.truths[view];
-    const std::string key = quality_key(truth, session_.device(), frame_options_, show_, options_.frames);
-    if (auto kept = options_.fresh ? std::nullopt : store_.find(key)) {
-      kept->variant = variant_;  // the same options may have been written otherwise
-      return *kept;
-    }
-    QualityCell cell = rendered(view, truth);
-    cell.scene = subject_.scene.name;
-    cell.camera = subject_.cameras[view].name;
-    cell.variant = variant_;
-    if (cell.refused.empty()) store_.keep(key, cell);  // what was refused may be a matter of the moment
-    return cell;
-  }
-
- private:
-  QualityCell rendered(std::size_t view, const reference::Reference& truth) {
-    try {
-      if (!frame_) frame_ = std::make_unique<Frame>(session_, subject_.scene, frame_options_);
-      return measure(session_, *frame_, subject_.cameras[view], truth, show_, options_.frames);
-    } catch (const Error& error) {
-      // A basis that a transport cannot carry, a grid that does not fit: a result like any other.
-      if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
-      QualityCell cell;
-      cell.refused = error.what();
-      return cell;
-    }
-  }
-
-  Session& session_;
-  const Options& options_;
-  const QualityStore& store_;
-  const Subject& subject_;
-  const Variant& variant_;
-  RenderOptions frame_options_;
-  Show show_;
-  std::unique_ptr<Frame> frame_;
-};
-
-std::vector<QualityCell> measure_all(Session& session, const Options& options, const QualityStore& store,
-                                     const std::vector<Subject>& subjects, const std::vector<Variant>& all) {
-  std::size_t views = 0;
-  for (const Subject& subject : subjects) views += subject.cameras.size();
-  Progress progress("quality", views * all.size());
-  std::vector<QualityCell> cells;
+/// What is measured, of subjects and variants that must outlive it.
+QualityMatrix matrix(const Options& options, const std::vector<Subject>& subjects,
+                     const std::vector<Variant>& all) {
+  QualityMatrix matrix{subjects, all, {}, named<Show>("--view", options.view), options.frames, options.fresh};
   for (const Subject& subject : subjects) {
-    for (const Variant& variant : all) {
-      VariantRun run(session, options, store, subject, variant);
-      for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
-        stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(),
-                                        views * all.size()));
-        cells.push_back(run.cell(view));
-        progress.advance();
-      }
-    }
+    std::vector<RenderOptions>& of_subject = matrix.options.emplace_back();
+    for (const Variant& variant : all) of_subject.push_back(with(options, variant, subject.scene));
   }
-  return cells;
+  return matrix;
 }
 
 nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector<Subject>& subjects,
@@ -159,28 +99,53 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
   return json;
 }
 
-void run(const Options& options, const Shared& shared) {
+/// All that is there before anything is measured.
+struct Prepared {
+  std::vector<Variant> variants;
+  std::filesystem::path folder;
+  std::optional<QualityStore> store;
+  std::unique_ptr<Session> session;
+  std::vector<Subject> subjects;  ///< without truths
+};
+
+Prepared prepare(const Options& options, const Shared& shared, const Team& team) {
   check_models(options.subjects);
-  const std::vector<Variant> all = variants(options);
+  Prepared made;
+  made.variants = variants(options);
   named<Show>("--view", options.view);
   for (const std::string& output : {options.json, options.csv}) {
     if (!output.empty()) check_writable(output);
   }
-  const std::filesystem::path folder = quality_cache(options.cache);
-  const QualityStore store(folder / "cells");
-  Session session(choose_device(shared.device));
-  std::vector<Subject> subjects = load_subjects(options.subjects);
-  for (Subject& subject : subjects) {
-    const RenderOptions frame = with(options, {}, subject.scene);
-    trace_truths(subject, frame.width, frame.height, options.tracing.resolved(), folder / "references");
-  }
-  const std::vector<QualityCell> cells = measure_all(session, options, store, subjects, all);
-  const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
+  made.folder = quality_cache(options.cache);
+  made.store.emplace(made.folder / "cells");
+  made.session = std::make_unique<Session>(device_of_rank(team, shared.device));
+  made.subjects = load_subjects(options.subjects);
+  return made;
+}
+
+void tell(const std::vector<QualityCell>& cells, const Prepared& made, const Options& options) {
+  const std::string json = document(cells, made.subjects, *made.session, options).dump(2) + "\n";
   if (!options.json.empty()) write_file(options.json, json);
   if (!options.csv.empty()) write_file(options.csv, quality_csv(cells));
   fmt::print("{}", options.format == "json"  ? json
                    : options.format == "csv" ? quality_csv(cells)
                                              : quality_table(cells));
+}
+
+void run(const Options& options, Shared& shared) {
+  Team& team = shared.team();
+  Prepared made;
+  team.agree([&] { made = prepare(options, shared, team); });
+  tell_devices(team, made.session->device());
+  for (Subject& subject : made.subjects) {
+    const RenderOptions frame = with(options, {}, subject.scene);
+    trace_truths(subject, frame.width, frame.height, options.tracing.resolved(), made.folder / "references",
+                 team);
+  }
+  std::optional<QualityMatrix> measured;
+  team.agree([&] { measured.emplace(matrix(options, made.subjects, made.variants)); });
+  const std::vector<QualityCell> cells = measure_all(team, *made.session, *measured, *made.store);
+  if (team.leads()) tell(cells, made, options);
 }
 
 void add_options(CLI::App& command, Options& options) {
@@ -241,7 +206,8 @@ void add_quality(CLI::App& app, Shared& shared) {
       "single factor that makes it least; energy: sum over sum; perceptual: share of pixels that fail Yee's "
       "test (1999).\n"
       "A run that was stopped goes on where it was. Cells of another build, device or kernel text are "
-      "measured anew.");
+      "measured anew.\n"
+      "mpirun -n N clpv quality ... shares the cells among N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -67,11 +67,11 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
 }
 
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
-                  const std::filesystem::path& folder) {
+                  const std::filesystem::path& folder, Team& team) {
   for (const Camera& camera : subject.cameras) {
     TraceBar bar(fmt::format("reference {} {}", subject.scene.name, camera.name));
-    subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
-                                                         options, [&](double share) { bar.show(share); }));
+    subject.truths.push_back(reference::cached_reference(
+        folder, subject.scene, camera, width, height, options, [&](double share) { bar.show(share); }, team));
     const reference::Reference& truth = subject.truths.back();
     spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }

@@ -36,8 +36,8 @@ void check_models(const QualitySubjects& given);
 /// Loads the scenes as they are at that instant, without truths. Throws like load_scene, and Error(usage) for a camera that no scene has.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
-/// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced.
+/// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced. By all ranks.
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
-                  const std::filesystem::path& folder);
+                  const std::filesystem::path& folder, Team& team = alone());
 
 }  // namespace clpv

@@ -85,20 +85,33 @@ void write_outputs(const Options& options, const Camera& camera, const reference
   write_file(options.stats, stats.dump(2) + "\n");
 }
 
-void run(const Options& options) {
-  const reference::PathTracerOptions tracing = options.tracing.resolved();
+/// The scene as it is at the instant shown.
+std::unique_ptr<MovingScene> prepare(const Options& options) {
   for (const std::string& view : options.views) named<Show>("--view", view);
   check_outputs(options);
-  MovingScene moving(options.scene, {options.model});
-  const Scene& scene = moving.scene();
-  for (const std::string& note : scene.notes) spdlog::info("{}", note);
-  moving.pose(options.time);
+  auto moving = std::make_unique<MovingScene>(options.scene, LoadOptions{options.model});
+  for (const std::string& note : moving->scene().notes) spdlog::info("{}", note);
+  moving->pose(options.time);
+  moving->scene().camera(options.camera);  // throws where there is none
+  return moving;
+}
+
+void run(const Options& options, Shared& shared) {
+  Team& team = shared.team();
+  reference::PathTracerOptions tracing;
+  std::unique_ptr<MovingScene> moving;
+  team.agree([&] {
+    tracing = options.tracing.resolved();
+    moving = prepare(options);
+  });
+  const Scene& scene = moving->scene();
   const Camera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
   TraceBar bar("path tracing");
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
-      [&](double share) { bar.show(share); });
+      [&](double share) { bar.show(share); }, team);
+  if (!team.leads()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
@@ -133,7 +146,7 @@ void add_options(CLI::App& command, Options& options) {
 
 }  // namespace
 
-void add_reference(CLI::App& app, Shared&) {
+void add_reference(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand("reference", "Path-traced truth of a scene, on the CPU");
   auto options = std::make_shared<Options>();
   add_options(*command, *options);
@@ -143,8 +156,9 @@ void add_reference(CLI::App& app, Shared&) {
       "against it pixel by pixel. Emissive surfaces light what they face. A background pixel is 0 with "
       "alpha 0.\n"
       "Time grows with the number of pixels: references of 240 x 135 serve to measure, larger ones to look "
-      "at.");
-  command->callback([options] { run(*options); });
+      "at.\n"
+      "mpirun -n N clpv reference ... traces by N ranks, with the same bytes (docs/scale.md).");
+  command->callback([options, &shared] { run(*options, shared); });
 }
 
 }  // namespace clpv

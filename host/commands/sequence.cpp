@@ -2,10 +2,12 @@
 // clpv sequence: a scene that moves, frame by frame into a folder, and into a film.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands/choices.hpp"
 #include "commands/commands.hpp"
@@ -16,6 +18,9 @@
 #include "commands/time_option.hpp"
 #include "commands/video.hpp"
 #include "image/image_io.hpp"
+#include "parallel/rank_device.hpp"
+#include "parallel/schedule.hpp"
+#include "parallel/team.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
@@ -89,14 +94,26 @@ double milliseconds(Clock::duration span) {
   return std::chrono::duration<double, std::milli>(span).count();
 }
 
+constexpr const char* kTimesOfRank = "times.rank-";  // and its number: until rank 0 has all
+
+/// Files of times that ranks of a run left which did not come to its end.
+std::vector<fs::path> times_of_ranks(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename().string().starts_with(kTimesOfRank)) files.push_back(entry.path());
+  }
+  return files;
+}
+
 /// A sequence at work: the scene, the device and all that is made for it stay from frame to frame.
 class Sequence {
  public:
-  Sequence(const Options& options, const Shared& shared)
+  Sequence(const Options& options, const Shared& shared, Team& team)
       : options_(options),
+        team_(team),
         moving_(options.request.scene, {options.request.model}),
         resolved_(resolve_options(options.request.frame, moving_.scene())),
-        device_(choose_device(shared.device)),
+        device_(device_of_rank(team, shared.device)),
         tuning_(options.request.no_tune
                     ? Tuning{}
                     : tuning_for(device_, resolved_, !options.request.frame.contains("layout"))),
@@ -106,26 +123,45 @@ class Sequence {
       spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
   }
 
-  void run();
+  const Device& device() const { return device_; }
+  void run();  ///< by all ranks
   void measure_stability();
   void film(Video& video);
 
  private:
+  /// What frames are rendered with.
+  struct Renderer {
+    Session session;
+    Frame frame;
+    Renderer(const Device& device, const Scene& scene, const RenderOptions& options, const Tuning& tuning)
+        : session(device, ProgramCache::of_user()), frame(session, scene, options, tuning) {}
+  };
+
   const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
   fs::path file_of(int frame) const { return frame_file(options_.output, frame, options_.format); }
   nlohmann::json described(int frame) const;
-  std::vector<int> missing();
+  bool there(int frame);
+  std::vector<std::size_t> missing();
+  void keep_times(const std::vector<int>& there);
   FrameTimes render(Session& session, Frame& frame, int number);
+  void render_missing(const std::vector<std::size_t>& missing);
+  void render_one(int number);
   nlohmann::json about() const;
-  void write_times() const;
+  fs::path times_file() const;
+  void write_times();
+  void gather_times();
 
   const Options& options_;
+  Team& team_;
   MovingScene moving_;
   RenderOptions resolved_;
   Device device_;
   Tuning tuning_;
   FrameIdentity identity_;
-  SequenceTimes times_;
+  SequenceTimes times_;  ///< of this rank; at rank 0 of frames that were there too
+  Clock::time_point times_written_ = Clock::now();
+  std::optional<Renderer> renderer_;  ///< none before its first frame
+  int at_ = 0;                        ///< the frame it works on
 };
 
 nlohmann::json Sequence::described(int frame) const {
@@ -135,20 +171,44 @@ nlohmann::json Sequence::described(int frame) const {
   return all;
 }
 
-/// Frames whose files are not there, or are of something else. The times of the others are kept.
-std::vector<int> Sequence::missing() {
-  std::vector<int> missing, there;
-  for (int i = 0; i < options_.frames; ++i) {
-    bool found = fs::exists(file_of(i));
-    if (found) {
-      moving_.pose(options_.instant(i));
-      found = holds_frame(file_of(i), identity_.of(moving_.scene(), camera(), described(i)));
+/// Whether a frame's file is there, and of the same.
+bool Sequence::there(int frame) {
+  if (!fs::exists(file_of(frame))) return false;
+  moving_.pose(options_.instant(frame));
+  return holds_frame(file_of(frame), identity_.of(moving_.scene(), camera(), described(frame)));
+}
+
+/// Frames whose files are not there, or are of something else: each rank looks at some. The times of the others are kept.
+std::vector<std::size_t> Sequence::missing() {
+  std::vector<int> found, all;
+  team_.agree([&] {
+    for (int i = team_.rank(); i < options_.frames; i += team_.size()) {
+      if (there(i)) found.push_back(i);
     }
-    (found ? there : missing).push_back(i);
+  });
+  const std::vector<std::string> told = team_.gather(nlohmann::json(found).dump());
+  const std::string told_all = team_.from_first([&] {
+    for (const std::string& one : told) {
+      const auto some = nlohmann::json::parse(one).get<std::vector<int>>();
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    std::ranges::sort(all);
+    keep_times(all);
+    return nlohmann::json(all).dump();
+  });
+  all = nlohmann::json::parse(told_all).get<std::vector<int>>();
+  if (!all.empty()) spdlog::info("{} of {} frames are there already", all.size(), options_.frames);
+  std::vector<std::size_t> missing;
+  for (int i = 0; i < options_.frames; ++i) {
+    if (!std::ranges::binary_search(all, i)) missing.push_back(static_cast<std::size_t>(i));
   }
-  times_.keep(fs::path(options_.output) / "times.json", there);
-  if (!there.empty()) spdlog::info("{} of {} frames are there already", there.size(), options_.frames);
   return missing;
+}
+
+/// Of a run before, which may have ended with files of several ranks.
+void Sequence::keep_times(const std::vector<int>& there) {
+  times_.keep(fs::path(options_.output) / "times.json", there);
+  for (const fs::path& file : times_of_ranks(options_.output)) times_.keep(file, there);
 }
 
 FrameTimes Sequence::render(Session& session, Frame& frame, int number) {
@@ -180,39 +240,70 @@ nlohmann::json Sequence::about() const {
           {"from", options_.from}};
 }
 
-void Sequence::write_times() const {
-  write_file(fs::path(options_.output) / "times.json", times_.to_json(about()).dump(1) + "\n");
+/// Each rank writes its own, and rank 0 what there is besides.
+fs::path Sequence::times_file() const {
+  return fs::path(options_.output) /
+         (team_.leads() ? "times.json" : fmt::format("{}{}.json", kTimesOfRank, team_.rank()));
+}
+
+void Sequence::write_times() {
+  write_file(times_file(), times_.to_json(about()).dump(1) + "\n");
+  times_written_ = Clock::now();
+}
+
+/// All of them into one file, and those of ranks away.
+void Sequence::gather_times() {
+  const std::vector<std::string> told = team_.gather(times_.to_json(about()).dump());
+  if (!team_.leads()) return;
+  for (const std::string& one : told) times_.merge(nlohmann::json::parse(one));
+  write_times();
+  for (const fs::path& file : times_of_ranks(options_.output)) fs::remove(file);
+}
+
+void Sequence::render_one(int number) {
+  at_ = number;
+  const bool first = !renderer_;
+  if (first) renderer_.emplace(device_, moving_.scene(), resolved_, tuning_);
+  FrameTimes times = render(renderer_->session, renderer_->frame, number);
+  times.first = first;
+  times_.add(number, options_.instant(number), times);
+  spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, options_.instant(number), times.frame_ms);
+  if (Clock::now() - times_written_ > kTimesEvery) write_times();
+}
+
+void Sequence::render_missing(const std::vector<std::size_t>& missing) {
+  const std::vector<Piece> runs = shrinking_runs(missing, team_.size());
+  const std::size_t there = static_cast<std::size_t>(options_.frames) - missing.size();
+  Progress progress("sequence", missing.size());
+  const auto kept = [&] {
+    write_times();
+    return fmt::format("{} of {} frames are in {}; the same command goes on", there + team_.done(0),
+                       options_.frames, options_.output);
+  };
+  const auto render_run = [&](std::size_t run) {
+    for (const std::size_t number : runs[run]) {
+      if (interrupted()) throw Interrupted(kept());
+      render_one(static_cast<int>(number));
+      team_.done(1);
+    }
+  };
+  try {
+    team_.share({runs.size(), render_run, [&] { return fmt::format("frame {}", at_); }, &progress, kept});
+  } catch (const TeamFailure&) {
+    write_times();
+    throw;
+  }
 }
 
 void Sequence::run() {
-  const std::vector<int> missing = this->missing();
-  if (missing.empty()) return write_times();
-  Progress progress("sequence", missing.size());
+  const std::vector<std::size_t> missing = this->missing();
   const Clock::time_point started = Clock::now();
-  Session session(device_, ProgramCache::of_user());
-  Frame frame(session, moving_.scene(), resolved_, tuning_);
-  Clock::time_point written = started;
-  std::size_t there = static_cast<std::size_t>(options_.frames) - missing.size();
-  for (const int number : missing) {
-    if (interrupted()) {
-      write_times();
-      throw Interrupted(fmt::format("{} of {} frames are in {}; the same command goes on", there,
-                                    options_.frames, options_.output));
-    }
-    FrameTimes times = render(session, frame, number);
-    ++there;
-    times.first = number == missing.front();
-    times_.add(number, options_.instant(number), times);
-    spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, options_.instant(number), times.frame_ms);
-    if (Clock::now() - written > kTimesEvery) {
-      write_times();
-      written = Clock::now();
-    }
-    progress.advance();
-  }
-  write_times();
+  if (!missing.empty()) render_missing(missing);
+  gather_times();
+  if (missing.empty()) return;
   spdlog::info("{} frames in {:.1f} s", missing.size(), milliseconds(Clock::now() - started) / 1000);
-  session.store_programs();
+  if (renderer_ && team_.local_rank() == 0) renderer_->session.store_programs();
+  renderer_.reset();
 }
 
 /// Of all frames, rendered once more: most of them may be of an earlier run.
@@ -247,14 +338,21 @@ void Sequence::film(Video& video) {
   video.finish();
 }
 
-void run(const Options& options, const Shared& shared) {
-  check_outputs(options);
+void run(const Options& options, Shared& shared) {
+  Team& team = shared.team();
   std::unique_ptr<Video> video;
-  if (!options.video.empty()) video = std::make_unique<Video>(options.video, options.frames_per_second);
-  Sequence sequence(options, shared);
-  sequence.run();
-  if (options.stability) sequence.measure_stability();
-  if (video) sequence.film(*video);
+  std::unique_ptr<Sequence> sequence;
+  team.agree([&] {
+    check_outputs(options);
+    if (!options.video.empty() && team.leads())
+      video = std::make_unique<Video>(options.video, options.frames_per_second);
+    sequence = std::make_unique<Sequence>(options, shared, team);
+  });
+  tell_devices(team, sequence->device());
+  sequence->run();
+  if (!team.leads()) return;
+  if (options.stability) sequence->measure_stability();
+  if (video) sequence->film(*video);
 }
 
 }  // namespace
@@ -298,8 +396,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
       "whose\nfile is there and was made of the same is not rendered again, so that a run that was ended "
       "goes on "
       "where it was.\ntimes.json has the times of every frame, and of each stage the median, 95th percentile "
-      "and "
-      "worst [ms].");
+      "and worst [ms].\nmpirun -n N clpv sequence ... shares the frames among N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -69,6 +69,10 @@ void SequenceTimes::keep(const std::filesystem::path& file, const std::vector<in
   }
 }
 
+void SequenceTimes::merge(const json& told) {
+  for (const json& frame : told.at("frames")) frames_[frame.at("frame").get<int>()] = frame;
+}
+
 void SequenceTimes::add(int frame, double seconds, const FrameTimes& times) {
   json stages = json::array();
   for (const StageTime& stage : times.stages) {

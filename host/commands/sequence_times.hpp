@@ -25,8 +25,10 @@ class SequenceTimes {
   SequenceTimes();
   ~SequenceTimes();
 
-  /// Takes over what a file of to_json() tells of that frame, where there is one and it does.
+  /// Takes over what a file of to_json() tells of those frames, where there is one and it does.
   void keep(const std::filesystem::path& file, const std::vector<int>& frames);
+  /// What to_json() of another rank tells.
+  void merge(const nlohmann::json& told);
 
   void add(int frame, double seconds, const FrameTimes& times);
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <iterator>
 
 #include "device/cl_error.hpp"
 
@@ -140,10 +141,16 @@ DeviceList list_devices() {
   return list;
 }
 
-Device choose_device(std::string_view choice) {
+namespace {
+
+/// What is meant where nothing is chosen.
+std::string_view or_environment(std::string_view choice) {
   const char* environment = std::getenv("CLPV_DEVICE");
-  if (choice.empty() && environment != nullptr) choice = environment;
-  const DeviceList list = list_devices();
+  return choice.empty() && environment != nullptr ? environment : choice;
+}
+
+std::vector<Device> devices_there() {
+  DeviceList list = list_devices();
   if (list.devices.empty() && !list.platforms_without_devices.empty()) {
     throw Error(
         ExitCode::device,
@@ -151,7 +158,30 @@ Device choose_device(std::string_view choice) {
         "POCL_CACHE_DIR, XDG_CACHE_HOME or HOME says where)",
         fmt::join(list.platforms_without_devices, ", "));
   }
-  return choose_device(list.devices, choice);
+  return std::move(list.devices);
+}
+
+}  // namespace
+
+Device choose_device(std::string_view choice) {
+  return choose_device(devices_there(), or_environment(choice));
+}
+
+std::vector<Device> choose_devices(std::string_view choice) {
+  choice = or_environment(choice);
+  const std::vector<Device> devices = devices_there();
+  std::vector<Device> chosen;
+  if (choice.empty()) {
+    const Device first = choose_device(devices, choice);
+    std::ranges::copy_if(devices, std::back_inserter(chosen), [&](const Device& d) {
+      return d.supported() && d.name == first.name && d.platform == first.platform;
+    });
+    return chosen;
+  }
+  std::ranges::copy_if(devices, std::back_inserter(chosen),
+                       [&](const Device& d) { return d.supported() && matches(d, choice); });
+  if (chosen.empty()) chosen.push_back(choose_device(devices, choice));  // throws, and says why none fits
+  return chosen;
 }
 
 Device choose_device(const std::vector<Device>& devices, std::string_view choice) {
@@ -179,6 +209,25 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
                 fmt::join(fitting[0].missing, ", "));
   }
   return fitting[0];
+}
+
+Device part_of(const Device& device, unsigned units, unsigned index) {
+  Device part = device;
+  if (units == device.compute_units) return part;
+  std::vector<cl_device_partition_property> by_counts = {CL_DEVICE_PARTITION_BY_COUNTS};
+  by_counts.insert(by_counts.end(), index + 1, static_cast<cl_device_partition_property>(units));
+  by_counts.insert(by_counts.end(), {CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0});
+  std::vector<cl::Device> parts;
+  try {
+    part.handle.createSubDevices(by_counts.data(), &parts);
+  } catch (const cl::Error&) {
+    parts.clear();
+  }
+  if (parts.size() <= index)
+    throw Error(ExitCode::device, "{} cannot be split into compute units", device.name);
+  part.handle = parts[index];
+  part.compute_units = units;
+  return part;
 }
 
 }  // namespace clpv

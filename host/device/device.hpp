@@ -46,4 +46,12 @@ Device choose_device(std::string_view choice = {});
 /// The same among given devices; CLPV_DEVICE is not asked.
 Device choose_device(const std::vector<Device>& devices, std::string_view choice);
 
+/// All that `choice` fits and that are supported, in their order; without one (CLPV_DEVICE is asked too) the first supported
+/// one and those of its name and platform. Throws Error(device) where there is none.
+std::vector<Device> choose_devices(std::string_view choice = {});
+
+/// A part of `units` compute units, the `index`-th of such parts; the device itself where that is all it has.
+/// Throws Error(device) where it cannot be split so.
+Device part_of(const Device& device, unsigned units, unsigned index = 0);
+
 }  // namespace clpv

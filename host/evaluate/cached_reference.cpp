@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cctype>
+#include <optional>
 
 #include "image/image_io.hpp"
 #include "pathtracer/traced_view.hpp"
@@ -83,29 +84,53 @@ std::string scene_fingerprint(const Scene& scene) {
   return print.hex();
 }
 
+namespace {
+
+/// What is kept there, if it can be read.
+std::optional<Reference> kept_reference(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    return read_reference(file);
+  } catch (const std::exception& error) {
+    spdlog::warn("{}; traced anew", error.what());
+    return std::nullopt;
+  }
+}
+
+void check_place(const std::filesystem::path& file) {
+  std::error_code failure;  // what is wrong with the folder, check_writable tells
+  std::filesystem::create_directories(file.parent_path(), failure);
+  check_writable(file);
+}
+
+}  // namespace
+
 Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
                            int width, int height, const PathTracerOptions& options,
-                           const TraceProgress& progress) {
+                           const TraceProgress& progress, Team& team) {
   const ClpvView view = camera_view(camera, width, height);
   const std::filesystem::path file =
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
                            key(scene, camera, view, options));
-  if (std::filesystem::exists(file)) {
-    try {
-      return read_reference(file);
-    } catch (const std::exception& error) {
-      spdlog::warn("{}; traced anew", error.what());
-    }
+  std::optional<Reference> reference;
+  const std::string found = team.from_first([&] {
+    reference = kept_reference(file);
+    if (!reference) check_place(file);
+    return reference ? "there" : "";
+  });
+  if (!found.empty()) {
+    team.agree([&] {
+      if (!reference) reference = read_reference(file);
+    });
+    return *std::move(reference);
   }
-  std::error_code failure;
-  std::filesystem::create_directories(folder,
-                                      failure);  // what is wrong with the folder, check_writable tells
-  check_writable(file);
-  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress);
-  Reference reference{all_views(traced), file, true, traced.samples, traced.noise};
-  describe(reference.image, scene, camera, traced, options);
-  write_exr(file, reference.image);
-  return reference;
+  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, team);
+  reference = Reference{all_views(traced), file, true, traced.samples, traced.noise};
+  describe(reference->image, scene, camera, traced, options);
+  team.agree([&] {
+    if (team.leads()) write_exr(file, reference->image);
+  });
+  return *std::move(reference);
 }
 
 }  // namespace clpv::reference

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "device/kernel_files.hpp"
@@ -18,6 +19,9 @@
 
 namespace clpv {
 namespace {
+
+// What a frame costs whatever its volumes are, in coefficients of a cell moved by a step.
+constexpr double kFixedCost = 1e7;
 
 Image shown(Frame& frame, Show show) {
   Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
@@ -49,9 +53,15 @@ std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bo
 
 }  // namespace
 
+double estimated_cost(const RenderOptions& options) {
+  const double n = make_basis(options)->size(), cells = std::pow(options.grid, 3) * options.cascades;
+  return kFixedCost + cells * n * (options.transport == TransportKind::sweep ? 1 : options.iterations);
+}
+
 QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
                     Show show, int frames) {
   QualityCell cell;
+  cell.compute_units = session.device().compute_units;
   std::map<std::string, std::vector<double>> samples;
   std::vector<double> totals;
   for (int i = 0; i <= frames; ++i) {

@@ -26,6 +26,9 @@ struct QualityCell {
   double frame_ms = 0;                     ///< all stages
   std::map<std::string, double> stage_ms;  ///< median over the timed frames; cascades and lights added up
   bool from_events = true;                 ///< times told by the device; false: wall time
+  unsigned compute_units = 0;              ///< of the device, or the part of it, that took these times
+  double made_s = 0;      ///< what making the frame took; 0 where it was there, of another view
+  double measured_s = 0;  ///< what measuring it took, all told
 };
 
 /// Renders a frame to warm up and `frames` timed ones, and compares the view `show` of the last with the truth.
@@ -33,7 +36,11 @@ struct QualityCell {
 QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
                     Show show, int frames);
 
-/// Names everything a cell depends on: truth, device, options, what is shown and how it is timed, kernels and program.
+/// What a frame of these options takes, set next to that of others: for the order of work whose times nobody knows yet.
+double estimated_cost(const RenderOptions& options);
+
+/// Names everything a cell's errors depend on: truth, device (but not into how many parts it is split), options, what is shown
+/// and how it is timed, kernels and program.
 std::string quality_key(const reference::Reference& truth, const Device& device, const RenderOptions& options,
                         Show show, int frames);
 

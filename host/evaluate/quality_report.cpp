@@ -101,7 +101,10 @@ nlohmann::json to_json(const QualityCell& cell) {
           {"perceptual", json_of(cell.perceptual)},
           {"frame_ms", cell.frame_ms},
           {"stage_ms", cell.stage_ms},
-          {"timer", cell.from_events ? "event" : "wall"}};
+          {"timer", cell.from_events ? "event" : "wall"},
+          {"compute_units", cell.compute_units},
+          {"made_s", cell.made_s},
+          {"measured_s", cell.measured_s}};
 }
 
 QualityCell cell_from_json(const nlohmann::json& json) {
@@ -118,6 +121,9 @@ QualityCell cell_from_json(const nlohmann::json& json) {
   cell.frame_ms = json.at("frame_ms");
   cell.stage_ms = json.at("stage_ms").get<std::map<std::string, double>>();
   cell.from_events = json.at("timer") == "event";
+  cell.compute_units = json.at("compute_units");
+  cell.made_s = json.at("made_s");
+  cell.measured_s = json.at("measured_s");
   return cell;
 }
 

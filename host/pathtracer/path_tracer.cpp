@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
@@ -24,12 +26,6 @@ constexpr std::uint32_t kTile = 16;          // pixels along each side of what a
 constexpr std::uint32_t kFirstSamples = 64;  // paths a pixel before the noise is judged at all
 constexpr std::uint32_t kMostSamples = PathTracerOptions::kMostSamples;
 
-/// A pixel's surface, and the two independent halves of its estimate.
-struct Pixel {
-  std::optional<Hit> hit;
-  glm::dvec3 sum[2] = {glm::dvec3(0), glm::dvec3(0)};  // irradiance [W/m^2], summed over paths
-};
-
 /// Where a pixel looks.
 glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
   return glm::normalize(surface_position(view, px, py, 1) - surface_position(view, px, py, 0));
@@ -39,64 +35,69 @@ glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py
 class Work {
  public:
   Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-       const PathTracerOptions& options, const TraceProgress& progress)
+       const PathTracerOptions& options, const TraceProgress& progress, Team& team)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
         sky_(scene.sky.get()),
         lights_(lights),
         options_(options),
         progress_(progress),
-        pixels_(std::size_t{view.width} * view.height) {
+        team_(team),
+        hits_(std::size_t{view.width} * view.height),
+        sums_(2 * hits_.size(), glm::dvec3(0)) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
-    threads_ = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+    threads_ = options.threads > 0 ? options.threads : team.processors();
   }
 
-  /// Everything that needs one ray a pixel: what is seen, and its direct light.
+  /// Everything that needs one ray a pixel: what is seen, and its direct light. Each rank does it whole, to go on from there
+  /// wherever it is needed.
   void look() {
-    image_.depth.assign(pixels_.size(), 0);
+    image_.depth.assign(hits_.size(), 0);
     for (auto* layer :
          {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance}) {
-      layer->assign(pixels_.size(), glm::vec3(0));
+      layer->assign(hits_.size(), glm::vec3(0));
     }
-    each_pixel([&](PathSampler& sampler, std::uint32_t x, std::uint32_t y) {
-      const std::size_t i = std::size_t{y} * image_.view.width + x;
-      pixels_[i].hit = sampler.see(image_.view, x, y);
-      if (!pixels_[i].hit) {
-        if (image_.sky) image_.emissive[i] = sky_.seen(direction_of(image_.view, x, y));
-        return;
-      }
-      const Hit& hit = *pixels_[i].hit;
-      image_.depth[i] = hit.distance;
-      image_.normal[i] = hit.normal;
-      const Footprint around = footprint(image_.view, x, y, hit);
-      image_.albedo[i] = rays_.materials().albedo(hit.point, around);
-      image_.emissive[i] = rays_.materials().emissive(hit.point, around);
-      image_.direct[i] = glm::vec3(sampler.direct(hit));
+    std::atomic<std::uint32_t> next{0};
+    const auto take = [&]() -> std::optional<std::size_t> {
+      const std::uint32_t tile = next.fetch_add(1);
+      return tile < tiles() ? std::optional<std::size_t>(tile) : std::nullopt;
+    };
+    by_threads(take, [&](PathSampler& sampler, std::size_t tile) {
+      each_pixel(tile, [&](std::size_t i, std::uint32_t x, std::uint32_t y) { look(sampler, i, x, y); });
     });
+    if (!team_.leads()) image_.rays = 0;  // they are counted once
   }
 
   /// Paths until there are `samples` a pixel, half of them in each half (the first takes an odd one).
   void trace(std::uint32_t samples) {
-    each_pixel([&](PathSampler& sampler, std::uint32_t x, std::uint32_t y) {
-      const std::size_t i = std::size_t{y} * image_.view.width + x;
-      Pixel& pixel = pixels_[i];
-      if (!pixel.hit) return;
-      for (std::uint32_t half = 0; half < 2; ++half) {
-        const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
-        for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s) {
-          pixel.sum[half] += sampler.indirect(*pixel.hit, s, stream);
-        }
-      }
-    });
+    // Each sum goes on at one rank from where it was; the others add nothing to it.
+    const std::vector<glm::dvec3> before = std::exchange(sums_, std::vector(sums_.size(), glm::dvec3(0)));
+    team_.begin(2 * std::size_t{tiles()});
+    by_threads([&] { return team_.take(); },
+               [&](PathSampler& sampler, std::size_t item) {
+                 const auto half = static_cast<std::uint32_t>(item % 2);
+                 each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
+                   if (!hits_[i]) return;
+                   glm::dvec3& sum = sums_[2 * i + half] = before[2 * i + half];
+                   const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
+                   for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s)
+                     sum += sampler.indirect(*hits_[i], s, stream);
+                 });
+                 tell(team_.done(1));
+               });
+    team_.sum({&sums_[0].x, 3 * sums_.size()});
     image_.samples = samples;
     image_.noise = noise();
   }
 
   TracedImage finish() {
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      image_.irradiance[i] = glm::vec3((pixels_[i].sum[0] + pixels_[i].sum[1]) / double(image_.samples));
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      image_.irradiance[i] = glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
     }
+    auto rays = static_cast<double>(image_.rays);
+    team_.sum({&rays, 1});
+    image_.rays = static_cast<std::uint64_t>(rays);
     return std::move(image_);
   }
 
@@ -106,27 +107,43 @@ class Work {
  private:
   static std::uint32_t share(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
 
-  /// Runs action(sampler, x, y) once a pixel, tiles handed to threads as they come.
+  std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }
+  std::uint32_t tiles() const { return columns() * ((image_.view.height + kTile - 1) / kTile); }
+
+  void look(PathSampler& sampler, std::size_t i, std::uint32_t x, std::uint32_t y) {
+    hits_[i] = sampler.see(image_.view, x, y);
+    if (!hits_[i]) {
+      if (image_.sky) image_.emissive[i] = sky_.seen(direction_of(image_.view, x, y));
+      return;
+    }
+    const Hit& hit = *hits_[i];
+    image_.depth[i] = hit.distance;
+    image_.normal[i] = hit.normal;
+    const Footprint around = footprint(image_.view, x, y, hit);
+    image_.albedo[i] = rays_.materials().albedo(hit.point, around);
+    image_.emissive[i] = rays_.materials().emissive(hit.point, around);
+    image_.direct[i] = glm::vec3(sampler.direct(hit));
+  }
+
+  /// action(i, x, y) on each pixel of a tile.
   template <typename Action>
-  void each_pixel(const Action& action) {
+  void each_pixel(std::size_t tile, const Action& action) const {
     const std::uint32_t width = image_.view.width, height = image_.view.height;
-    const std::uint32_t columns = (width + kTile - 1) / kTile,
-                        tiles = columns * ((height + kTile - 1) / kTile);
-    std::atomic<std::uint32_t> next{0};
-    std::uint32_t done = 0;
-    std::mutex mutex;
+    const auto left = static_cast<std::uint32_t>(tile % columns()) * kTile,
+               top = static_cast<std::uint32_t>(tile / columns()) * kTile;
+    for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
+      for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x)
+        action(std::size_t{y} * width + x, x, y);
+    }
+  }
+
+  /// Runs action(sampler, item) on each item that take() gives, on as many threads as there are.
+  template <typename Take, typename Action>
+  void by_threads(const Take& take, const Action& action) {
     const auto run = [&] {
       PathSampler sampler(rays_, lights_, emitters_, sky_, options_);
-      for (std::uint32_t tile; !interrupted() && (tile = next.fetch_add(1)) < tiles;) {
-        const std::uint32_t left = tile % columns * kTile, top = tile / columns * kTile;
-        for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
-          for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x) action(sampler, x, y);
-        }
-        const std::lock_guard lock(mutex);
-        ++done;
-        if (progress_) progress_(before_ + (after_ - before_) * done / tiles);
-      }
-      const std::lock_guard lock(mutex);
+      for (std::optional<std::size_t> item; !interrupted() && (item = take());) action(sampler, *item);
+      const std::lock_guard lock(mutex_);
       image_.rays += sampler.rays_shot();
     };
     {
@@ -137,14 +154,20 @@ class Work {
     stop_if_interrupted();
   }
 
+  void tell(std::uint64_t done) {
+    if (!progress_ || !team_.leads()) return;
+    const std::lock_guard lock(mutex_);
+    progress_(before_ + (after_ - before_) * static_cast<double>(done) / (2.0 * tiles()));
+  }
+
   /// TracedImage::noise of the paths so far. The halves differ by twice the error of their mean, in the mean
   /// square.
   double noise() const {
     const std::uint32_t counts[2] = {share(image_.samples, 0), share(image_.samples, 1)};
     if (counts[1] == 0) return std::numeric_limits<double>::quiet_NaN();
     double error = 0, signal = 0;
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      const glm::dvec3 a = pixels_[i].sum[0] / double(counts[0]), b = pixels_[i].sum[1] / double(counts[1]);
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      const glm::dvec3 a = sums_[2 * i] / double(counts[0]), b = sums_[2 * i + 1] / double(counts[1]);
       const glm::dvec3 albedo(image_.albedo[i]);
       const glm::dvec3 mean = albedo * (a + b) / 2.0, spread = albedo * (a - b) / 2.0;
       error += glm::dot(spread, spread);
@@ -159,8 +182,12 @@ class Work {
   const std::vector<Light>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
-  std::vector<Pixel> pixels_;
+  Team& team_;
+  std::vector<std::optional<Hit>> hits_;  // a pixel
+  // Irradiance [W/m^2], summed over paths: two independent halves of each pixel's estimate.
+  std::vector<glm::dvec3> sums_;
   TracedImage image_;
+  std::mutex mutex_;
   int threads_ = 1;
   double before_ = 0, after_ = 0;
 };
@@ -202,10 +229,13 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 }  // namespace
 
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-                        const PathTracerOptions& options, const TraceProgress& progress) {
-  check(scene, lights, options);
-  Work work(scene, lights, view, options, progress);
-  work.look();
+                        const PathTracerOptions& options, const TraceProgress& progress, Team& team) {
+  std::optional<Work> made;
+  team.agree([&] {
+    check(scene, lights, options);
+    made.emplace(scene, lights, view, options, progress, team).look();
+  });
+  Work& work = *made;
   if (options.samples > 0) {
     work.expect(0, 1);
     work.trace(options.samples);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kernels/shared/view.h"
+#include "parallel/team.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {
@@ -28,7 +29,7 @@ struct PathTracerOptions {
   std::uint32_t samples = 0;  ///< paths a pixel; 0: as many as `noise` needs
   double noise = 0.02;        ///< where samples is 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: one a processor
+  int threads = 0;  ///< of each rank; 0: one a processor that it may take
 };
 
 /// One value a pixel, row 0 first; 0 where there is no surface.
@@ -49,14 +50,16 @@ struct TracedImage {
   std::uint64_t rays = 0;
 };
 
-/// Called now and then, by one thread at a time, with the estimated share done in [0, 1].
+/// Called now and then, at rank 0 by one thread at a time, with the estimated share done in [0, 1].
 using TraceProgress = std::function<void(double)>;
 
 /// `lights` shine, whatever Scene::lights holds (Scene::lights_for).
-/// The same bytes for the same scene, lights, view, options and seed, whatever the number of threads.
+/// By all ranks of `team`, each of which has the image then: tiles, and the halves of their paths, go to whoever is free.
+/// The same bytes for the same scene, lights, view, options and seed, whatever the number of threads and ranks.
 /// Throws Error(bad_input) for a scene without surface, without light, or with a value that is not finite;
 /// Error(usage) for options out of range.
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-                        const PathTracerOptions& options, const TraceProgress& progress = {});
+                        const PathTracerOptions& options, const TraceProgress& progress = {},
+                        Team& team = alone());
 
 }  // namespace clpv::reference

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostLinks = 40;  // one after the other, as Linux follows
+constexpr int kMostNames = 1000;
 
 std::string reason(int code) {
   return std::generic_category().message(code);
@@ -30,9 +31,12 @@ class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) : target_(target) {
     static std::atomic<unsigned> count{0};
-    path_ =
-        target.parent_path() / fmt::format(".{}.{}-{}.part", target.filename().string(), ::getpid(), count++);
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    // A process of that number may have been killed here, or be another machine's.
+    for (int tries = 0; descriptor_ < 0 && tries < kMostNames && (tries == 0 || errno == EEXIST); ++tries) {
+      path_ = target.parent_path() /
+              fmt::format(".{}.{}-{}.part", target.filename().string(), ::getpid(), count++);
+      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    }
     if (descriptor_ < 0) refuse(target_, reason(errno));
   }
   ~TemporaryFile() {

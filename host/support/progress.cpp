@@ -15,7 +15,10 @@ namespace {
 
 constexpr std::chrono::milliseconds kFirstDraw{1000};  // shorter work needs no bar
 constexpr std::chrono::milliseconds kRedraw{100};      // faster than the eye reads would only cost time
+constexpr std::chrono::seconds kNextLine{10};          // a job of hours fills no log
 constexpr int kBarColumns = 30;
+
+ProgressStyle chosen = ProgressStyle::bar;
 
 int terminal_columns() {
   winsize size{};
@@ -28,14 +31,38 @@ std::string duration(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+double share_of(std::uint64_t done, std::uint64_t total) {
+  return total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+}
+
+std::string left_of(double share, double elapsed_seconds) {
+  return share > 0 ? duration(elapsed_seconds * (1 - share) / share) + " left" : "";
+}
+
+ProgressStyle possible(ProgressStyle wish) {
+  const bool heard = spdlog::should_log(spdlog::level::info);
+  const bool drawn = wish != ProgressStyle::bar || ::isatty(STDERR_FILENO) == 1;
+  return heard && drawn ? wish : ProgressStyle::none;
+}
+
 }  // namespace
+
+void set_progress_style(ProgressStyle style) {
+  chosen = style;
+}
+
+std::string progress_words(const std::string& title, std::uint64_t done, std::uint64_t total,
+                           double elapsed_seconds) {
+  const double share = share_of(done, total);
+  return fmt::format("{}: {} of {}, {:.0f} %, {}", title, done, total, 100 * share,
+                     left_of(share, elapsed_seconds));
+}
 
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,
                           double elapsed_seconds, int columns) {
-  const double share =
-      total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  const double share = share_of(done, total);
   const int filled = static_cast<int>(share * kBarColumns);
-  const std::string left = share > 0 ? duration(elapsed_seconds * (1 - share) / share) + " left" : "";
+  const std::string left = left_of(share, elapsed_seconds);
   const std::string bar = std::string(filled, '#') + std::string(kBarColumns - filled, '.');
   std::string line = fmt::format("{} [{}] {:3.0f} % {}", title, bar, 100 * share, left);
   return line.substr(0, static_cast<std::size_t>(std::max(columns, 0)));
@@ -44,9 +71,9 @@ std::string progress_line(const std::string& title, std::uint64_t done, std::uin
 Progress::Progress(std::string title, std::uint64_t total)
     : title_(std::move(title)),
       total_(total),
-      enabled_(::isatty(STDERR_FILENO) == 1 && spdlog::should_log(spdlog::level::info)),
+      style_(possible(chosen)),
       started_(Clock::now()),
-      next_draw_(started_ + kFirstDraw) {}
+      next_draw_(started_ + (style_ == ProgressStyle::lines ? kNextLine : kFirstDraw)) {}
 
 Progress::~Progress() {
   if (drawn_) std::fputs("\r\x1b[K", stderr);
@@ -55,10 +82,24 @@ Progress::~Progress() {
 void Progress::advance(std::uint64_t amount) {
   const std::lock_guard lock(mutex_);
   done_ += amount;
-  if (!enabled_) return;
+  show();
+}
+
+void Progress::reach(std::uint64_t done) {
+  const std::lock_guard lock(mutex_);
+  done_ = std::max(done_, done);
+  show();
+}
+
+void Progress::show() {
   const Clock::time_point now = Clock::now();
-  if (now < next_draw_) return;
+  if (style_ == ProgressStyle::none || now < next_draw_) return;
   const double elapsed = std::chrono::duration<double>(now - started_).count();
+  if (style_ == ProgressStyle::lines) {
+    spdlog::info("{}", progress_words(title_, done_, total_, elapsed));
+    next_draw_ = now + kNextLine;
+    return;
+  }
   // One column short: a full last column makes some terminals start a new line.
   const std::string line = progress_line(title_, done_, total_, elapsed, terminal_columns() - 1);
   std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
