@@ -4,12 +4,11 @@
 //   bounce         light to sweep += what is sent back of what was swept
 //   bounce_send    light to sweep += what is sent back of 1 W on each face
 //   bounce_meet    from that, swept: what surfaces send back, and all that is sent back of it further on
-//   bounce_keep    `arriving`: what falls on each whole face, of what was swept
-//   bounce_finer   light to sweep += what the next finer cascade sends back of that
+//   bounce_on      light to sweep += what is sent back of what was swept first, and in all bounces of what was swept second
+//   bounce_finer   light to sweep += what a cascade sends back of `arriving`, what falls on faces in the next coarser one
 //
 // In: `swept` (sweep.cl), as radiance times s^2; `reflectors`, six numbers a cell and channel (reflect.cl), or those that
-// bounce_meet makes of them. In and out: `light`, a volume for each channel and bin (sweep.h). `arriving`: a volume for each channel
-// and side, its planes across z.
+// bounce_meet makes of them; `arriving` (sweep_collect.cl). In and out: `light`, a volume for each channel and bin (sweep.h).
 //
 // Of 1 W that leaves a side, others send back E, what falls on that side where each of them sends back what it does of 1 W on its
 // face: light goes both ways alike. Where they send back what they do in all their bounces, so is E.
@@ -143,6 +142,19 @@ __kernel void bounce(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_BUFFE
                                 light_load(reflectors, channel, x, y + r, z)))
 }
 
+__kernel void bounce_on(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_swept, CLPV_VOLUME_IN reflectors,
+                        CLPV_VOLUME_IN in_all, CLPV_BUFFER_OUT light) {
+  CLPV_TILE
+  if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
+  Tile tile[CLPV_X_BINS], second[CLPV_X_BINS];
+  clpv_load_tiles(first_swept + first, CLPV_X_BINS, x, y, z, tile);
+  clpv_load_tiles(second_swept + first, CLPV_X_BINS, x, y, z, second);
+  CLPV_SEND_BACK(clpv_add(clpv_sent_back(clpv_arriving_at(tile, r, first_swept + first, x, y + r, z),
+                                         light_load(reflectors, channel, x, y + r, z)),
+                          clpv_sent_back(clpv_arriving_at(second, r, second_swept + first, x, y + r, z),
+                                         light_load(in_all, channel, x, y + r, z))))
+}
+
 __kernel void bounce_send(CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT light) {
   CLPV_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
@@ -158,21 +170,6 @@ __kernel void bounce_meet(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_
     if (y + r >= CLPV_GRID) break;
     const Coefficients arriving = clpv_arriving_at(tile, r, swept + first, x, y + r, z);
     light_store(in_all, channel, x, y + r, z, clpv_in_all(arriving, light_load(reflectors, channel, x, y + r, z)));
-  }
-}
-
-__kernel void bounce_keep(CLPV_BUFFER_IN swept, CLPV_BUFFER_OUT arriving) {
-  CLPV_TILE
-  CLPV_BUFFER_OUT out = arriving + channel * CLPV_N * CLPV_SWEEP_VOLUME;
-  Tile tile[CLPV_X_BINS];
-  clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
-  for (int r = 0; r < CLPV_LANES; ++r) {
-    if (y + r >= CLPV_GRID) break;
-    const Coefficients all = clpv_arriving_at(tile, r, swept + first, x, y + r, z);
-    const int at = clpv_sweep_at(z, y + r, x);
-#define CLPV_DO(i) CLPV_SWEEP_STORE(out + i * CLPV_SWEEP_VOLUME, at, CLPV_WITHIN(x, all.c##i));
-    CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
   }
 }
 

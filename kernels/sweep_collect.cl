@@ -3,13 +3,25 @@
 //
 // In: `sums`, a volume for each channel and bin (sweep.h). Out: `accumulated`, of any layout. CLPV_EACH_X_BIN and the like:
 // sweep_source.cl. The host writes the struct Swept and Coefficients clpv_projected(Swept).
+// CLPV_FOR_FINER 1: out as well `arriving`, a volume for each channel and side, its planes across z: the flux on each whole face, for the
+// bounces of the next finer cascade (bounce.cl). The host then writes Sides clpv_arriving(Swept) besides.
 // A work-item is a tile of CLPV_LANES x CLPV_LANES cells of a slice of one channel.
+#ifndef CLPV_FOR_FINER
+#define CLPV_FOR_FINER 0
+#endif
 #include "coefficients.h"
+#include "shared/reflect.h"
 #include "shared/sweep.h"
 #include "sweep.h"
 #include "volume/light.h"
 
-__kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
+#if CLPV_FOR_FINER
+#define CLPV_AND_ARRIVING , CLPV_BUFFER_OUT arriving
+#else
+#define CLPV_AND_ARRIVING
+#endif
+
+__kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated CLPV_AND_ARRIVING) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
@@ -30,5 +42,12 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
     CLPV_EACH_Z_BIN(CLPV_DO)
 #undef CLPV_DO
     light_store(accumulated, channel, x, y + r, z, clpv_projected(m));
+#if CLPV_FOR_FINER
+    const Sides on = clpv_arriving(m);
+    CLPV_BUFFER_OUT sides = arriving + channel * CLPV_SIDES * CLPV_SWEEP_VOLUME;
+#define CLPV_DO(i) CLPV_SWEEP_STORE(sides + i * CLPV_SWEEP_VOLUME, across_z, CLPV_WITHIN(x, on.c##i));
+    CLPV_EACH_SIDE(CLPV_DO)
+#undef CLPV_DO
+#endif
   }
 }

@@ -31,4 +31,9 @@ std::string bounce_source_text() {
          function_text("Swept", "clpv_leaving", "Coefficients", leaving_light());
 }
 
+std::string arriving_source_text() {
+  return cell_macros("Sides", "SIDE", kReflectingSides) +
+         function_text("Sides", "clpv_arriving", "Swept", arriving_flux());
+}
+
 }  // namespace clpv

@@ -19,7 +19,7 @@ Bouncer::Bouncer(Session& session, const SweepOptions& options)
   const ProgramSource program = volumes_.program("bounce.cl", bounce_source_text());
   send_.emplace(session, program, "bounce_send");
   meet_.emplace(session, program, "bounce_meet");
-  keep_.emplace(session, program, "bounce_keep");
+  on_.emplace(session, program, "bounce_on");
   finer_.emplace(session, program, "bounce_finer");
   in_all_ = std::make_unique<Volume>(session, VolumeShape{options.grid, kReflectingSides, kChannels},
                                      "reflectors of all bounces", options.format);
@@ -57,14 +57,9 @@ void Bouncer::bounce(std::size_t cascade, const Buffer& swept, const Buffer& lig
   volumes_.launch(bounce_, kChannels);
 }
 
-void Bouncer::bounce_on(const Buffer& swept, const Buffer& light) {
-  bounce_.set(swept, sending_->memory(), light);
-  volumes_.launch(bounce_, kChannels);
-}
-
-void Bouncer::keep(std::size_t cascade, const Buffer& swept) {
-  keep_->set(swept, arriving_[cascade - 1]);
-  volumes_.launch(*keep_, kChannels);
+void Bouncer::bounce_on(const Buffer& first, const Buffer& second, const Buffer& light) {
+  on_->set(first, second, reflectors_.back()->memory(), sending_->memory(), light);
+  volumes_.launch(*on_, kChannels);
 }
 
 void Bouncer::bounce_finer(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& light) {

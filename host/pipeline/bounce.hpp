@@ -34,12 +34,15 @@ class Bouncer {
 
   /// Adds to `light` what surfaces send back of `swept`.
   void bounce(std::size_t cascade, const Buffer& swept, const Buffer& light);
-  /// Adds what those of the coarsest cascade send back of it, and all that is sent back of that further on, from where they are.
-  void bounce_on(const Buffer& swept, const Buffer& light);
+  /// Adds to `light` what those of the coarsest cascade send back of `first`, and of `second` with all that is sent back of it further on,
+  /// from where they are.
+  void bounce_on(const Buffer& first, const Buffer& second, const Buffer& light);
 
-  /// What falls on surfaces in a cascade is `swept`, all bounces in it: for the next finer one.
-  void keep(std::size_t cascade, const Buffer& swept);
-  /// Adds to `light` what surfaces send back of what was kept of the next coarser cascade. `offset`: offset_in_coarser().
+  /// Where a sweep leaves what falls on faces in a cascade, all bounces in it (sweep_collect.cl); null for the finest.
+  const Buffer* arriving(std::size_t cascade) const {
+    return cascade == 0 ? nullptr : &arriving_[cascade - 1];
+  }
+  /// Adds to `light` what surfaces send back of that in the next coarser cascade. `offset`: offset_in_coarser().
   void bounce_finer(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& light);
 
   /// Device memory of what is kept between frames [bytes].
@@ -52,7 +55,7 @@ class Bouncer {
   std::unique_ptr<Volume> in_all_;   ///< null where there is but one bounce more
   std::vector<Buffer> arriving_;     ///< on each side, of all cascades but the finest; none as well
   Kernel bounce_;
-  std::optional<Kernel> send_, meet_, keep_, finer_;
+  std::optional<Kernel> send_, meet_, on_, finer_;
 };
 
 }  // namespace clpv

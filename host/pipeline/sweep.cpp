@@ -7,6 +7,7 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
+#include "codegen/bounce_source.hpp"
 #include "codegen/sky_light.hpp"
 #include "codegen/sweep_source.hpp"
 #include "pipeline/cascade.hpp"
@@ -126,7 +127,12 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   const bool all = options.bounces == Bounces::all;
   first_passes_ = make_passes(std::vector<int>(all ? 1 : options.parts.size(), kFirstParts));
   first_light_ = volumes_.make(3 * kSweepBins, "light to bounce");
-  if (all) second_light_ = volumes_.make(3 * kSweepBins, "light to bounce on");
+  if (!all) return;
+  second_light_ = volumes_.make(3 * kSweepBins, "light to bounce on");
+  ProgramSource collecting =
+      volumes_.program("sweep_collect.cl", sweep_collect_text() + arriving_source_text());
+  collecting.literals.flag("CLPV_FOR_FINER", true);
+  collect_for_finer_.emplace(session, collecting, "sweep_collect");
 }
 
 bool Sweeper::whole_bins() const {
@@ -164,7 +170,7 @@ void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
   for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
     session_.fill_zero(first_light_, first_light_.bytes());
     bouncer_->send_on(first_light_);
-    let_nothing_in();
+    let_nothing_in(first_passes_.back());
     sweep(first_passes_.back(), cascade, {first_light_, first_light_}, {});
     bouncer_->meet_again(first_light_);
   }
@@ -195,15 +201,16 @@ void Sweeper::let_sky_in(Pass& pass, float cell) {
                           {1, std::min(rows, kRowGroup), 1});
 }
 
-void Sweeper::let_nothing_in() {
-  session_.fill_zero(border_, border_.bytes());
-  session_.fill_zero(live_, live_.bytes());
+void Sweeper::let_nothing_in(const Pass& pass) {
+  const std::size_t planes = 3 * directions_of(pass.parts) * sweep_plane_numbers(options_.grid);
+  session_.fill_zero(border_, 2 * planes * number_bytes(options_.format));
+  session_.fill_zero(live_, (whole_bins() ? 1 : 2) * planes * sizeof(float));
 }
 
 /// Into the coarsest cascade.
 void Sweeper::let_beyond_in(Pass& pass, float cell) {
   if (pass.let_sky_in) return let_sky_in(pass, cell);
-  let_nothing_in();
+  let_nothing_in(pass);
 }
 
 void Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
@@ -265,12 +272,22 @@ void Sweeper::bounce_in_all(float cell) {
   const std::size_t coarsest = options_.parts.size() - 1;
   let_beyond_in(pass, cell);
   sweep(pass, coarsest, {light_, first_light_}, {});
-  bouncer_->bounce(coarsest, first_light_, light_);
   session_.fill_zero(second_light_, second_light_.bytes());
   bouncer_->bounce(coarsest, first_light_, second_light_);
-  let_nothing_in();
+  let_nothing_in(pass);
   sweep(pass, coarsest, {second_light_, second_light_}, {});
-  bouncer_->bounce_on(second_light_, light_);
+  bouncer_->bounce_on(first_light_, second_light_, light_);
+}
+
+/// Leaves harmonics, and of all bounces what falls on surfaces, for the next finer cascade.
+void Sweeper::collect(std::size_t cascade, Volume& accumulated) {
+  const Buffer* arriving = bouncer_ && collect_for_finer_ ? bouncer_->arriving(cascade) : nullptr;
+  if (arriving != nullptr) {
+    collect_for_finer_->set(light_, accumulated.memory(), *arriving);
+    return volumes_.launch(*collect_for_finer_, 3);
+  }
+  collect_.set(light_, accumulated.memory());
+  volumes_.launch(collect_, 3);
 }
 
 void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
@@ -279,9 +296,7 @@ void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, con
   volumes_.launch(source_, 3);
   if (bouncer_) bounce(cascade, grids);
   sweep(passes_, cascade, {light_, light_}, grids);
-  if (options_.bounces == Bounces::all && cascade > 0) bouncer_->keep(cascade, light_);
-  collect_.set(light_, accumulated.memory());
-  volumes_.launch(collect_, 3);
+  collect(cascade, accumulated);
 }
 
 }  // namespace clpv

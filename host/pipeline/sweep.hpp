@@ -66,7 +66,7 @@ class Sweeper {
   using Passes = std::vector<Pass>;  ///< one a cascade
   Passes make_passes(const std::vector<int>& parts);
   void let_in(Passes& passes, const Sky& sky);
-  void let_nothing_in();
+  void let_nothing_in(const Pass& pass);
   void let_sky_in(Pass& pass, float cell);
   void let_beyond_in(Pass& pass, float cell);
   void let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
@@ -78,6 +78,7 @@ class Sweeper {
   void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
   void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
   void bounce_in_all(float cell);
+  void collect(std::size_t cascade, Volume& accumulated);
   bool whole_bins() const;
   std::size_t before_first(const Pass& pass) const;
 
@@ -87,7 +88,7 @@ class Sweeper {
   Buffer bins_, light_, live_, border_;
   std::vector<Buffer> through_;  ///< transmittance of the ways through each cascade
   Kernel source_, collect_;
-  std::optional<Kernel> ways_;
+  std::optional<Kernel> ways_, collect_for_finer_;
   Passes passes_;
   std::optional<Bouncer> bouncer_;  ///< none: one bounce
   Passes
