@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/ranks.hpp"
 #include "bench/runner.hpp"
 #include "bench/stage_jobs.hpp"
 #include "scene/scene.hpp"
@@ -20,6 +21,7 @@ struct SuiteOptions {
   std::vector<std::string> bases;            ///< named by the user; empty: the suite's own
   RenderOptions settings = timed_options();  ///< of every row, but for what the suite varies
   bool tuned = false;                        ///< propagation takes the shapes that `clpv tune` found
+  std::shared_ptr<RankWork> ranks = {};      ///< of several ranks; none: alone
 };
 
 /// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.

@@ -208,6 +208,10 @@ TEST(ProgressLine, TellsShareAndTimeLeft) {
   EXPECT_EQ(progress_line("tracing", 5, 10, 90, 10).size(), 10u);
 }
 
+TEST(ProgressWords, TellCountsShareAndTimeLeft) {
+  EXPECT_EQ(progress_words("quality", 118, 360, 65), "quality: 118 of 360, 33 %, 2:13 left");
+}
+
 TEST(ProgressLine, NothingIsDrawnWhereStderrIsNoTerminal) {
   testing::internal::CaptureStderr();
   {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `scaling`: how times grow with the grid, the coefficients, the steps, the RSM, the triangles and the compute
-// units.
+// Suite `scaling`: how times grow with the grid, the coefficients, the steps, the RSM, the triangles, the compute units and
+// the ranks.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,10 +11,11 @@
 #include "bench/hall.hpp"
 #include "bench/statistics.hpp"
 #include "bench/suites.hpp"
-#include "support/error.hpp"
 
 namespace clpv::bench {
 namespace {
+
+constexpr int kFramesEach = 8;  // enough for handing them out to take no part of their time
 
 /// What a row is a point of; its name ends with it as well: "/grid:64".
 void place(Row& row, const std::string& axis, int value) {
@@ -109,26 +110,6 @@ std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
   return cases;
 }
 
-/// The device split into parts of `units` compute units; a session on the first of them.
-std::shared_ptr<Session> part_of(const Device& device, unsigned units) {
-  Device part = device;
-  if (units != device.compute_units) {
-    const cl_device_partition_property by_counts[] = {CL_DEVICE_PARTITION_BY_COUNTS,
-                                                      static_cast<cl_device_partition_property>(units),
-                                                      CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
-    std::vector<cl::Device> parts;
-    try {
-      cl::Device(device.handle).createSubDevices(by_counts, &parts);
-    } catch (const cl::Error&) {
-      parts.clear();
-    }
-    if (parts.empty()) throw Error(ExitCode::device, "{} cannot be split into compute units", device.name);
-    part.handle = parts.front();
-    part.compute_units = units;
-  }
-  return std::make_shared<Session>(part);
-}
-
 /// The twin's way to run on a part of the device: its own session, so timed by the wall clock.
 Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
   Case result;
@@ -136,7 +117,7 @@ Case units_case(Session& session, const SuiteOptions& options, const std::string
   result.row = make_row("scaling", name_of(Stage::propagate), variant);
   place(result.row, "units", static_cast<int>(units));
   result.make = [&session, options, variant, units] {
-    const auto part = part_of(session.device(), units);
+    const auto part = std::make_shared<Session>(part_of(session.device(), units));
     RenderOptions settings = options.settings;
     settings.cascades = 1;
     const auto bench = make_bench(*part, options, settings);
@@ -154,6 +135,36 @@ Case units_case(Session& session, const SuiteOptions& options, const std::string
     return job;
   };
   return result;
+}
+
+/// 1, 2, 4 and so on, and all.
+std::vector<int> rank_counts(int most) {
+  std::vector<int> counts;
+  for (int count = 1; count < most; count *= 2) counts.push_back(count);
+  counts.push_back(most);
+  return counts;
+}
+
+/// So many frames by one rank or more, together (strong) or each (weak).
+std::vector<Case> rank_cases(const SuiteOptions& options, const std::string& basis) {
+  std::vector<Case> cases;
+  const int together = kFramesEach * options.ranks->most_ranks();
+  for (const int ranks : rank_counts(options.ranks->most_ranks())) {
+    for (const bool strong : {true, false}) {
+      Case made;
+      made.row = make_row("scaling", strong ? "frames-strong" : "frames-weak", plain_variant(options, basis));
+      place(made.row, "ranks", ranks);
+      made.make = [work = options.ranks, ranks, frames = strong ? together : kFramesEach * ranks] {
+        work->render(ranks, ranks);  // each has its own to compile
+        Job job;
+        job.run = [work, ranks, frames] { work->render(ranks, frames); };
+        job.own_stages = true;
+        return job;
+      };
+      cases.push_back(std::move(made));
+    }
+  }
+  return cases;
 }
 
 struct Point {
@@ -197,7 +208,9 @@ std::string table(const std::vector<Row>& rows) {
 }  // namespace
 
 Suite scaling_suite() {
-  return {"scaling", "growth with grid, coefficients, steps, RSM, triangles, compute units; the exponents",
+  return {"scaling",
+          "growth with grid, coefficients, steps, RSM, triangles, compute units, under mpirun ranks; the "
+          "exponents",
           [](Session& session, const SuiteOptions& options) {
             const std::string basis = options.bases.empty() ? "sh2" : options.bases.front();
             const auto bench = make_bench(session, options, options.settings);
@@ -211,6 +224,7 @@ Suite scaling_suite() {
                   return std::vector<Case>{units_case(session, options, basis, 1),
                                            units_case(session, options, basis, 2)};
                 }}};
+            if (options.ranks) groups.push_back({[options, basis] { return rank_cases(options, basis); }});
             return groups;
           },
           table};

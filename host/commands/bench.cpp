@@ -15,6 +15,8 @@
 #include "bench/report.hpp"
 #include "commands/commands.hpp"
 #include "commands/drawing.hpp"
+#include "parallel/rank_device.hpp"
+#include "parallel/team.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
@@ -135,7 +137,24 @@ void write(const Options& options, const std::string& text) {
   std::fflush(stdout);
 }
 
-void run(Options options, const Shared& shared) {
+/// Frames of the suite's scene, for ranks to render. None for one rank.
+std::shared_ptr<bench::RankWork> rank_work(Team& team, Session& session, const bench::SuiteOptions& options) {
+  if (team.alone()) return nullptr;
+  const auto scene = bench::scene_of(options);
+  RenderOptions small = options.settings;  // as many as a matrix has, in seconds
+  small.width = 240, small.height = 135;
+  return std::make_shared<bench::RankWork>(team, session, scene, scene->camera(options.camera), small);
+}
+
+void check_ranks(const Team& team, const Options& options) {
+  if (team.alone() || options.suite == "scaling") return;
+  throw Error(ExitCode::usage, "{}: found {} processes; allowed for several: scaling", options.suite,
+              team.size());
+}
+
+void run(Options options, Shared& shared) {
+  Team& team = shared.team();
+  team.agree([&] { check_ranks(team, options); });
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.suite.tuned = !options.no_tune;
@@ -148,8 +167,11 @@ void run(Options options, const Shared& shared) {
   const bench::Suite& suite = suite_named(options.suite);
   take_scene(options, suite);
   // Of programs out of a cache no build can be told.
-  Session session(choose_device(shared.device),
+  Session session(device_of_rank(team, shared.device),
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
+  tell_devices(team, session.device());
+  options.bench.suite.ranks = rank_work(team, session, options.bench.suite);
+  if (!team.leads()) return options.bench.suite.ranks->serve();
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
   options.bench.hung = [&](const bench::Results& so_far) {
@@ -157,6 +179,7 @@ void run(Options options, const Shared& shared) {
     spdlog::error("{}: {}", so_far.rows.back().name, so_far.rows.back().reason);
   };
   const bench::Results results = bench::run_suite(session, suite, options.bench);
+  if (options.bench.suite.ranks) options.bench.suite.ranks->end();
   write(options, as_text(options, suite, session, results));
   if (!before.is_null()) {
     fmt::print("{}{}", options.out.empty() ? "\n" : "",
