@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/git_describe.h"
+#include "clpv/version.hpp"
 #include "device/kernel_files.hpp"
 #include "support/fingerprint.hpp"
 
@@ -65,7 +66,7 @@ nlohmann::json context_json(const Session& session) {
   const Device& device = session.device();
   nlohmann::json json = library_context();
   json.update({{"schema", 1},
-               {"clpv_version", CLPV_VERSION},
+               {"clpv_version", version()},
                {"git_describe", CLPV_GIT_DESCRIBE},
                {"host_cpu", host_cpu()},
                {"platform", device.platform},

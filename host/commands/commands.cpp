@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "clpv/version.hpp"
 #include "commands/manual.hpp"
 #include "commands/misspelt.hpp"
 #include "parallel/launched.hpp"
@@ -60,14 +61,14 @@ Team& Shared::team() {
 void add_commands(CLI::App& app, Shared& shared) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
   app.name("clpv");
-  app.set_version_flag("--version", std::string("clpv ") + CLPV_VERSION);
+  app.set_version_flag("--version", "clpv " + version());
   app.add_option("--device", shared.device,
                  "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)")
       ->type_name("DEVICE");
   app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
   app.add_flag("-v,--verbose", shared.verbosity, "tell more; twice: still more");
   // Hidden: for the installation.
-  add_page(app, "--man-page", [&app] { return man_page(app, CLPV_VERSION); });
+  add_page(app, "--man-page", [&app] { return man_page(app, version()); });
   add_page(app, "--bash-completion", [&app] { return bash_completion(app); });
   app.require_subcommand(1);
   app.fallthrough();

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "clpv/version.hpp"
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
 #include "commands/quality_cells.hpp"
@@ -79,7 +80,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
   nlohmann::json json = {
       {"schema", 1},
       {"time", options.subjects.time},
-      {"version", CLPV_VERSION},
+      {"version", version()},
       {"view", options.view},
       {"frames", options.frames},
       {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},

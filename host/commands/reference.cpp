@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "clpv/version.hpp"
 #include "commands/commands.hpp"
 #include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
@@ -74,7 +75,7 @@ void write_outputs(const Options& options, const Camera& camera, const reference
     image.metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
   }
   image.metadata["command"] = "reference";
-  image.metadata["version"] = CLPV_VERSION;
+  image.metadata["version"] = version();
   image.metadata["view"] = fmt::format("{}", fmt::join(options.views, ","));
   image.metadata["spp_traced"] = std::to_string(traced.samples);
   image.metadata["noise_reached"] = noise.dump();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "clpv/version.hpp"
 #include "commands/commands.hpp"
 #include "commands/drawing.hpp"
 #include "commands/frame_options.hpp"
@@ -166,7 +167,7 @@ void run(const Options& options, const Shared& shared) {
                       {{"preset", "best"}},
                       {{"basis", best.basis}, {"transport", name_of(best.transport)}}};
   report["subtitle"] =
-      fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels", CLPV_VERSION, session.device().name,
+      fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels", version(), session.device().name,
                   session.device().platform, session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
   drawing.draw(output);

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <optional>
 
+#include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/traced_view.hpp"
 #include "pipeline/view.hpp"
@@ -26,7 +27,7 @@ constexpr int kTracerRevision = 1;
 std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
                 const PathTracerOptions& options) {
   Fingerprint print;
-  print.add(CLPV_VERSION).add(kTracerRevision).add(scene_fingerprint(scene));
+  print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
   for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
   print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
   print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
@@ -51,7 +52,7 @@ Image all_views(const TracedImage& traced) {
 void describe(Image& image, const Scene& scene, const Camera& camera, const TracedImage& traced,
               const PathTracerOptions& options) {
   image.metadata["command"] = "reference";
-  image.metadata["version"] = CLPV_VERSION;
+  image.metadata["version"] = version();
   image.metadata["scene"] = scene.name;
   image.metadata["camera"] = camera.name;
   image.metadata["bounces"] =

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "clpv/version.hpp"
 #include "options/render_options.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
@@ -24,7 +25,7 @@ constexpr double kWidestGroup = 4096;  // work-items along an axis; devices refu
 /// Everything a tuning depends on, this version of the kernels included.
 std::string key_of(const Device& device, const TuningSubject& s) {
   return fmt::format("{}\n{}\n{}\n{}\n{}\npropagate {} {} {} {} {} {}", device.platform,
-                     device.platform_version, device.name, device.driver, CLPV_VERSION, s.basis,
+                     device.platform_version, device.name, device.driver, version(), s.basis,
                      name_of(s.transport), name_of(s.state), s.grid, name_of(s.storage),
                      s.layout ? name_of(*s.layout) : std::string_view());
 }
