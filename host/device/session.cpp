@@ -17,6 +17,11 @@
 namespace clpv {
 namespace {
 
+ProgramSource words_program() { return {.file = "words.cl", .literals = {}, .generated = {}}; }
+constexpr std::size_t kWordsGroup = 64;
+
+cl_uint words_of(std::size_t bytes) { return static_cast<cl_uint>(bytes / sizeof(cl_uint)); }
+
 std::size_t round_up(std::size_t value, std::size_t step) {
   return step == 0 ? value : (value + step - 1) / step * step;
 }
@@ -207,18 +212,19 @@ void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t fro
   timeline_.add(event);
 }
 
-// Oclgrind 21.10 does not take a fill for an initialisation, and a write to a part of a buffer makes it lose track of
-// the rest: its memory checker would report what is sound.
+// Oclgrind 21.10 does not take a fill for an initialisation, and a write or a copy to a part of a buffer makes it lose
+// track of the rest: its memory checker would report what is sound.
 void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from) {
-  const auto words = static_cast<cl_uint>(bytes / sizeof(cl_uint)),
-             first = static_cast<cl_uint>(from / sizeof(cl_uint));
-  constexpr std::size_t kGroup = 64;
-  Kernel(*this, {.file = "zero.cl", .literals = {}, .generated = {}}, "zero")
-      .set(buffer, first, words)
-      .launch(cl::NDRange(words), cl::NDRange(kGroup));
+  const cl_uint words = words_of(bytes), first = words_of(from);
+  Kernel(*this, words_program(), "zero").set(buffer, first, words).launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
 }
 
 void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {
+  if (oclgrind()) {
+    const cl_uint words = words_of(bytes), first = words_of(to_byte);
+    Kernel(*this, words_program(), "copy").set(from, to, first, words).launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
+    return;
+  }
   cl::Event event;
   queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, &event);
   timeline_.add(event);
