@@ -5,7 +5,8 @@
 #   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -P discover_suites.cmake
 #
 # LONG_SUITES begin first, so that none of them is left to run alone at the end.
-set(LONG_SUITES "" CACHE STRING "")
+cmake_minimum_required(VERSION 3.22)
+set(LONG_SUITES "")
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[^ \n]+\\." lines "${listed}")
 set(text "")
