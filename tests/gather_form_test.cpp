@@ -160,10 +160,11 @@ TEST(GatherForm, SweptLightNeedsNoWindow) {
   const auto bins = make_basis("bins24"), kept = swept_basis();
   const GatherForm form(*kept, make_transport(TransportKind::sweep, *kept));
   EXPECT_EQ(form.window(), 0);
+  const Matrix projection = swept_projection();
   std::mt19937 random(9);
   double least = 0, most = 0;
   for (int i = 0; i < 4000; ++i) {
-    const std::vector<double> lobe = swept_projection() * bins->clamped_cosine(random_direction(random));
+    const std::vector<double> lobe = projection * bins->clamped_cosine(random_direction(random));
     const double e = with_window(form, lobe, random_direction(random));
     least = std::min(least, e), most = std::max(most, e);
   }

@@ -185,23 +185,26 @@ std::string driver_cache() {
   return "POCL_CACHE_DIR=" + folder.path().string() + " ";
 }
 
-/// A run that must go well whatever its caches hold, with the image that it makes without any.
-void expect_the_same_image(const std::string& name, const std::string& surroundings,
+/// A command that needs few programs.
+const std::string kFew = "propagate --grid 5 --iterations 2 --at 2,2,2 ";
+
+/// A run that must go well whatever its caches hold, with the light that it finds without any.
+void expect_the_same_light(const std::string& name, const std::string& surroundings,
                            const std::function<void(const TemporaryFolder&)>& prepare) {
   SCOPED_TRACE(name);
   static const std::string wanted = [] {
     const TemporaryFolder folder;
-    run(driver_cache() + "CLPV_PROGRAM_CACHE=off " CLPV_PROGRAM " " + kTiny + "-o " +
-        (folder / "a.exr").string());
-    return read_file(folder / "a.exr");
+    run(driver_cache() + "CLPV_PROGRAM_CACHE=off " CLPV_PROGRAM " " + kFew + "-o " +
+        (folder / "a.npy").string());
+    return read_file(folder / "a.npy");
   }();
   ASSERT_FALSE(wanted.empty());
   const TemporaryFolder folder;
   if (prepare) prepare(folder);
   const Outcome outcome = run(driver_cache() + with_folder(surroundings, folder) + " " + kPatience +
-                              CLPV_PROGRAM + " " + with_folder(kTiny + "-o @/a.exr", folder));
+                              CLPV_PROGRAM + " " + with_folder(kFew + "-o @/a.npy", folder));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(read_file(folder / "a.exr") == wanted) << "another image";
+  EXPECT_TRUE(read_file(folder / "a.npy") == wanted) << "other light";
 }
 
 /// A copy of a cache that a run has filled, each file of it then changed.
@@ -211,7 +214,7 @@ std::function<void(const TemporaryFolder&)> filled_cache(Change change) {
     static const TemporaryFolder filled;
     static const Outcome once =
         run(driver_cache() +
-            with_folder("CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=@ " CLPV_PROGRAM " " + kTiny + "-o @/first.exr",
+            with_folder("CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=@ " CLPV_PROGRAM " " + kFew + "-o @/first.npy",
                         filled));
     EXPECT_EQ(once.exit_code, 0) << once.err;
     fs::create_directories(folder / "cache");
@@ -222,7 +225,7 @@ std::function<void(const TemporaryFolder&)> filled_cache(Change change) {
       change(entry.path());
       ++changed;
     }
-    EXPECT_GT(changed, 3u) << "nothing was kept";
+    EXPECT_GT(changed, 0u) << "nothing was kept";
   };
 }
 
@@ -231,23 +234,23 @@ TEST(HostileSurroundings, CachesDoNotMatter) {
   const auto write = [](const fs::path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
   };
-  expect_the_same_image("no home at all", "env -u HOME -u XDG_CACHE_HOME CLPV_PROGRAM_CACHE=", {});
-  expect_the_same_image("a file for a home", "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=@/file",
+  expect_the_same_light("no home at all", "env -u HOME -u XDG_CACHE_HOME CLPV_PROGRAM_CACHE=", {});
+  expect_the_same_light("a file for a home", "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=@/file",
                         [](const TemporaryFolder& folder) { folder.write("file", ""); });
-  expect_the_same_image("a home that is not there", "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME= HOME=/proc/none",
+  expect_the_same_light("a home that is not there", "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME= HOME=/proc/none",
                         {});
-  expect_the_same_image("files of nothing", cache,
+  expect_the_same_light("files of nothing", cache,
                         filled_cache([=](const fs::path& file) { write(file, ""); }));
-  expect_the_same_image("files of rubbish", cache,
+  expect_the_same_light("files of rubbish", cache,
                         filled_cache([=](const fs::path& file) { write(file, std::string(5000, 'x')); }));
-  expect_the_same_image("files cut in half", cache, filled_cache([=](const fs::path& file) {
+  expect_the_same_light("files cut in half", cache, filled_cache([=](const fs::path& file) {
                           fs::resize_file(file, fs::file_size(file) / 2);
                         }));
-  expect_the_same_image("folders for files", cache, filled_cache([](const fs::path& file) {
+  expect_the_same_light("folders for files", cache, filled_cache([](const fs::path& file) {
                           fs::remove(file);
                           fs::create_directories(file / "below");
                         }));
-  expect_the_same_image("links in circles for files", cache, filled_cache([](const fs::path& file) {
+  expect_the_same_light("links in circles for files", cache, filled_cache([](const fs::path& file) {
                           fs::remove(file);
                           fs::create_symlink(file.filename(), file);
                         }));

@@ -199,32 +199,5 @@ TEST_F(CachedSession, GoesOnWithoutAFolder) {
   EXPECT_EQ(answer(4), 4);
 }
 
-/// A small frame rendered with the cache below `folder`, PoCL's own left empty.
-std::string render_command(const fs::path& folder, const std::string& image) {
-  const std::string cache = folder.string();
-  return "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + cache + " POCL_CACHE_DIR=$(mktemp -d -p " + cache + ") " +
-         CLPV_PROGRAM +
-         " -v render " CLPV_SOURCE_DIR
-         "/tests/oclgrind/tiny.gltf --width 12 --height 9 --grid 5 --cascades 1"
-         " --cascade-size 5 --rsm-size 8 --shadow-size 8 -o " +
-         (folder / image).string();
-}
-
-TEST(RenderCommand, TwoProcessesAtOnceShareAnEmptyCache) {
-  const test::TemporaryFolder folder;
-  const auto both = test::run(render_command(folder.path(), "a.exr") + " & one=$!; " +
-                              render_command(folder.path(), "b.exr") + " && wait $one");
-  ASSERT_EQ(both.exit_code, 0) << both.err;
-  EXPECT_THAT(both.err, ::testing::HasSubstr("compiled in"));
-  const auto third = test::run(render_command(folder.path(), "c.exr"));
-  ASSERT_EQ(third.exit_code, 0) << third.err;
-  EXPECT_THAT(third.err, ::testing::Not(::testing::HasSubstr("compiled in"))) << "nothing is left to compile";
-  EXPECT_THAT(third.err, ::testing::HasSubstr("from the cache"));
-  const std::string image = test::read_file(folder.path() / "a.exr");
-  ASSERT_FALSE(image.empty());
-  EXPECT_EQ(test::read_file(folder.path() / "b.exr"), image);
-  EXPECT_EQ(test::read_file(folder.path() / "c.exr"), image);
-}
-
 }  // namespace
 }  // namespace clpv

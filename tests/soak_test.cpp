@@ -98,17 +98,23 @@ void all_at_once(const std::string& command) {
 TEST(ManyAtOnce, ShareAnEmptyProgramCache) {
   const test::TemporaryFolder folder;
   const std::string at = folder.path().string();
-  all_at_once(
-      "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + at + "/cache " CLPV_PROGRAM " render " + kTiny +
+  const std::string render =
+      "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + at + "/cache " CLPV_PROGRAM " -v render " + kTiny +
       " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2"
       " --transport sampled --gather all --blockers seen -o " +
-      at + "/#.exr");
+      at;
+  all_at_once(render + "/#.exr");
   const std::string first = test::read_file(folder / "0.exr");
   EXPECT_FALSE(first.empty());
   for (int i = 1; i < at_once(); ++i)
     EXPECT_TRUE(test::read_file(folder / (std::to_string(i) + ".exr")) == first) << i;
   for (const auto& entry : fs::directory_iterator(folder / "cache/clpv"))
     EXPECT_EQ(entry.path().extension(), ".program") << "left behind";
+  const test::Outcome next = test::run(render + "/next.exr");
+  EXPECT_EQ(next.exit_code, 0) << next.err;
+  EXPECT_THAT(next.err, testing::HasSubstr("from the cache"));
+  EXPECT_THAT(next.err, testing::Not(testing::HasSubstr("compiled in"))) << "nothing is left to compile";
+  EXPECT_TRUE(test::read_file(folder / "next.exr") == first);
 }
 
 TEST(ManyAtOnce, ShareAnEmptyQualityCache) {

@@ -29,7 +29,8 @@ class Starved : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     cache_ = new TemporaryFolder;
-    run(program() + kTiny + "-o " + (*cache_ / "first.exr").string());  // compiles, where no test before it did
+    run(program() + kTiny + "-o " +
+        (*cache_ / "first.exr").string());  // compiles, where no test before it did
   }
   static void TearDownTestSuite() { delete cache_; }
 

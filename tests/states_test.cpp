@@ -67,11 +67,13 @@ TEST_P(EveryBasis, SixFluxesDoForTheCoefficients) {
     const Transport transport = make_transport(kind, *basis_);
     std::vector<float> before;
     for (const bool blockers : {false, true}) {
+      if (kind == TransportKind::exact && !blockers)
+        continue;  // many kernels to compile, and these have the same steps
       const std::vector<float> coefficients = propagated(*basis_, transport, State::coefficients, blockers),
                                fluxes = propagated(*basis_, transport, State::fluxes, blockers);
       EXPECT_LE(largest_difference(fluxes, coefficients), 1e-5 * largest(coefficients))
           << name_of(kind) << (blockers ? ", blockers" : "");
-      if (blockers) {
+      if (blockers && !before.empty()) {
         EXPECT_GT(largest_difference(coefficients, before), 0.01 * largest(before)) << "blocked";
       }
       before = coefficients;

@@ -14,6 +14,17 @@ double cosine(const SweepBin& bin, int side) {
   return std::max(0.0, (side % 2 == 0 ? 1 : -1) * bin.directions.front().w[axis]);
 }
 
+double lost_at_edges() {
+  double both = 0, one = 0;  // of light that leaves up x, and up y too
+  for (const SweepBin& bin : sweep_bins(1)) {
+    const double x = cosine(bin, 0), y = cosine(bin, 2), flux = bin.directions.front().flux;
+    one += bin.solid_angle * x;
+    both += bin.solid_angle * x * y /
+            flux;  // of the light across a plane, the share aside along x, along y, and along both
+  }
+  return both / (2 * one);
+}
+
 }  // namespace
 
 Matrix arriving_flux() {
@@ -42,14 +53,8 @@ Matrix leaving_light() {
 }
 
 double edge_loss() {
-  double both = 0, one = 0;  // of light that leaves up x, and up y too
-  for (const SweepBin& bin : sweep_bins(1)) {
-    const double x = cosine(bin, 0), y = cosine(bin, 2), flux = bin.directions.front().flux;
-    one += bin.solid_angle * x;
-    both += bin.solid_angle * x * y /
-            flux;  // of the light across a plane, the share aside along x, along y, and along both
-  }
-  return both / (2 * one);
+  static const double loss = lost_at_edges();  // a quadrature, and the twin asks in every cell
+  return loss;
 }
 
 }  // namespace clpv

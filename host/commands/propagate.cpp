@@ -156,7 +156,7 @@ void run(const Options& options, const Shared& shared) {
   const Transport transport = make_transport(frame.transport, *basis, frame.lobes(), Blocking::two_sided);
   const VolumeFormat format = frame.format();
   const reference::Volume light = injected_light(*basis, options);
-  Session session(choose_device(shared.device));
+  Session session(choose_device(shared.device), ProgramCache::of_user());
   const VolumeShape shape{options.frame.grid, basis->size(), 3};
   Volume injected(session, shape, "injected light", format),
       accumulated(session, shape, "accumulated light", format);
@@ -193,6 +193,7 @@ void run(const Options& options, const Shared& shared) {
   if (!options.vti.empty()) write_volume_vti(options.vti, values, grid, basis->size());
   fmt::print("{}\n",
              nlohmann::json{{"schema", 1}, {"options", options_json(options)}, {"steps", steps}}.dump(2));
+  session.store_programs();
 }
 
 }  // namespace

@@ -17,10 +17,14 @@
 namespace clpv {
 namespace {
 
-ProgramSource words_program() { return {.file = "words.cl", .literals = {}, .generated = {}}; }
+ProgramSource words_program() {
+  return {.file = "words.cl", .literals = {}, .generated = {}};
+}
 constexpr std::size_t kWordsGroup = 64;
 
-cl_uint words_of(std::size_t bytes) { return static_cast<cl_uint>(bytes / sizeof(cl_uint)); }
+cl_uint words_of(std::size_t bytes) {
+  return static_cast<cl_uint>(bytes / sizeof(cl_uint));
+}
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return step == 0 ? value : (value + step - 1) / step * step;
@@ -216,13 +220,17 @@ void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t fro
 // track of the rest: its memory checker would report what is sound.
 void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from) {
   const cl_uint words = words_of(bytes), first = words_of(from);
-  Kernel(*this, words_program(), "zero").set(buffer, first, words).launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
+  Kernel(*this, words_program(), "zero")
+      .set(buffer, first, words)
+      .launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
 }
 
 void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {
   if (oclgrind()) {
     const cl_uint words = words_of(bytes), first = words_of(to_byte);
-    Kernel(*this, words_program(), "copy").set(from, to, first, words).launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
+    Kernel(*this, words_program(), "copy")
+        .set(from, to, first, words)
+        .launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
     return;
   }
   cl::Event event;

@@ -3,6 +3,8 @@
 
 namespace clpv {
 
-std::string version() { return CLPV_VERSION; }
+std::string version() {
+  return CLPV_VERSION;
+}
 
 }  // namespace clpv
