@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipeline/block.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/view.hpp"
@@ -34,11 +35,10 @@ SurfaceImage without_doubt(SurfaceImage image, const ClpvGrid& grid) {
 }  // namespace
 
 Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const RenderOptions& options)
-    : session_(session), options_(options) {
+    : session_(session), options_(options), scene_(upload_scene(session, scene)) {
   const std::vector<Light> lights = scene.lights_for(camera);
   if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light shines; bench needs one", scene.name);
-  const SceneBuffers buffers = upload_scene(session, scene);
-  Rasterizer rasterizer(session, buffers);
+  Rasterizer rasterizer(session, scene_);
   Surface seen =
       make_surface(session, camera_view(camera, options.width, options.height), RsmFormat::float32, false);
   rasterizer.rasterize_camera(seen);
@@ -46,7 +46,7 @@ Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const
   for (const ClpvGrid& grid :
        cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
     Surface rsm =
-        make_surface(session, rsm_views(lights.front().data, grid, buffers.bounds, options.rsm_size).front(),
+        make_surface(session, rsm_views(lights.front().data, grid, scene_.bounds, options.rsm_size).front(),
                      options.rsm_format, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
     Seen result{grid, {}, {}, without_doubt(read_surface(session, rsm), grid), without_doubt(image, grid)};
@@ -85,6 +85,16 @@ const std::vector<float>& Inputs::light(const Basis& basis, int cascade) {
 
 const std::vector<float>& Inputs::geometry(const Basis& basis, int cascade) {
   return injected(basis, cascade).geometry;
+}
+
+const std::vector<float>& Inputs::areas(int cascade) {
+  const auto [entry, made] = areas_.try_emplace(cascade);
+  if (made) {
+    Volume geometry(session_, {options_.grid + 1, 3, 1}, "bench: geometry volume");
+    SceneBlocker(session_, scene_, options_.grid, 1, {}).block(0, seen(cascade).grid, geometry);
+    entry->second = geometry.read(session_);
+  }
+  return entry->second;
 }
 
 reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels) {

@@ -10,6 +10,7 @@
 #include "options/render_options.hpp"
 #include "pipeline/inject.hpp"
 #include "pipeline/rasterize.hpp"
+#include "pipeline/scene_buffers.hpp"
 #include "pipeline/surface.hpp"
 #include "reference/volume.hpp"
 #include "scene/scene.hpp"
@@ -36,6 +37,8 @@ class Inputs {
   /// in float: Volume's host order. Made once.
   const std::vector<float>& light(const Basis& basis, int cascade);
   const std::vector<float>& geometry(const Basis& basis, int cascade);
+  /// What the scene's triangles block of a cascade, as areas: what the defaults' sweep takes. In the same order, made once.
+  const std::vector<float>& areas(int cascade);
 
   static InjectOptions published_injection(int grid) {
     return {.grid = grid, .blocking = Blocking::one_sided};
@@ -49,8 +52,10 @@ class Inputs {
 
   Session& session_;
   RenderOptions options_;
+  SceneBuffers scene_;
   std::vector<Seen> seen_;
   std::map<std::pair<std::string, int>, Injected> injected_;
+  std::map<int, std::vector<float>> areas_;
 };
 
 reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pipeline's stages as jobs: inject, propagate, gather, each with its cost and its twin.
+// The pipeline's stages as jobs: inject, propagate, sweep, gather, each with its cost and its twin.
 #pragma once
 
 #include <functional>
@@ -53,6 +53,13 @@ Job inject_light_job(Bench& bench, const Variant& variant);
 Job inject_geometry_job(Bench& bench, const Variant& variant);
 /// Light volume -> accumulated light volume; with occlusion past the geometry volume.
 Job propagate_job(Bench& bench, const Variant& variant);
+/// Light volume -> light swept through its cascade from a dark border, in nine harmonics; with occlusion past what the scene's
+/// triangles block there, the ways' transmittance included. Wants swept().
+Job sweep_job(Bench& bench, const Variant& variant);
+/// What comes of it by the twin, in Volume's host order.
+std::vector<double> swept_twin(Inputs& inputs, const Variant& variant);
+/// The variant as the defaults would have it move light: by the sweep, past areas.
+Variant swept(Variant variant);
 /// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the twin.
 Job gather_job(Bench& bench, const Variant& variant);
 inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
@@ -68,9 +75,9 @@ struct StageJob {
 inline constexpr StageJob kInject{Stage::inject, inject_job},
     kInjectLight{Stage::inject, inject_light_job, Pass::inject_light},
     kInjectGeometry{Stage::inject, inject_geometry_job, Pass::inject_geometry},
-    kPropagate{Stage::propagate, propagate_job, Pass::propagate},
+    kPropagate{Stage::propagate, propagate_job, Pass::propagate}, kSweep{Stage::sweep, sweep_job},
     kGather{Stage::gather, gather_job, Pass::gather};
-inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kGather};
+inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 
 /// A part of rasterising a scene as `camera` sees it (empty: its first), lit by the first light that shines there: rasterize_camera, the
 /// camera's G-buffer; rasterize_shadow, that light's shadow maps; rasterize_rsm, its RSMs of all cascades. In
@@ -85,6 +92,7 @@ Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
                           double tolerance);
 
+/// Of the variant; of a sweep, of swept(variant).
 Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant,
                 const std::string& more = {});
 

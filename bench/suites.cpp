@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "bench/suites.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "bench/hall.hpp"
 #include "options/presets.hpp"
 
@@ -29,6 +33,31 @@ RenderOptions published_options(const RenderOptions& sizes, const std::string& b
   options.rsm_size = sizes.rsm_size;
   options.width = sizes.width, options.height = sizes.height;
   return options;
+}
+
+std::vector<Group> group_a_basis(const std::vector<std::string>& bases,
+                                 const std::function<std::vector<Case>(const std::string& basis)>& cases) {
+  std::vector<Group> groups;
+  for (const std::string& basis : bases) groups.push_back({[cases, basis] { return cases(basis); }});
+  return groups;
+}
+
+std::size_t name_width(const std::vector<Row>& rows) {
+  std::size_t width = 4;
+  for (const Row& row : rows) width = std::max(width, row.name.size());
+  return width;
+}
+
+std::string row_lines(const std::vector<Row>& rows, std::size_t width,
+                      const std::function<std::string(const Row&)>& columns) {
+  std::string text;
+  for (const Row& row : rows) {
+    const bool timed = row.status == Status::ok || row.status == Status::wrong;
+    text += fmt::format("{:<{}} {}{}\n", row.name, width,
+                        timed ? columns(row) : fmt::format("{}: {}", name_of(row.status), row.reason),
+                        row.status == Status::wrong ? "  WRONG: " + row.reason : "");
+  }
+  return text;
 }
 
 std::shared_ptr<const Scene> scene_of(const SuiteOptions& options) {

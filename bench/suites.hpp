@@ -57,6 +57,16 @@ Variant plain_variant(const SuiteOptions& options, const std::string& basis);
 /// The paper's settings and way (`--preset paper`) for a basis, of the sizes and cascades of `sizes`.
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis);
 
+/// A group a basis, by `cases`: all of them at once would hold gigabytes.
+std::vector<Group> group_a_basis(const std::vector<std::string>& bases,
+                                 const std::function<std::vector<Case>(const std::string& basis)>& cases);
+
+/// The length of the longest name.
+std::size_t name_width(const std::vector<Row>& rows);
+/// A line a row, names `width` wide: `columns` of one that was timed, and whether it is wrong; else why it was not.
+std::string row_lines(const std::vector<Row>& rows, std::size_t width,
+                      const std::function<std::string(const Row&)>& columns);
+
 /// The scene a suite works on: the one given, else the hall.
 std::shared_ptr<const Scene> scene_of(const SuiteOptions& options);
 std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,

@@ -11,8 +11,8 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
                            const std::string& basis) {
   std::vector<Case> cases;
   const Variant plain = plain_variant(options, basis);
+  cases.push_back(stage_case(*bench, "bases", kInject, plain));
   Variant variant = plain;
-  cases.push_back(stage_case(*bench, "bases", kInject, variant));
   for (const LobeKind lobe : values_of<LobeKind>()) {
     for (const State state : values_of<State>()) {
       for (const bool occlusion : {false, true}) {
@@ -21,8 +21,9 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
       }
     }
   }
-  variant = plain;
-  cases.push_back(stage_case(*bench, "bases", kGather, variant));
+  // Blockers are areas whatever the basis.
+  cases.push_back(stage_case(*bench, "bases", kSweep, plain));
+  cases.push_back(stage_case(*bench, "bases", kGather, plain));
   return cases;
 }
 
@@ -30,14 +31,12 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
 
 Suite bases_suite() {
   return {"bases",
-          "every basis, both states, both lobes: injection, propagation, gathering",
+          "every basis, both states, both lobes: injection, propagation, the sweep, gathering",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
-            const auto names = options.bases.empty() ? basis_names() : options.bases;
-            std::vector<Group> groups;  // one a basis: all of them at once would hold gigabytes
-            for (const std::string& basis : names)
-              groups.push_back({[bench, options, basis] { return cases_of(bench, options, basis); }});
-            return groups;
+            return group_a_basis(
+                options.bases.empty() ? basis_names() : options.bases,
+                [bench, options](const std::string& basis) { return cases_of(bench, options, basis); });
           },
           {}};
 }

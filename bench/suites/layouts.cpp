@@ -47,27 +47,22 @@ const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
 }
 
 std::string table(const std::vector<Row>& rows) {
-  std::size_t width = 4;
-  for (const Row& row : rows) width = std::max(width, row.name.size());
-  std::string text =
+  const std::size_t width = name_width(rows);
+  const std::string text =
       fmt::format("{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
                   "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "over image/half", "error");
-  for (const Row& row : rows) {
-    if (row.status == Status::unsupported) {
-      text += fmt::format("{:<{}} unsupported: {}\n", row.name, width, row.reason);
-      continue;
-    }
+  const auto columns = [&](const Row& row) {
     const Row* paper = paper_row(rows, row);
-    text += fmt::format(
-        "{:<{}} {:>10.3f} {:>9.3f} {:>12.0f} {:>12.0f} {:>8.1f} {:>16} {:>16} {:>9.1e}{}\n", row.name, width,
-        row.times.median, row.times.mad, row.cost.reads_per_cell, row.cost.writes_per_cell, row.gbps(),
+    return fmt::format(
+        "{:>10.3f} {:>9.3f} {:>12.0f} {:>12.0f} {:>8.1f} {:>16} {:>16} {:>9.1e}", row.times.median,
+        row.times.mad, row.cost.reads_per_cell, row.cost.writes_per_cell, row.gbps(),
         fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
         paper != nullptr ? fmt::format("{:.1f}x", paper->times.median / row.times.median) : "-",
-        row.max_rel_error.value_or(0), row.status == Status::wrong ? "  WRONG" : "");
-  }
-  return text +
+        row.max_rel_error.value_or(0));
+  };
+  return text + row_lines(rows, width, columns) +
          "\nreads and writes: of numbers, or of texels of four, by a cell in one later step (all channels); "
-         "of gather, by a pixel in one cascade.\n";
+         "of sweep, in all; of gather, by a pixel in one cascade.\n";
 }
 
 }  // namespace
@@ -79,12 +74,18 @@ Suite layouts_suite() {
         const auto bench = make_bench(session, options, options.settings);
         const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
-        for (const Timed& timed :
-             {Timed{kInject, false}, {kPropagate, false}, {kPropagate, true}, {kGather, false}}) {
-          for (const std::string& basis : bases)
-            groups.push_back(
-                {[bench, options, basis, timed] { return cases(*bench, options, basis, timed); }});
-        }
+        const auto add = [&](const Timed& timed, const std::vector<std::string>& of) {
+          std::ranges::move(
+              group_a_basis(of,
+                            [=](const std::string& basis) { return cases(*bench, options, basis, timed); }),
+              std::back_inserter(groups));
+        };
+        for (const Timed& timed : {Timed{kInject, false}, {kPropagate, false}, {kPropagate, true}})
+          add(timed, bases);
+        // A sweep reads a basis once and keeps light its own way: of one basis, the defaults', all is told.
+        for (const bool occlusion : {false, true})
+          add({kSweep, occlusion}, options.bases.empty() ? std::vector{RenderOptions{}.basis} : bases);
+        add({kGather, false}, bases);
         return groups;
       },
       table};

@@ -40,21 +40,17 @@ double wall_of(const std::vector<Row>& rows, const std::string& name) {
 }
 
 std::string table(const std::vector<Row>& rows) {
-  std::string text = fmt::format("{:<28} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", "wall ms", "mad",
-                                 "M triangles/s", "ns/triangle", "ns/pixel", "opengl / clpv");
-  for (const Row& row : rows) {
-    if (row.status == Status::unsupported) {
-      text += fmt::format("{:<28} unsupported: {}\n", row.name, row.reason);
-      continue;
-    }
-    const double peer = wall_of(rows, row.name + kPeer);
-    text += fmt::format("{:<28} {:>10.2f} {:>9.2f} {:>14.1f} {:>12.1f} {:>9.1f} {:>14}{}\n", row.name,
-                        row.wall_ms, row.times.mad, row.cost.triangles / row.wall_ms * 1e-3,
-                        row.wall_ms * 1e6 / row.cost.triangles, row.wall_ms * 1e6 / row.cost.pixels,
-                        peer > 0 ? fmt::format("{:.2f}", peer / row.wall_ms) : "-",
-                        row.status == Status::wrong ? "  WRONG: " + row.reason : "");
-  }
-  return text;
+  constexpr std::size_t kWidth = 28;
+  const std::string text =
+      fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", kWidth, "wall ms", "mad",
+                  "M triangles/s", "ns/triangle", "ns/pixel", "opengl / clpv");
+  return text + row_lines(rows, kWidth, [&](const Row& row) {
+           const double peer = wall_of(rows, row.name + kPeer);
+           return fmt::format("{:>10.2f} {:>9.2f} {:>14.1f} {:>12.1f} {:>9.1f} {:>14}", row.wall_ms,
+                              row.times.mad, row.cost.triangles / row.wall_ms * 1e-3,
+                              row.wall_ms * 1e6 / row.cost.triangles, row.wall_ms * 1e6 / row.cost.pixels,
+                              peer > 0 ? fmt::format("{:.2f}", peer / row.wall_ms) : "-");
+         });
 }
 
 }  // namespace

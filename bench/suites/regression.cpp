@@ -54,10 +54,12 @@ std::vector<Case> stages_of(const std::shared_ptr<Bench>& bench, const SuiteOpti
     cases.push_back(with_build(stage_case(*bench, "regression", job, plain)));
   Variant blocked = plain;
   blocked.options.occlusion = true;
-  cases.push_back(with_build(stage_case(*bench, "regression", kPropagate, blocked)));
+  for (const StageJob& job : {kPropagate, kSweep})
+    cases.push_back(with_build(stage_case(*bench, "regression", job, blocked)));
   Variant halves = plain;
   halves.options.storage = Storage::float16;
-  cases.push_back(with_build(stage_case(*bench, "regression", kPropagate, halves)));
+  for (const StageJob& job : {kPropagate, kSweep})
+    cases.push_back(with_build(stage_case(*bench, "regression", job, halves)));
   return cases;
 }
 
@@ -82,9 +84,9 @@ Suite regression_suite() {
             const auto bench = make_bench(session, options, options.settings);
             const auto names =
                 options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2", "bins24"} : options.bases;
-            std::vector<Group> groups;
-            for (const std::string& basis : names)
-              groups.push_back({[bench, options, basis] { return stages_of(bench, options, basis); }});
+            std::vector<Group> groups = group_a_basis(names, [bench, options](const std::string& basis) {
+              return stages_of(bench, options, basis);
+            });
             groups.push_back({[bench, options] { return layouts_of(bench, options); }});
             return groups;
           },

@@ -180,17 +180,15 @@ std::string a_cell_step(const Row& row) {
 
 std::string table(const std::vector<Row>& rows) {
   std::map<std::pair<std::string, std::string>, std::vector<Point>> all;
-  std::string text = fmt::format("{:<44} {:>10} {:>9} {:>14} {:>14}\n", "row", "median ms", "mad",
+  constexpr std::size_t kWidth = 44;
+  std::string text = fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>14}\n", "row", kWidth, "median ms", "mad",
                                  "ns a cell step", "of ceiling");
+  text += row_lines(rows, kWidth, [](const Row& row) {
+    return fmt::format("{:>10.3f} {:>9.3f} {:>14} {:>14}", row.times.median, row.times.mad, a_cell_step(row),
+                       fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling));
+  });
   for (const Row& row : rows) {
-    if (row.status == Status::unsupported) {
-      text += fmt::format("{:<44} unsupported: {}\n", row.name, row.reason);
-      continue;
-    }
-    text +=
-        fmt::format("{:<44} {:>10.3f} {:>9.3f} {:>14} {:>14}{}\n", row.name, row.times.median, row.times.mad,
-                    a_cell_step(row), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
-                    row.status == Status::wrong ? "  WRONG" : "");
+    if (row.status == Status::unsupported) continue;
     const bool one_basis = row.axis != "n" && row.variant;
     all[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}].push_back(
         {row.value, row.times.median});

@@ -79,7 +79,7 @@ std::string sweep_bin_macros() {
   return text;
 }
 
-std::string sweep_source_text(const Basis& basis) {
+CountedText sweep_source_text(const Basis& basis) {
   const Mirrors mirrors = mirrors_of(basis);
   LinearCode code;
   const std::vector<std::string> means =
@@ -88,14 +88,14 @@ std::string sweep_source_text(const Basis& basis) {
       coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
       "CLPV_INLINE Swept clpv_bin_means(const Coefficients a) {\n" + code.text() + "  Swept m;\n";
   for (std::size_t i = 0; i < means.size(); ++i) text += fmt::format("  m.c{} = {};\n", i, means[i]);
-  return text + "  return m;\n}\n";
+  return {text + "  return m;\n}\n", code.operations()};
 }
 
 std::string sweep_ways_text(const Basis& basis, const Transport& transport) {
   return transmit_source(basis, transport).text + way_macros();
 }
 
-std::string sweep_collect_text() {
+CountedText sweep_collect_text() {
   const Matrix projection = swept_projection();
   const Mirrors mirrors = mirrors_of(*make_basis("bins24"));
   LinearCode code;
@@ -105,7 +105,7 @@ std::string sweep_collect_text() {
       coefficient_macros(projection.rows()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
       "CLPV_INLINE Coefficients clpv_projected(const Swept m) {\n" + code.text() + "  Coefficients c;\n";
   for (std::size_t i = 0; i < harmonics.size(); ++i) text += fmt::format("  c.c{} = {};\n", i, harmonics[i]);
-  return text + "  return c;\n}\n";
+  return {text + "  return c;\n}\n", code.operations()};
 }
 
 std::size_t sweep_plane_numbers(int grid) {

@@ -7,18 +7,24 @@
 
 #include "basis/basis.hpp"
 #include "basis/sweep.hpp"
+#include "codegen/linear_code.hpp"
 #include "kernels/shared/sweep.h"
 
 namespace clpv {
 
 /// "#define CLPV_EACH_X_BIN(DO) DO(0) ..." and the like: the bins that are swept across each axis, those across x first.
 std::string sweep_bin_macros();
+/// Generated text, and what it executes a cell and channel.
+struct CountedText {
+  std::string text;
+  OperationCount operations;
+};
 /// For sweep_source.cl: coefficient_macros, the struct Swept, and clpv_bin_means.
-std::string sweep_source_text(const Basis& basis);
+CountedText sweep_source_text(const Basis& basis);
 /// For sweep_ways.cl: transmit_source's text, and which ways go where.
 std::string sweep_ways_text(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
-std::string sweep_collect_text();
+CountedText sweep_collect_text();
 
 /// Volumes of planes (kernels/sweep.h) of a grid: numbers in one, and in a plane by itself.
 std::size_t sweep_volume_numbers(int grid);

@@ -105,8 +105,8 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     : session_(session),
       options_(options),
       volumes_(session, options.grid, options.format),
-      source_(session, volumes_.program("sweep_source.cl", sweep_source_text(basis)), "sweep_source"),
-      collect_(session, volumes_.program("sweep_collect.cl", sweep_collect_text()), "sweep_collect") {
+      source_(session, volumes_.program("sweep_source.cl", sweep_source_text(basis).text), "sweep_source"),
+      collect_(session, volumes_.program("sweep_collect.cl", sweep_collect_text().text), "sweep_collect") {
   const std::size_t plane = sweep_plane_numbers(options.grid) * sizeof(float);
   const std::size_t swept = 3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
   bins_ = session.upload(sweep_bin_table(), "bins to sweep");
@@ -130,7 +130,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   if (!all) return;
   second_light_ = volumes_.make(3 * kSweepBins, "light to bounce on");
   ProgramSource collecting =
-      volumes_.program("sweep_collect.cl", sweep_collect_text() + arriving_source_text());
+      volumes_.program("sweep_collect.cl", sweep_collect_text().text + arriving_source_text());
   collecting.literals.flag("CLPV_FOR_FINER", true);
   collect_for_finer_.emplace(session, collecting, "sweep_collect");
 }

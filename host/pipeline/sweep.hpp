@@ -50,6 +50,9 @@ class Sweeper {
   /// The cells of a cascade whose light a sweep of it keeps for the next finer one; those of the finest are none.
   ClpvSweepShell shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
 
+  /// Whether a launch sweeps all planes, a work-item a bin; else it sweeps one (kernels/sweep.cl).
+  bool whole_bins() const;
+
   /// Device memory of all that a sweeper keeps [bytes].
   static double bytes(const SweepOptions& options);
 
@@ -79,7 +82,6 @@ class Sweeper {
   void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
   void bounce_in_all(float cell);
   void collect(std::size_t cascade, Volume& accumulated);
-  bool whole_bins() const;
   std::size_t before_first(const Pass& pass) const;
 
   Session& session_;

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Stage `sweep` as a job: one cascade, from a dark border.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "basis/basis.hpp"
+#include "basis/sweep.hpp"
+#include "basis/transport.hpp"
+#include "bench/stage_jobs.hpp"
+#include "checks/check.hpp"
+#include "codegen/sweep_source.hpp"
+#include "codegen/transmit_source.hpp"
+#include "pipeline/sweep.hpp"
+#include "reference/sweep.hpp"
+
+namespace clpv::bench {
+namespace {
+
+constexpr double kChannels = 3;
+
+struct Sweeping {
+  Variant variant;
+  std::size_t cascade;
+  std::unique_ptr<Basis> basis;
+  Transport transport;
+  SweepOptions options;
+  std::vector<ClpvGrid> grids;  ///< one: its own
+  Volume injected, accumulated;
+  std::unique_ptr<Volume> geometry;
+  Sweeper sweeper;
+
+  Sweeping(Session& session, Inputs& inputs, const Variant& v)
+      : variant(v),
+        cascade(static_cast<std::size_t>(v.cascade.value_or(0))),
+        basis(make_basis(v.options)),
+        transport(make_transport(v.options, *basis)),
+        options(options_of(v.options, cascade)),
+        grids({inputs.grids().at(cascade)}),
+        injected(session, {options.grid, basis->size(), 3}, "bench: injected light", options.format),
+        accumulated(session, {options.grid, swept_basis()->size(), 3}, "bench: swept light", options.format),
+        sweeper(session, *basis, transport, options) {
+    injected.write(session, inputs.light(*basis, v.cascade.value_or(0)));
+    if (!options.blocking) return;
+    geometry = std::make_unique<Volume>(session, corners(), "bench: geometry volume", options.format);
+    geometry->write(session, inputs.areas(v.cascade.value_or(0)));
+  }
+
+  /// A frame's, of one of its cascades.
+  static SweepOptions options_of(const RenderOptions& options, std::size_t cascade) {
+    SweepOptions of_cascade = sweep_options(options);
+    of_cascade.parts = {of_cascade.parts.at(cascade)};
+    return of_cascade;
+  }
+  VolumeShape corners() const { return {options.grid + 1, blocking_size(transport.blocking, *basis), 1}; }
+  double directions() const { return kSweepBins * std::pow(options.parts.front(), 2); }
+
+  void run() {
+    if (geometry) sweeper.block(0, *geometry);
+    sweeper.sweep(0, grids, injected, accumulated);
+  }
+};
+
+/// Bins' means, light on its way and the sums are moved as the sweep keeps them, whatever the layout of what it is given.
+Cost cost_of(const Sweeping& p) {
+  const VolumeFormat& format = p.options.format;
+  const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
+  const int coefficients = p.basis->size(), kept = swept_basis()->size();
+  const double bins = kChannels * kSweepBins, ways = p.geometry ? sweep_way_count() : 0;
+  const double swept = kChannels * p.directions(), sides = 2 * swept * n * n;
+  const auto number = static_cast<double>(number_bytes(format));
+  const double light =
+      kChannels * static_cast<double>(bytes_per_cell(format, coefficients) + bytes_per_cell(format, kept));
+  const double launches =
+      p.sweeper.whole_bins() ? 1 : n;  // each reads a plane of each direction and writes the next
+  Cost cost;
+  cost.bytes = cells * (light + (4 * bins + ways) * number) + 2 * sides * number +
+               swept * n * n * sizeof(float) * (1 + 2 * launches);
+  const double a_direction = kChannels * (4 + 1) * 2 + (p.geometry ? 4 : 0);
+  cost.flops = cells * (kChannels * (sweep_source_text(*p.basis).operations.flops() +
+                                     sweep_collect_text().operations.flops()) +
+                        p.directions() * a_direction);
+  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + 2 * bins;
+  cost.writes_per_cell = kChannels * accesses_per_cell(format, kept) + 2 * bins;
+  cost.working_set =
+      cells * (light + (bins + ways) * number) + sides * number + swept * n * n * sizeof(float);
+  if (!p.geometry) return cost;
+  const int areas = p.corners().coefficients;
+  cost.bytes += corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * ways * number;
+  cost.flops += cells * transmit_source(*p.basis, p.transport).operations.flops();
+  cost.reads_per_cell += 8 * accesses_per_cell(format, areas) + 4 * kSweepBins;
+  cost.writes_per_cell += ways;
+  return cost;
+}
+
+std::string twin_key(const Variant& v) {
+  const RenderOptions& o = v.options;
+  return fmt::format("sweep {} {} {} {} {} {}", o.basis, name_of(o.directions), name_of(o.blocking),
+                     o.occlusion, o.grid, v.cascade.value_or(0));
+}
+
+}  // namespace
+
+std::vector<double> swept_twin(Inputs& inputs, const Variant& variant) {
+  const RenderOptions& o = variant.options;
+  const int cascade = variant.cascade.value_or(0);
+  const auto basis = make_basis(o);
+  const Transport transport = make_transport(o, *basis);
+  const reference::Volume light = to_reference(inputs.light(*basis, cascade), o.grid, basis->size(), 3);
+  reference::SweptCascade swept{inputs.grids().at(static_cast<std::size_t>(cascade)), &light, nullptr,
+                                sweep_options(o).parts.at(static_cast<std::size_t>(cascade))};
+  reference::Volume areas;
+  if (o.occlusion) {
+    areas = to_reference(inputs.areas(cascade), o.grid + 1, blocking_size(o.blocking, *basis), 1);
+    swept.geometry = &areas;
+  }
+  return reference::kept_of(reference::sweep(*basis, transport, {swept}).front()).values;
+}
+
+Job sweep_job(Bench& bench, const Variant& variant) {
+  Session& session = bench.session;
+  const auto p = std::make_shared<Sweeping>(session, bench.inputs(), variant);
+  Job job;
+  job.cost = cost_of(*p);
+  job.reset = [p, &session] { p->accumulated.clear(session); };
+  job.run = [p] { p->run(); };
+  job.verify = [p, &bench] {
+    const auto twin =
+        bench.twin(twin_key(p->variant), [&] { return swept_twin(bench.inputs(), p->variant); });
+    return compare_volumes(p->accumulated.read(bench.session), *twin, p->options.grid,
+                           reference::tolerance_in("sweep", p->options.format));
+  };
+  return job;
+}
+
+}  // namespace clpv::bench
