@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Benchmarks: statistics, the baseline against the twin, reports, comparison of runs, and what
+// Benchmarks: statistics, the baselines against the twins, reports, comparison of runs, and what
 // `clpv bench` and `clpv tune` do as a user meets them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,12 +13,16 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
+#include "bench/baseline/sweep_avx2.hpp"
 #include "bench/ceilings.hpp"
 #include "bench/compare_runs.hpp"
 #include "bench/published.hpp"
 #include "bench/report.hpp"
 #include "bench/statistics.hpp"
+#include "checks/check_light.hpp"
+#include "checks/tolerances.hpp"
 #include "reference/propagate.hpp"
+#include "reference/sweep.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "tests/support/run_program.hpp"
@@ -69,7 +73,7 @@ TEST(BenchBaseline, IsTheTwin) {
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
   const Scene scene(*basis, 8);
-  Baseline baseline(*basis, transport, 8);
+  PropagateBaseline baseline(*basis, transport, 8);
   const std::vector<float> light(scene.light.values.begin(), scene.light.values.end());
   const std::vector<float> corners(scene.geometry.values.begin(), scene.geometry.values.end());
   for (const bool blocked : {false, true}) {
@@ -82,7 +86,75 @@ TEST(BenchBaseline, IsTheTwin) {
     EXPECT_LT(largest_difference({found.begin(), found.end()}, plain.accumulated.values), 2e-6 * most)
         << (blocked ? "blocked" : "free");
   }
-  EXPECT_THROW(Baseline(*basis, transport, 12), Error);
+  EXPECT_THROW(PropagateBaseline(*basis, transport, 12), Error);
+}
+
+TEST(BenchBaseline, OfTheSweepIsTheTwin) {
+  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+  const auto basis = make_basis("bins24");
+  const Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
+  std::mt19937 random(3);
+  for (const auto& [grid, parts] : {std::pair{16, 2}, {8, 1}, {8, 3}}) {
+    const reference::Volume light = reference::random_light(*basis, grid, random),
+                            areas = reference::random_blockers(3, grid, random);
+    const std::vector<float> injected(light.values.begin(), light.values.end());
+    const std::vector<float> corners(areas.values.begin(), areas.values.end());
+    SweepBaseline baseline(*basis, transport, grid, parts);
+    for (const bool blocked : {true, false, true}) {
+      baseline.set(injected, blocked ? &corners : nullptr);
+      baseline.sweep();
+      const std::vector<float> found = baseline.accumulated();
+      reference::SweptCascade cascade{{}, &light, blocked ? &areas : nullptr, parts};
+      cascade.grid.n = static_cast<unsigned>(grid), cascade.grid.cell = 1;
+      const reference::Volume twin =
+          reference::kept_of(reference::sweep(*basis, transport, {cascade}).front());
+      double most = 0;
+      for (const double value : twin.values) most = std::max(most, std::abs(value));
+      EXPECT_LT(largest_difference({found.begin(), found.end()}, twin.values),
+                reference::tolerance("sweep") * most)
+          << grid << "^3, parts " << parts << (blocked ? ", blocked" : ", free");
+    }
+  }
+}
+
+TEST(BenchBaseline, OfTheSweepRefusesWhatItIsNotMadeFor) {
+  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+  const auto bins = make_basis("bins24"), harmonics = make_basis("sh2");
+  const auto transport = [](const Basis& basis, Blocking blocking) {
+    return make_transport(TransportKind::sweep, basis, {}, blocking);
+  };
+  EXPECT_THROW(SweepBaseline(*bins, transport(*bins, Blocking::areas), 12, 2), Error);
+  EXPECT_THROW(SweepBaseline(*bins, transport(*bins, Blocking::two_sided), 8, 2), Error);
+  EXPECT_THROW(SweepBaseline(*bins, make_transport(TransportKind::sampled, *bins), 8, 2), Error);
+  EXPECT_THROW(SweepBaseline(*harmonics, transport(*harmonics, Blocking::areas), 8, 2), Error);
+}
+
+/// A row of the suite whose work is held against another's.
+TEST(BenchProgram, BaselineTellsTheSweepOverTheSameByHand) {
+  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+  const auto out = test::run(kProgram + " bench baseline --repetitions 1 --filter 'bins24.*occlusion'");
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("over C++"));
+  EXPECT_THAT(out.out, ::testing::ContainsRegex(
+                           "sweep/bins24/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
+  EXPECT_THAT(out.out, HasSubstr("native/bins24/soa/float/sweep/occlusion"));
+}
+
+TEST(BenchProgram, TheSweepIsRightInFloatsAndHalves) {
+  const auto out = test::run(
+      kProgram + " bench regression --basis bins24 --repetitions 1 --filter '^sweep' --format json");
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const nlohmann::json document = nlohmann::json::parse(out.out);
+  std::vector<std::string> names;
+  for (const auto& row : document["benchmarks"]) {
+    names.push_back(row["name"]);
+    EXPECT_EQ(row["status"], "ok") << row["name"];
+    if (row["stage"] != "sweep") continue;  // its build
+    EXPECT_EQ(row["transport"], "sweep");
+    EXPECT_LE(row["max_rel_error"], row["tolerance"]) << row["name"];
+  }
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"sweep/bins24/soa/float", "sweep/bins24/soa/float/occlusion",
+                                              "sweep/bins24/soa/half"}));
 }
 
 TEST(BenchCeilings, TheLongestOfTheLeastTimesBinds) {

@@ -3,19 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 
 #include "support/error.hpp"
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#include <immintrin.h>
-#define CLPV_HAS_AVX2 1
-// By function and not by file: templates shared with other files must run on every processor.
-#define CLPV_AVX2 __attribute__((target("avx2,fma")))
-#else
-#define CLPV_HAS_AVX2 0
-#endif
 
 namespace clpv::bench {
 
@@ -23,28 +12,8 @@ namespace clpv::bench {
 
 namespace {
 
-constexpr int kLane = 8, kN = 4, kChannels = 3, kWays = 30, kCorners = 8;
+constexpr int kN = 4, kChannels = 3, kWays = 30, kCorners = 8;
 constexpr double kSame = 1e-9;  // of constants that are equal but for rounding in double
-
-/// Floats on 32-byte boundaries, 0 at first.
-class Plane {
- public:
-  explicit Plane(std::size_t count)
-      : count_(count), values_(static_cast<float*>(std::aligned_alloc(64, bytes()))) {
-    if (!values_) throw std::bad_alloc();
-    clear();
-  }
-  float* data() const { return values_.get(); }
-  void clear() { std::memset(data(), 0, bytes()); }
-  std::size_t bytes() const { return (count_ * sizeof(float) + 63) / 64 * 64; }
-
- private:
-  struct Free {
-    void operator()(float* p) const { std::free(p); }
-  };
-  std::size_t count_;
-  std::unique_ptr<float, Free> values_;
-};
 
 /// Rows of n cells between borders of kLane zeros, slices of n rows between borders of one row, and so on.
 struct Shape {
@@ -129,7 +98,7 @@ WayTable ways_of(const FaceTransport& faces) {
 
 }  // namespace
 
-struct Baseline::Impl {
+struct PropagateBaseline::Impl {
   Shape shape;
   Constants constants;
   WayTable ways;
@@ -160,7 +129,7 @@ struct Baseline::Impl {
 
 namespace {
 
-using Impl = Baseline::Impl;
+using Impl = PropagateBaseline::Impl;
 
 /// A face's share of light, let through where something blocks.
 template <bool kBlocked>
@@ -291,17 +260,13 @@ constexpr double kOpenFlops = kN * 6 * 3 + kWays * (1 + 3 * 2 + 3);
 
 }  // namespace
 
-bool baseline_supported() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}
-
-Baseline::Baseline(const Basis& basis, const Transport& transport, int grid) {
+PropagateBaseline::PropagateBaseline(const Basis& basis, const Transport& transport, int grid) {
   if (grid % kLane != 0)
     throw Error(ExitCode::run_time, "baseline: grid {}; allowed: multiples of {}", grid, kLane);
   impl_ = std::make_unique<Impl>(basis, transport, grid);
 }
 
-void Baseline::set(const std::vector<float>& injected, const std::vector<float>* geometry) {
+void PropagateBaseline::set(const std::vector<float>& injected, const std::vector<float>* geometry) {
   Impl& p = *impl_;
   const int n = p.shape.n;
   const auto rows = [&](const std::vector<float>& values, float* to, int planes, int side) {
@@ -319,7 +284,7 @@ void Baseline::set(const std::vector<float>& injected, const std::vector<float>*
   if (p.blocks) rows(*geometry, p.corners.data(), kN, n + 1);
 }
 
-void Baseline::propagate(int iterations) {
+void PropagateBaseline::propagate(int iterations) {
   Impl& p = *impl_;
   if (p.blocks && iterations > 1) open_ways(p);
   const float* from = p.injected.data();
@@ -336,7 +301,7 @@ void Baseline::propagate(int iterations) {
   }
 }
 
-std::vector<float> Baseline::accumulated() const {
+std::vector<float> PropagateBaseline::accumulated() const {
   const Impl& p = *impl_;
   std::vector<float> values;
   for (int plane = 0; plane < kChannels * kN; ++plane) {
@@ -350,14 +315,14 @@ std::vector<float> Baseline::accumulated() const {
   return values;
 }
 
-double Baseline::flops(int iterations) const {
+double PropagateBaseline::flops(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
   const double blocked = impl_->blocks ? iterations - 1 : 0;
   return cells * (iterations * kChannels * (kFluxFlops + kSumFlops + kLobeFlops + kAddFlops) +
                   blocked * kChannels * kWays + (impl_->blocks ? kOpenFlops : 0));
 }
 
-double Baseline::bytes(int iterations) const {
+double PropagateBaseline::bytes(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
   const double step = kChannels * 4.0 * kN, blocked = impl_->blocks ? iterations : 0;
   return sizeof(float) * cells *
@@ -366,27 +331,24 @@ double Baseline::bytes(int iterations) const {
 
 #else  // no AVX2 on this architecture
 
-struct Baseline::Impl {};
-bool baseline_supported() {
-  return false;
-}
-Baseline::Baseline(const Basis&, const Transport&, int) {
+struct PropagateBaseline::Impl {};
+PropagateBaseline::PropagateBaseline(const Basis&, const Transport&, int) {
   throw Error(ExitCode::run_time, "baseline: needs a processor with AVX2");
 }
-void Baseline::set(const std::vector<float>&, const std::vector<float>*) {}
-void Baseline::propagate(int) {}
-std::vector<float> Baseline::accumulated() const {
+void PropagateBaseline::set(const std::vector<float>&, const std::vector<float>*) {}
+void PropagateBaseline::propagate(int) {}
+std::vector<float> PropagateBaseline::accumulated() const {
   return {};
 }
-double Baseline::flops(int) const {
+double PropagateBaseline::flops(int) const {
   return 0;
 }
-double Baseline::bytes(int) const {
+double PropagateBaseline::bytes(int) const {
   return 0;
 }
 
 #endif
 
-Baseline::~Baseline() = default;
+PropagateBaseline::~PropagateBaseline() = default;
 
 }  // namespace clpv::bench

@@ -7,20 +7,18 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
+#include "bench/baseline/avx2.hpp"
 
 namespace clpv::bench {
 
-/// Whether it was built for this architecture and this processor has AVX2 and FMA.
-bool baseline_supported();
-
 /// Eight cells at a time, rows of a slice after each other, slices over all threads. Not clpv's generated code: the same
 /// constants, written by hand.
-class Baseline {
+class PropagateBaseline {
  public:
   /// `transport`: `sampled` or `exact` for sh2, whose flux through a face has this form. `grid`: cells along each axis, a
   /// multiple of 8. Throws Error(run_time) otherwise.
-  Baseline(const Basis& basis, const Transport& transport, int grid);
-  ~Baseline();
+  PropagateBaseline(const Basis& basis, const Transport& transport, int grid);
+  ~PropagateBaseline();
 
   /// Injected light, 3 x 4 planes, and where something blocks the geometry volume: Volume's host order.
   void set(const std::vector<float>& injected, const std::vector<float>* geometry);

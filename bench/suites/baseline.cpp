@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Suite `baseline`: propagation of sh2 in OpenCL against the same step in C++, OpenMP and AVX2 on the host.
+// Suite `baseline`: propagation of sh2, and the sweep of bins24, in OpenCL against the same in C++, OpenMP and AVX2 on the host.
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "basis/basis.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
+#include "bench/baseline/sweep_avx2.hpp"
 #include "bench/suites.hpp"
 #include "checks/check.hpp"
 #include "reference/propagate.hpp"
@@ -14,22 +17,29 @@
 namespace clpv::bench {
 namespace {
 
-constexpr const char* kBasis = "sh2";  // that the baseline is written for
+constexpr const char *kStepped = "sh2", *kSwept = "bins24";  // that the baselines are written for
+constexpr const char* kNative = "native";
 
+template <typename Baseline>
 struct Native {
   std::unique_ptr<Basis> basis;
   Transport transport;
   Baseline baseline;
-  explicit Native(const Variant& v)
-      : basis(make_basis(v.options)),
-        transport(make_transport(v.options, *basis)),
-        baseline(*basis, transport, v.options.grid) {}
+  template <typename... More>
+  explicit Native(const RenderOptions& o, const More&... more)
+      : basis(make_basis(o)),
+        transport(make_transport(o, *basis)),
+        baseline(*basis, transport, o.grid, more...) {}
 };
 
-Job native_job(Bench& bench, const Variant& variant) {
+void require_support() {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
-  const auto p = std::make_shared<Native>(variant);
+}
+
+Job native_propagate_job(Bench& bench, const Variant& variant) {
+  require_support();
   const RenderOptions& o = variant.options;
+  const auto p = std::make_shared<Native<PropagateBaseline>>(o);
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
   const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
   p->baseline.set(light, o.occlusion ? &geometry : nullptr);
@@ -53,32 +63,99 @@ Job native_job(Bench& bench, const Variant& variant) {
   return job;
 }
 
-std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
+/// What sweep_job times: what blocks the ways, from injected light to the nine harmonics that are kept.
+Job native_sweep_job(Bench& bench, const Variant& variant) {
+  require_support();
+  const RenderOptions& o = variant.options;
+  const auto p = std::make_shared<Native<SweepBaseline>>(o, parts_of(o.directions));
+  p->baseline.set(bench.inputs().light(*p->basis, 0), o.occlusion ? &bench.inputs().areas(0) : nullptr);
+  Job job;
+  job.own_stages = true;
+  job.run = [p] { p->baseline.sweep(); };
+  job.verify = [p, &bench, variant] {
+    return compare_volumes(p->baseline.accumulated(), swept_twin(bench.inputs(), variant),
+                           variant.options.grid, reference::tolerance_in("sweep", variant.options.format()));
+  };
+  job.cost.flops = p->baseline.flops();
+  job.cost.bytes = p->baseline.bytes();
+  job.cost.working_set = p->baseline.working_set();
+  return job;
+}
+
+/// The same by hand.
+Case native_case(Bench& bench, const Variant& variant, Job (*make)(Bench&, const Variant&)) {
+  return {make_row("baseline", kNative, variant), [&bench, variant, make] { return make(bench, variant); }};
+}
+
+std::vector<Case> propagate_cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
-    Variant variant = plain_variant(options, kBasis);
+    Variant variant = plain_variant(options, kStepped);
     variant.options.occlusion = occlusion;
     for (const State state : values_of<State>()) {
       variant.options.state = state;
       cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
     }
     variant.options.state = State::coefficients;
-    Row row = make_row("baseline", "native", variant);
-    cases.push_back({row, [&bench, variant] { return native_job(bench, variant); }});
+    cases.push_back(native_case(bench, variant, native_propagate_job));
   }
   return cases;
+}
+
+std::vector<Case> sweep_cases(Bench& bench, const SuiteOptions& options) {
+  std::vector<Case> cases;
+  for (const bool occlusion : {false, true}) {
+    Variant variant = plain_variant(options, kSwept);
+    variant.options.occlusion = occlusion;
+    cases.push_back(stage_case(bench, "baseline", kSweep, variant));
+    cases.push_back(native_case(bench, swept(variant), native_sweep_job));
+  }
+  return cases;
+}
+
+/// The row by hand that does the same work.
+const Row* native_row(const std::vector<Row>& rows, const Row& row) {
+  const auto found = std::ranges::find_if(rows, [&](const Row& other) {
+    const RenderOptions &a = row.variant->options, &b = other.variant->options;
+    return other.stage == kNative && other.status == Status::ok && a.basis == b.basis &&
+           a.transport == b.transport && a.occlusion == b.occlusion;
+  });
+  return found == rows.end() || row.stage == kNative ? nullptr : &*found;
+}
+
+std::string table(const std::vector<Row>& rows) {
+  const std::size_t width = name_width(rows);
+  const std::string head = fmt::format(
+      "{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>10} {:>9} {:>9}\n", "row", width, "median ms",
+      "least", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "over C++", "by wall", "error");
+  const auto columns = [&](const Row& row) {
+    const Row* native = native_row(rows, row);
+    const auto over = [&](double here, double there) {
+      return native != nullptr ? fmt::format("{:.2f}", here / there) : "-";
+    };
+    return fmt::format("{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>10} {:>9} {:>9.1e}",
+                       row.times.median, row.times.min, row.times.mad, row.wall_ms, row.gflops(), row.gbps(),
+                       fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
+                       over(row.times.median, native != nullptr ? native->times.median : 0),
+                       over(row.wall_ms, native != nullptr ? native->wall_ms : 0),
+                       row.max_rel_error.value_or(0));
+  };
+  return head + row_lines(rows, width, columns) +
+         "\nover C++: of the same work by hand (native), which is timed by the host's clock: medians; by "
+         "wall: the host's clock for "
+         "both.\n";
 }
 
 }  // namespace
 
 Suite baseline_suite() {
-  return {"baseline",
-          "propagation of sh2 against C++ with OpenMP and AVX2",
+  return {"baseline", "propagation of sh2, and the sweep, against C++ with OpenMP and AVX2",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
-            return std::vector<Group>{{[bench, options] { return cases(*bench, options); }}};
+            return std::vector<Group>{{[bench, options] { return propagate_cases(*bench, options); }},
+                                      {[bench, options] { return sweep_cases(*bench, options); }}};
           },
-          {}};
+          table};
 }
 
 }  // namespace clpv::bench
