@@ -22,8 +22,6 @@ namespace clpv {
 namespace {
 
 using namespace test;
-using reference::PathTracerOptions;
-using reference::TracedImage;
 using std::numbers::pi;
 
 unsigned add_lamp_material(Scene& scene, const glm::vec3& radiance, unsigned flags = 0) {

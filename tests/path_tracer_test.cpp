@@ -14,8 +14,6 @@
 namespace clpv {
 namespace {
 
-using reference::PathTracerOptions;
-using reference::TracedImage;
 using std::numbers::pi;
 using namespace test;
 

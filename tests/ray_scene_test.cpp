@@ -15,8 +15,6 @@
 namespace clpv {
 namespace {
 
-using reference::PathTracerOptions;
-using reference::TracedImage;
 using namespace test;
 
 /// 2 x 2 texels: opaque red, a hole; a hole, opaque green at sRGB 188 (linear .503).

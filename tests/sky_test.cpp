@@ -29,8 +29,6 @@ namespace clpv {
 namespace {
 
 using namespace test;
-using reference::PathTracerOptions;
-using reference::TracedImage;
 using std::numbers::pi;
 
 Sky map_of(int width, int height, const std::function<float(int x, int y)>& radiance) {

@@ -9,6 +9,9 @@
 
 namespace clpv::test {
 
+using reference::PathTracerOptions;
+using reference::TracedImage;
+
 inline constexpr float kOpen = std::numeric_limits<float>::infinity();
 
 /// A view along `forward`, its half extents the tangents of half the fields of view.
@@ -26,8 +29,7 @@ inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float ha
 }
 
 /// By the scene's own lights.
-inline reference::TracedImage trace_paths(const Scene& scene, const ClpvView& view,
-                                          const reference::PathTracerOptions& options) {
+inline TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options) {
   return reference::trace_paths(scene, scene.lights, view, options);
 }
 
