@@ -11,7 +11,8 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 #define CLPV_HAS_AVX2 1
-// By function and not by file: templates shared with other files must run on every processor.
+// By function and not by file: templates shared with other files must run on every processor. prfchw: prefetchw, which does
+// nothing where a processor does not know it.
 #define CLPV_AVX2 __attribute__((target("avx2,fma,prfchw")))
 #else
 #define CLPV_HAS_AVX2 0

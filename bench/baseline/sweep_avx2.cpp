@@ -60,14 +60,20 @@ struct alignas(32) Direction {
 struct Bin {
   int axis, row_axis, column_axis;
   int plane_sign, row_sign, column_sign;
+  int octant;      // of signs: bit i set where light goes downwards along axis i
   int way[kTaps];  // of the nine
   std::vector<Direction> directions;
 };
 
+int octant(const glm::ivec3& sign) {
+  return (sign.x < 0 ? 1 : 0) + (sign.y < 0 ? 2 : 0) + (sign.z < 0 ? 4 : 0);
+}
+
 std::vector<Bin> bins_of(int parts) {
   std::vector<Bin> bins;
   for (const SweepBin& from : sweep_bins(parts)) {
-    Bin bin{from.axis, from.v, from.u, from.sign[from.axis], from.sign[from.v], from.sign[from.u], {}, {}};
+    Bin bin{from.axis,         from.v, from.u, from.sign[from.axis], from.sign[from.v], from.sign[from.u],
+            octant(from.sign), {},     {}};
     for (std::size_t k = 0; k < kTaps; ++k)
       bin.way[k] = 3 * (from.offset[k][from.v] + 1) + from.offset[k][from.u] + 1;
     for (const SweepDirection& d : from.directions) {
@@ -90,7 +96,7 @@ std::vector<Bin> bins_of(int parts) {
 /// The nine harmonics of 24 bins. Over the eight bins across an axis each is plus or minus one number, by the signs of x, y and z:
 /// bit i of `pattern` tells whether the sign along axis i counts.
 struct Projection {
-  int bin[3][kOctants];  // of signs: bit i set where light goes downwards along axis i
+  int bin[3][kOctants];
   int pattern[kKept];
   float weight[3][kKept];
 };
@@ -99,8 +105,8 @@ Projection projection_of() {
   Projection p{};
   const std::vector<SweepBin> bins = sweep_bins(1);
   for (int b = 0; b < kSweepBins; ++b) {
-    const glm::ivec3& sign = bins[static_cast<std::size_t>(b)].sign;
-    p.bin[bins[static_cast<std::size_t>(b)].axis][(sign.x < 0) + 2 * (sign.y < 0) + 4 * (sign.z < 0)] = b;
+    const SweepBin& bin = bins[static_cast<std::size_t>(b)];
+    p.bin[bin.axis][octant(bin.sign)] = b;
   }
   const Matrix matrix = swept_projection();
   require(matrix.rows() == kKept);
@@ -169,7 +175,8 @@ struct SweepBaseline::Impl {
   Ways ways[6] = {};          // of these
   Projection projection;
   bool blocks = false;
-  Plane injected, sums;           // 3 x 24 volumes
+  Plane injected;                 // 3 x 24 volumes
+  Plane sums;                     // at most as many: of the channels and axes that are swept at once
   Plane kept;                     // 3 x 9
   Plane corners, turned_corners;  // 3 volumes; turned: rows along y, above each other along x
   std::vector<Scratch> scratch;
@@ -222,9 +229,20 @@ struct SweepBaseline::Impl {
   std::size_t volumes(int count) const {
     return static_cast<std::size_t>(count) * static_cast<std::size_t>(shape.volume());
   }
-  /// Bins that are alike find out together what the ways let through, if there are tasks for all threads.
+  /// Few threads sweep and collect one axis after the other, whose sums stay in cache, and four bins together, which find out
+  /// together what the ways let through; more need more tasks.
+  int axes_at_once() const {
+    return threads() <= 2 ? 1 : 3;
+  }
   int alike_at_once() const {
     return blocks && threads() <= kSweepBins / kAlike ? kAlike : 1;
+  }
+  /// Where a bin's sums are, of the first channel at once, and how far the next channel's are.
+  int sum_of(const Bin& bin) const {
+    return (bin.axis % axes_at_once()) * kOctants + bin.octant;
+  }
+  std::ptrdiff_t sum_channel() const {
+    return axes_at_once() * kOctants * shape.volume();
   }
   double cells() const {
     return std::pow(shape.n, 3);
@@ -263,11 +281,11 @@ CLPV_AVX2 inline Tile turn(const Tile& a) {
   return t;
 }
 
-/// A plane to sweep. `row`, `channel`, `next`: from one to the next of sources and sums, `next` in the order of planes.
+/// A plane to sweep. `row` and `next`: to the next row and plane of sources and sums, planes in the order they are swept in.
 struct View {
   const float* sources;
   float* sums;  // may be the same, where something blocks
-  std::ptrdiff_t row, channel, next;
+  std::ptrdiff_t row, next, channel, sum_channel;
   const float* ways[kTaps];
   std::ptrdiff_t ways_row;
 };
@@ -322,7 +340,8 @@ template <int kCount>
 CLPV_AVX2 inline void sweep_blocked(const Direction* d, int count, const Live& of, const View& view, int row,
                                     int column) {
   const std::ptrdiff_t row_up = of.row, column_up = of.aside, part = of.part;  // which no store can change
-  const std::ptrdiff_t channel = view.channel, at = row * view.ways_row + column;
+  const std::ptrdiff_t channel = view.channel, sum_channel = view.sum_channel;
+  const std::ptrdiff_t at = row * view.ways_row + column;
   const float* source = view.sources + row * view.row + column;
   float* sums = view.sums + row * view.row + column;
   float* live = of.values + of.shape.at(row, column);
@@ -331,7 +350,7 @@ CLPV_AVX2 inline void sweep_blocked(const Direction* d, int count, const Live& o
   __m256 injected[kChannels], sum[kChannels];
   for (int c = 0; c < kChannels; ++c) {
     _mm_prefetch(source + c * channel + view.next, _MM_HINT_T0);
-    __builtin_prefetch(sums + c * channel + view.next, 1);
+    __builtin_prefetch(sums + c * sum_channel + view.next, 1);
     injected[c] = _mm256_load_ps(source + c * channel);
     sum[c] = _mm256_setzero_ps();
   }
@@ -349,7 +368,7 @@ CLPV_AVX2 inline void sweep_blocked(const Direction* d, int count, const Live& o
       sum[c] = _mm256_fmadd_ps(_mm256_load_ps(d->share), light, sum[c]);
     }
   }
-  for (int c = 0; c < kChannels; ++c) _mm256_store_ps(sums + c * channel, sum[c]);
+  for (int c = 0; c < kChannels; ++c) _mm256_store_ps(sums + c * sum_channel, sum[c]);
 }
 
 /// One channel of a plane, whose directions' planes stay in the first-level cache: by eight columns.
@@ -478,17 +497,12 @@ CLPV_AVX2 void turn_corners(const Impl& p, int z) {
   }
 }
 
-/// A plane across y or z of a volume's bin and all that follow a channel each.
-View view_of(const Impl& p, const Bin& bin, std::ptrdiff_t volume, int plane) {
+/// A plane across y or z of the volumes from those on.
+View view_of(const Impl& p, const Bin& bin, const float* injected, float* sums, int plane) {
   const Shape& s = p.shape;
-  const std::ptrdiff_t step = bin.axis == 1 ? s.row() : s.slice(), from = volume + plane * step;
-  return {p.injected.data() + from,
-          p.sums.data() + from,
-          bin.axis == 1 ? s.slice() : s.row(),
-          kSweepBins * s.volume(),
-          bin.plane_sign * step,
-          {},
-          s.row()};
+  const std::ptrdiff_t step = bin.axis == 1 ? s.row() : s.slice(), row = bin.axis == 1 ? s.slice() : s.row();
+  return {injected + plane * step, sums + plane * step, row, bin.plane_sign * step,
+          kSweepBins * s.volume(), p.sum_channel(),     {},  s.row()};
 }
 
 /// The same across x: out of eight planes that have been turned.
@@ -496,7 +510,7 @@ View turned_view(const Impl& p, const Scratch& scratch, int number, int plane) {
   const Shape& s = p.shape;
   const std::ptrdiff_t eight = kLane * s.slice(), from = plane % kLane * s.slice();
   float* sources = scratch.sources.data() + number * kChannels * eight + from;
-  return {sources, p.blocks ? sources : scratch.sums.data() + from, s.row(), eight, 0, {}, s.row()};
+  return {sources, p.blocks ? sources : scratch.sums.data() + from, s.row(), 0, eight, eight, {}, s.row()};
 }
 
 /// `count` bins alike in axis and sign along it, together plane by plane: of `channel`, or where something blocks of all channels,
@@ -507,18 +521,19 @@ CLPV_AVX2 void sweep_alike(const Impl& p, const int* numbers, int count, int cha
   const int channels = p.blocks ? kChannels : 1, n = s.n;
   const std::ptrdiff_t a_bin =
       kChannels * static_cast<std::ptrdiff_t>(first.directions.size()) * p.live.plane();
-  const std::ptrdiff_t next_channel = kSweepBins * s.volume(), eight = kLane * s.slice();
+  const std::ptrdiff_t eight = kLane * s.slice();
   scratch.live.clear();
   for (int i = 0; i < n; ++i) {
     const int plane = first.plane_sign > 0 ? i : n - 1 - i, x = plane / kLane * kLane;
     if (p.blocks) open_plane(p, first, plane, scratch.open.data());
     for (int k = 0; k < count; ++k) {
       const Bin& bin = p.bin(numbers[k]);
-      const std::ptrdiff_t volume = (channel * kSweepBins + numbers[k]) * s.volume();
+      const float* injected = p.injected.data() + (channel * kSweepBins + numbers[k]) * s.volume();
+      float* sums = p.sums.data() + p.sum_of(bin) * s.volume();
       for (int c = 0; c < channels && bin.axis == 0 && i % kLane == 0; ++c)
-        turn_planes(s, p.injected.data() + volume + c * next_channel, x,
+        turn_planes(s, injected + c * kSweepBins * s.volume(), x,
                     scratch.sources.data() + (k * kChannels + c) * eight);
-      View view = bin.axis == 0 ? turned_view(p, scratch, k, plane) : view_of(p, bin, volume, plane);
+      View view = bin.axis == 0 ? turned_view(p, scratch, k, plane) : view_of(p, bin, injected, sums, plane);
       for (int t = 0; t < kTaps; ++t) view.ways[t] = scratch.open.data() + bin.way[t] * s.slice();
       const Live live{scratch.live.data() + k * a_bin, p.live, -bin.row_sign * p.live.row(), -bin.column_sign,
                       p.live.plane()};
@@ -528,8 +543,7 @@ CLPV_AVX2 void sweep_alike(const Impl& p, const int* numbers, int count, int cha
         sweep_free_plane(bin, live, view);
       }
       for (int c = 0; c < channels && bin.axis == 0 && i % kLane == kLane - 1; ++c)
-        turn_back(s, view.sums - plane % kLane * s.slice() + c * eight, x,
-                  p.sums.data() + volume + c * next_channel);
+        turn_back(s, view.sums - plane % kLane * s.slice() + c * eight, x, sums + c * p.sum_channel());
     }
   }
 }
@@ -545,33 +559,26 @@ CLPV_AVX2 inline void transform(__m256 (&v)[kOctants]) {
   }
 }
 
-/// Nine harmonics of the cells of a slice.
-CLPV_AVX2 void collect(const Impl& p, int channel, int z) {
+/// Nine harmonics of the cells of a slice: what the bins across an axis add. `sums`: of these, in the order of octants.
+CLPV_AVX2 void collect(const Impl& p, int axis, const float* sums, int channel, int z) {
   const Shape& s = p.shape;
   const Projection& projection = p.projection;
-  const float* sums = p.sums.data() + channel * kSweepBins * s.volume() + z * s.slice();
   float* kept = p.kept.data() + channel * kKept * s.volume() + z * s.slice();
   constexpr int kSoon = 8 * 16;  // cells
   for (int at = 0; at < s.n * s.n; at += kLane) {
-    __m256 harmonics[kKept];
-    for (int axis = 0; axis < 3; ++axis) {
-      __m256 v[kOctants];
-      for (int i = 0; i < kOctants; ++i) {
-        const float* sum = sums + projection.bin[axis][i] * s.volume() + at;
-        if (at % 16 == 0) _mm_prefetch(sum + kSoon, _MM_HINT_T0);
-        v[i] = _mm256_load_ps(sum);
-      }
-      transform(v);
-      for (int j = 0; j < kKept; ++j) {
-        const __m256 weight = _mm256_set1_ps(projection.weight[axis][j]), value = v[projection.pattern[j]];
-        harmonics[j] =
-            axis == 0 ? _mm256_mul_ps(weight, value) : _mm256_fmadd_ps(weight, value, harmonics[j]);
-      }
+    __m256 v[kOctants];
+    for (int i = 0; i < kOctants; ++i) {
+      const float* sum = sums + i * s.volume() + z * s.slice() + at;
+      if (at % 16 == 0) _mm_prefetch(sum + kSoon, _MM_HINT_T0);
+      v[i] = _mm256_load_ps(sum);
     }
+    transform(v);
     for (int j = 0; j < kKept; ++j) {
       float* to = kept + j * s.volume() + at;
       if (at % 16 == 0) __builtin_prefetch(to + kSoon, 1);
-      _mm256_store_ps(to, harmonics[j]);
+      const __m256 weight = _mm256_set1_ps(projection.weight[axis][j]), value = v[projection.pattern[j]];
+      _mm256_store_ps(
+          to, axis == 0 ? _mm256_mul_ps(weight, value) : _mm256_fmadd_ps(weight, value, _mm256_load_ps(to)));
     }
   }
 }
@@ -615,7 +622,7 @@ void SweepBaseline::sweep() {
   Impl& p = *impl_;
   const int n = p.shape.n;
   const int channels = p.blocks ? kChannels : 1;  // at once: they share what ways let through
-  const int alike = p.alike_at_once();
+  const int alike = p.alike_at_once(), axes = p.axes_at_once();
 #pragma omp parallel
   {
     if (p.blocks) {
@@ -623,14 +630,20 @@ void SweepBaseline::sweep() {
       for (int z = 0; z <= n; ++z) turn_corners(p, z);
     }
     for (int channel = 0; channel < kChannels; channel += channels) {
+      for (int axis = 0; axis < 3; axis += axes) {
 #pragma omp for schedule(dynamic)
-      for (int b = 0; b < kSweepBins; b += alike) {
-        sweep_alike(p, &p.alike[b / kAlike][b % kAlike], alike, channel,
-                    p.scratch[static_cast<std::size_t>(Impl::thread())]);
-      }
+        for (int b = axis * kOctants; b < (axis + axes) * kOctants; b += alike) {
+          sweep_alike(p, &p.alike[b / kAlike][b % kAlike], alike, channel,
+                      p.scratch[static_cast<std::size_t>(Impl::thread())]);
+        }
 #pragma omp for schedule(static) collapse(2)
-      for (int c = channel; c < channel + channels; ++c) {
-        for (int z = 0; z < n; ++z) collect(p, c, z);
+        for (int c = 0; c < channels; ++c) {
+          for (int z = 0; z < n; ++z) {
+            for (int i = 0; i < axes; ++i)
+              collect(p, axis + i, p.sums.data() + c * p.sum_channel() + i * kOctants * p.shape.volume(),
+                      channel + c, z);
+          }
+        }
       }
     }
   }
@@ -665,8 +678,8 @@ double SweepBaseline::bytes() const {
 
 double SweepBaseline::working_set() const {
   const Impl& p = *impl_;
-  const double light = kChannels * (2 * kSweepBins + kKept);
-  return sizeof(float) * p.cells() * (light + (p.blocks ? kAreas : 0));
+  const double sums = (p.blocks ? kChannels : 1) * p.axes_at_once() * kOctants;
+  return sizeof(float) * p.cells() * (kChannels * (kSweepBins + kKept) + sums + (p.blocks ? kAreas : 0));
 }
 
 #else  // no AVX2 on this architecture
