@@ -12,6 +12,7 @@ namespace clpv::reference {
 namespace {
 
 constexpr double kLeastCosine = 0.1;  // of a surfel seen edge-on
+constexpr double kTie = 2e-3;         // of the energy: four times what halves round a coefficient by
 
 glm::dvec3 vector(const glm::vec4& v) {
   return {v.x, v.y, v.z};
@@ -130,21 +131,42 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
   }
 }
 
-void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
-                     const InjectOptions& options, Volume& geometry, int stride) {
-  const Volume blocking = blocking_of(surface, grid, basis, options, stride);
+void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, Volume& geometry) {
   for (int z = 0; z < geometry.n; ++z) {
     for (int y = 0; y < geometry.n; ++y) {
       for (int x = 0; x < geometry.n; ++x) {
-        const std::vector<double> found = cell_of(blocking, x, y, z), kept = cell_of(geometry, x, y, z);
-        const bool areas = !blocks_by_lobes(options.blocking);
-        if (!areas && basis.energy(found) <= basis.energy(kept)) continue;
-        for (std::size_t i = 0; i < found.size(); ++i) {
-          geometry.at(0, static_cast<int>(i), x, y, z) = areas ? std::max(found[i], kept[i]) : found[i];
+        const std::vector<double> c = cell_of(found, x, y, z), kept = cell_of(geometry, x, y, z);
+        const bool areas = !blocks_by_lobes(blocking);
+        if (!areas && basis.energy(c) <= basis.energy(kept)) continue;
+        for (std::size_t i = 0; i < c.size(); ++i) {
+          geometry.at(0, static_cast<int>(i), x, y, z) = areas ? std::max(c[i], kept[i]) : c[i];
         }
       }
     }
   }
+}
+
+void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
+                     const InjectOptions& options, Volume& geometry, int stride) {
+  merge_geometry(blocking_of(surface, grid, basis, options, stride), basis, options.blocking, geometry);
+}
+
+Volume otherwise_merged(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking) {
+  Volume other = a;
+  merge_geometry(b, basis, blocking, other);
+  if (!blocks_by_lobes(blocking)) return other;
+  for (int z = 0; z < a.n; ++z) {
+    for (int y = 0; y < a.n; ++y) {
+      for (int x = 0; x < a.n; ++x) {
+        const std::vector<double> of_a = cell_of(a, x, y, z), of_b = cell_of(b, x, y, z);
+        const double in_a = basis.energy(of_a), in_b = basis.energy(of_b);
+        if (std::abs(in_a - in_b) > kTie * std::max(in_a, in_b)) continue;
+        const std::vector<double>& loser = in_b > in_a ? of_a : of_b;
+        for (std::size_t i = 0; i < loser.size(); ++i) other.at(0, static_cast<int>(i), x, y, z) = loser[i];
+      }
+    }
+  }
+  return other;
 }
 
 }  // namespace clpv::reference

@@ -19,6 +19,12 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                      const InjectOptions& options, Volume& geometry, int stride = 1);
 
+/// What `found`, seen by one more surface, leaves of `geometry`: of functions the one of more energy, of areas the larger.
+void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, Volume& geometry);
+
+/// `a` and `b` merged, but where their energies are so near each other that rounding decides: there the other one.
+Volume otherwise_merged(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking);
+
 /// Where a pixel's surface is, in units of cells from the grid's origin. Light: moved half a cell off the
 /// surface.
 glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light);
