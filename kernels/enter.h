@@ -9,7 +9,7 @@
 
 // Eight ClpvRasterTriangles, word by word.
 typedef struct {
-  int word[CLPV_RASTER_WORDS][CLPV_LANES];
+  int word[CLPV_RASTER_WORDS][CLPV_ABREAST];
 } Words;
 
 // How many triangles and entries there is room for.
@@ -92,10 +92,10 @@ static inline uint take_entries(volatile __global uint* counts, const uint wante
 CLPV_INLINE void list_lanes(const ClpvView view, const Words* words, const int8 lists, volatile __global uint* counts,
                             const Capacity capacity, __global ClpvRasterTriangle* list, __global uint* entries,
                             volatile __global uint* places) {
-  int listed[CLPV_LANES];
+  int listed[CLPV_ABREAST];
   vstore8(lists, 0, listed);
   uint triangles = 0, room = 0;
-  for (int lane = 0; lane < CLPV_LANES; ++lane) {
+  for (int lane = 0; lane < CLPV_ABREAST; ++lane) {
     if (!listed[lane]) continue;
     const Tiles tiles = tiles_of(words, lane);
     ++triangles;
@@ -104,7 +104,7 @@ CLPV_INLINE void list_lanes(const ClpvView view, const Words* words, const int8 
   uint index = atomic_add(counts + CLPV_LISTED, triangles), at = take_entries(counts, room);
   const uint end = at + room;
   if (index + triangles > capacity.list || end > capacity.entries || end < at) return;
-  for (int lane = 0; lane < CLPV_LANES; ++lane) {
+  for (int lane = 0; lane < CLPV_ABREAST; ++lane) {
     if (!listed[lane]) continue;
     __global int* to = (__global int*)(list + index);
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];

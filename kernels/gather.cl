@@ -8,21 +8,25 @@
 // of the cube about the eye that lies in the grid wherever in its cell the eye is: shares glide as the eye does, and do not
 // jump when the grid does.
 //
+// A work-item is eight pixels of a row. Where they lie in a cascade is found side by side; each then has its own cells to
+// read, and is gathered by itself.
+//
 // CLPV_PACKED 1: from records of M c (pack.cl, gather_packed.h), whatever the volumes' layout; 0: from images as they are
 // (gather_image.h), where M is applied to the weights. Each of the two defines
 //   CLPV_GATHERED, Sampled                     a cascade's volume; a point's coefficients
-//   Sampled clpv_sample(volume, at)            trilinear at `at`, in cells from the first cell's centre; points beyond
-//                                              the outermost centres take their value
-//   float3 clpv_weigh(weights, sampled)        weights . coefficients, a channel
+//   Places, void clpv_places(at, &places)      eight points, in cells from the first cell's centre; points beyond the
+//                                              outermost centres take their value
+//   float clpv_sample(volume, places, i, &s)   trilinear at the i-th of them, times the number that is returned
+//   float4 clpv_weigh(weights, sampled)        weights . coefficients, a channel; 0
 //
 // `unit`: what a stored 1 stands for [W/sr].
 //
 // The host writes, beside the literals below and the functions of n,
-//   Coefficients clpv_gather_weights(float3 n CLPV_PASS_TABLE), Coefficients clpv_floor_weights(void)
+//   Coefficients clpv_gather_weights(float3 n CLPV_AND_TABLE), Coefficients clpv_floor_weights(void)
 // Where b comes from a look-up table, `gather` has it as its last argument.
 #include "coefficients.h"
 #include "shared/grid.h"
-#include "surface.h"
+#include "surface_row.h"
 
 #ifndef CLPV_FLOORED
 #define CLPV_FLOORED 0  // 1: E is at least what clpv_floor_weights() give
@@ -32,51 +36,81 @@
 #define CLPV_VISIBLE 0  // 1: cells that are hidden from a surface do not light it (see.cl)
 #endif
 
+// Between 0 and `most`; what is no number is 0.
+CLPV_INLINE float8 clpv_within(const float8 v, const float most) {
+  const float8 none = (float8)(0.0f), all = (float8)(most);
+  return v > none ? (v < all ? v : all) : none;
+}
+
 #if CLPV_PACKED
 #include "gather_packed.h"
 #else
 #include "gather_image.h"
 #endif
 
-// E s^2 of one volume.
-CLPV_INLINE float3 clpv_irradiance(CLPV_GATHERED volume, const float3 at, const Coefficients weights) {
-  const Sampled sampled = clpv_sample(volume, at);
-  float3 least = 0.0f;
+// E s^2 of one volume at the i-th of `places`.
+CLPV_INLINE float4 clpv_irradiance(CLPV_GATHERED volume, const Places* places, const int i,
+                                   const Coefficients weights) {
+  Sampled sampled;
+  const float scale = clpv_sample(volume, places, i, &sampled);
+  float4 least = 0.0f;
 #if CLPV_FLOORED
   least = max(clpv_weigh(clpv_floor_weights(), sampled), 0.0f);
 #endif
-  return max(clpv_weigh(weights, sampled), least);
+  return scale * max(clpv_weigh(weights, sampled), least);
 }
 
-// Adds what a cascade puts on a surface. `left`: what finer cascades left to this one.
-CLPV_INLINE void clpv_add_cascade(float3* sum, float* left, const ClpvGrid grid, const float3 position,
-                                  const float3 normal, const Coefficients weights, CLPV_GATHERED volume) {
+// What eight pixels have been given so far, and how they take it.
+typedef struct {
+  Vec position, normal;
+  float8 left;  // the share that finer cascades left
+  Coefficients weights[CLPV_ABREAST];
+  float4 sums[CLPV_ABREAST];
+} Gathering;
+
+// Adds what a cascade puts on the surfaces.
+CLPV_INLINE void clpv_add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GATHERED volume) {
+  const ClpvGrid grid = *of;
   const float per_cell = 1.0f / grid.cell;
-  const float3 at = (position - clpv_float3(grid.origin)) * per_cell;
-  const float3 off = fabs(position - clpv_float3(grid.middle)) * per_cell;
-  const float inside = (float)CLPV_GRID_REACH(CLPV_GRID) - fmax(fmax(off.x, off.y), off.z);
-  const float share = clamp(inside * CLPV_INVERSE_BLEND, 0.0f, 1.0f);
-  if (share == 0.0f) return;
-  const float3 point = at + CLPV_GATHER_OFFSET * normal - 0.5f;
-  *sum += share * *left * per_cell * per_cell * clpv_irradiance(volume, point, weights);
-  *left *= 1.0f - share;
+  const Vec off = vec_minus(g->position, vec_of(grid.middle));
+  const float8 x = fabs(off.x), y = fabs(off.y), z = fabs(off.z), xy = x > y ? x : y;
+  const float8 farthest = xy > z ? xy : z;
+  const float8 inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * per_cell;
+  const float8 share = clpv_within(inside * CLPV_INVERSE_BLEND, 1.0f);
+  const float8 given = share * g->left * (per_cell * per_cell);
+  g->left *= 1.0f - share;
+  if (none(given > (float8)(0.0f))) return;
+  const Vec at = vec_times(vec_minus(g->position, vec_of(grid.origin)), (float8)(per_cell));
+  const Vec lifted = vec_add_scaled(at, (float8)(CLPV_GATHER_OFFSET), g->normal);
+  Places places;
+  clpv_places(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), &places);
+  float shares[CLPV_ABREAST];
+  vstore8(given, 0, shares);
+  for (int i = 0; i < CLPV_ABREAST; ++i) {
+    if (shares[i] > 0.0f) g->sums[i] += shares[i] * clpv_irradiance(volume, &places, i, g->weights[i]);
+  }
 }
 
-__kernel void gather(const ClpvView view, __global const float* depths, __global const SurfaceTexel* normals,
+__kernel void gather(const ClpvView view, __global const float* depths, __global const float4* normals,
                      __global const ClpvGrid* grids, const uint cascades, const float unit, __global float4* irradiance
                      CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
-  const uint px = get_global_id(0), py = get_global_id(1);
-  if (px >= view.width || py >= view.height) return;
-  const uint pixel = py * view.width + px;
-  const float depth = depths[pixel];
-  float3 sum = 0.0f;
-  if (depth > 0.0f) {
-    const float3 position = clpv_position(view, (float)px, (float)py, depth);
-    const float3 normal = clpv_load_normal(normals, pixel);
-    const Coefficients weights = clpv_gather_weights(normal CLPV_PASS_TABLE);
-    float left = 1.0f;
-#define CLPV_ADD_CASCADE(c, volume) clpv_add_cascade(&sum, &left, grids[c], position, normal, weights, volume)
-    CLPV_ADD_CASCADES
+  const Eight p = this_row(view);
+  if (p.count == 0) return;
+  const uint first = p.py * view.width + p.px;
+  const uint8 pixel = first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
+  const float8 depth = (float8)CLPV_GATHER(depths, pixel);
+  Rows rows;
+  gather_rows(normals, pixel, &rows);
+  Gathering g;
+  g.position = positions(view, p, depth);
+  g.normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  g.left = depth > (float8)(0.0f) ? (float8)(1.0f) : (float8)(0.0f);
+  for (int i = 0; i < CLPV_ABREAST; ++i) {
+    const float4 normal = normals[first + min((uint)i, p.count - 1)];
+    g.weights[i] = clpv_gather_weights(normal.xyz CLPV_PASS_TABLE);
+    g.sums[i] = 0.0f;
   }
-  irradiance[pixel] = (float4)(unit * sum.x, unit * sum.y, unit * sum.z, 0.0f);
+#define CLPV_ADD_CASCADE(c, volume) clpv_add_cascade(&g, grids + c, volume)
+  CLPV_ADD_CASCADES
+  for (uint i = 0; i < p.count; ++i) irradiance[first + i] = unit * g.sums[i];
 }

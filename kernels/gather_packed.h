@@ -29,11 +29,46 @@ typedef struct {
 #endif
 } PackedCascade;
 
-// Trilinear weights of the eight cells round a point, by corner: 1 x, 2 y, 4 z. t: from the lowest one's centre, in cells.
-CLPV_INLINE float8 clpv_corner_weights(const float3 t) {
-  const float w11 = t.y * t.z, w10 = t.y - w11, w01 = t.z - w11, w00 = 1.0f - t.y - w01;
-  const float b00 = w00 * t.x, b10 = w10 * t.x, b01 = w01 * t.x, b11 = w11 * t.x;
-  return (float8)(w00 - b00, b00, w10 - b10, b10, w01 - b01, b01, w11 - b11, b11);
+// Eight points: the cells round each, from `number` on (the lowest one's), and where the point lies between their centres;
+// with CLPV_VISIBLE the same of the points round it that see.cl looked from.
+typedef struct {
+  int number[CLPV_ABREAST];
+  float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
+#if CLPV_VISIBLE
+  int seen_from[CLPV_ABREAST];
+  float seen_x[CLPV_ABREAST], seen_y[CLPV_ABREAST], seen_z[CLPV_ABREAST];
+#endif
+} Places;
+
+// At the last centre the eight cells are those before it, so that their offsets are literals.
+CLPV_INLINE void clpv_places(const Vec at, Places* places) {
+  const float last = (float)(CLPV_GRID - 1);
+  const int8 highest = (int8)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0);
+  const Vec p = vec(clpv_within(at.x, last), clpv_within(at.y, last), clpv_within(at.z, last));
+  const int8 x = min(convert_int8(p.x), highest), y = min(convert_int8(p.y), highest),
+             z = min(convert_int8(p.z), highest);
+  const Vec t = vec(p.x - convert_float8(x), p.y - convert_float8(y), p.z - convert_float8(z));
+  const int8 number = (z * CLPV_GRID + y) * CLPV_GRID + x;
+  vstore8(number, 0, places->number);
+  vstore8(t.x, 0, places->x), vstore8(t.y, 0, places->y), vstore8(t.z, 0, places->z);
+#if CLPV_VISIBLE
+  const Vec q = vec(clpv_within(t.x * 4.0f - 0.5f, 3.0f), clpv_within(t.y * 4.0f - 0.5f, 3.0f),
+                    clpv_within(t.z * 4.0f - 0.5f, 3.0f));
+  const int8 qx = min(convert_int8(q.x), (int8)(2)), qy = min(convert_int8(q.y), (int8)(2)),
+             qz = min(convert_int8(q.z), (int8)(2));
+  vstore8(number * 64 + (qz * 4 + qy) * 4 + qx, 0, places->seen_from);
+  vstore8(q.x - convert_float8(qx), 0, places->seen_x);
+  vstore8(q.y - convert_float8(qy), 0, places->seen_y);
+  vstore8(q.z - convert_float8(qz), 0, places->seen_z);
+#endif
+}
+
+// Trilinear weights of the eight corners round a point (x, y, z) between them: 1 x, 2 y, 4 z.
+CLPV_INLINE float8 clpv_corner_weights(const float x, const float y, const float z) {
+  const float8 along_x = fma((float8)(-1, 1, -1, 1, -1, 1, -1, 1), (float8)(x), (float8)(1, 0, 1, 0, 1, 0, 1, 0));
+  const float8 along_y = fma((float8)(-1, -1, 1, 1, -1, -1, 1, 1), (float8)(y), (float8)(1, 1, 0, 0, 1, 1, 0, 0));
+  const float8 along_z = fma((float8)(-1, -1, -1, -1, 1, 1, 1, 1), (float8)(z), (float8)(1, 1, 1, 1, 0, 0, 0, 0));
+  return along_x * along_y * along_z;
 }
 
 #if CLPV_VISIBLE
@@ -41,12 +76,7 @@ CLPV_INLINE float8 clpv_corner_weights(const float3 t) {
 
 // How much of the eight corners is seen: of each point's bits its weight, trilinearly between the points of a cube, so that
 // light is continuous; the outermost points hold beyond.
-CLPV_INLINE float8 clpv_seen_at(__global const uchar* hidden, const int cube, const float3 t) {
-  const float3 p = clamp(t * 4.0f - 0.5f, 0.0f, 3.0f);
-  const float3 low = min(floor(p), 2.0f);
-  const float8 weights = clpv_corner_weights(p - low);
-  const int3 point = convert_int3(low);
-  __global const uchar* at = hidden + (size_t)cube * 64 + (point.z * 4 + point.y) * 4 + point.x;
+CLPV_INLINE float8 clpv_seen_at(__global const uchar* at, const float8 weights) {
   const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 seen = 0.0f;
 #define CLPV_ADD_SEEN(i, next) seen += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);
@@ -56,48 +86,44 @@ CLPV_INLINE float8 clpv_seen_at(__global const uchar* hidden, const int cube, co
   return seen;
 }
 
-// The weights of what is seen, their sum 1; where next to nothing is seen nothing is known, and they stay as they are.
-CLPV_INLINE float8 clpv_weights_seen(const float8 weights, const float8 share) {
-  const float8 seen = weights * share;
+// Leaves the weights of what is seen, and returns what brings their sum to 1; where next to nothing is seen nothing is
+// known, and they stay as they are.
+CLPV_INLINE float clpv_see(const PackedCascade cascade, const Places* places, const int i, float8* weights) {
+  const float8 from = clpv_corner_weights(places->seen_x[i], places->seen_y[i], places->seen_z[i]);
+  const float8 seen = *weights * clpv_seen_at(cascade.hidden + places->seen_from[i], from);
   const float4 pairs = seen.lo + seen.hi;
   const float total = pairs.x + pairs.y + pairs.z + pairs.w;
-  return total > CLPV_LEAST_SEEN ? seen * (1.0f / total) : weights;
+  if (!(total > CLPV_LEAST_SEEN)) return 1.0f;
+  *weights = seen;
+  return 1.0f / total;
 }
 #endif
 
-// Trilinear at `at`, in cells from the first cell's centre; points beyond the outermost centres take their value.
-// At the last centre the eight cells are those before it, so that their offsets are literals.
-CLPV_INLINE Sampled clpv_sample(const PackedCascade cascade, const float3 at) {
-  const float3 p = clamp(at, 0.0f, (float)(CLPV_GRID - 1));
-  const float3 low = min(floor(p), (float)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0));
-  const float3 t = p - low;
-  const int3 cell = convert_int3(low);
-  const int number = (cell.z * CLPV_GRID + cell.y) * CLPV_GRID + cell.x;
-  __global const float8* v = cascade.cells + number * CLPV_PAIRS;
-  float8 w = clpv_corner_weights(t);
+CLPV_INLINE float clpv_sample(const PackedCascade cascade, const Places* places, const int i, Sampled* r) {
+  __global const float8* v = cascade.cells + places->number[i] * CLPV_PAIRS;
+  float8 w = clpv_corner_weights(places->x[i], places->y[i], places->z[i]);
+  float scale = 1.0f;
 #if CLPV_VISIBLE
-  w = clpv_weights_seen(w, clpv_seen_at(cascade.hidden, number, t));
+  scale = clpv_see(cascade, places, i, &w);
 #endif
-  Sampled r;
 #define CLPV_DO(j, even, odd)                                                                          \
-  r.p##j = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] + w.s3 * v[j + CLPV_DX + CLPV_DY] + \
+  r->p##j = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] + w.s3 * v[j + CLPV_DX + CLPV_DY] + \
            w.s4 * v[j + CLPV_DZ] + w.s5 * v[j + CLPV_DX + CLPV_DZ] + w.s6 * v[j + CLPV_DY + CLPV_DZ] +     \
            w.s7 * v[j + CLPV_DX + CLPV_DY + CLPV_DZ];
   CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
-  return r;
+  return scale;
 }
 
 // Spelt out: made of two float4, it has lanes that are undefined for a while, which Oclgrind 21.10 crashes on.
 #define CLPV_PAIR(a, b) ((float8)(a, a, a, a, b, b, b, b))
 
-CLPV_INLINE float3 clpv_weigh(const Coefficients weights, const Sampled sampled) {
+CLPV_INLINE float4 clpv_weigh(const Coefficients weights, const Sampled sampled) {
   float8 sum = 0.0f;
-#define CLPV_DO(j, even, odd) \
-  sum = fma(CLPV_PAIR(even(weights), odd(weights)), sampled.p##j, sum);
+#define CLPV_DO(j, even, odd) sum = fma(CLPV_PAIR(even(weights), odd(weights)), sampled.p##j, sum);
   CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
-  return sum.lo.xyz + sum.hi.xyz;
+  return sum.lo + sum.hi;
 }
 
 // The packed volumes of all cascades in one buffer, finest first.
@@ -112,7 +138,7 @@ CLPV_INLINE float3 clpv_weigh(const Coefficients weights, const Sampled sampled)
   { packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS }
 #endif
 #define CLPV_ADD_CASCADES                                  \
-  for (uint c = 0; c < cascades && left > 0.0f; ++c) {     \
+  for (uint c = 0; c < cascades; ++c) {     \
     const PackedCascade cascade = CLPV_PACKED_CASCADE(c);  \
     CLPV_ADD_CASCADE(c, cascade);                          \
   }

@@ -4,8 +4,8 @@
 #ifndef CLPV_LANES_H
 #define CLPV_LANES_H
 
-#define CLPV_LANES 8
-#define CLPV_REAL float8
+#define CLPV_ABREAST 8
+#define CLPV_COMPONENT float8
 
 // One element for each lane, from where `at` says.
 #define CLPV_GATHER(from, at)                                                                            \

@@ -148,11 +148,11 @@ CLPV_INLINE void position_of(__global const float4* vertices, const uint8 vertex
 // Puts the triangles of those lanes aside.
 static inline void put_aside(const int8 lanes, const uint8 triangle, volatile __global uint* counts,
                              __global uint* to_clip) {
-  int aside[CLPV_LANES];
-  uint index[CLPV_LANES];
+  int aside[CLPV_ABREAST];
+  uint index[CLPV_ABREAST];
   vstore8(lanes, 0, aside);
   vstore8(triangle, 0, index);
-  for (int lane = 0; lane < CLPV_LANES; ++lane) {
+  for (int lane = 0; lane < CLPV_ABREAST; ++lane) {
     if (aside[lane]) to_clip[atomic_inc(counts + CLPV_TO_CLIP)] = index[lane];
   }
 }
@@ -160,10 +160,10 @@ static inline void put_aside(const int8 lanes, const uint8 triangle, volatile __
 // `runs`: from the `first` on, `count`; `last`: the scene's number of triangles.
 __kernel void set_up(const ClpvView view, __global const uint* runs, const uint first, const uint count, const uint last,
                      const uint cull, CLPV_MESH, CLPV_LISTS) {
-  const uint item = get_global_id(0), run = item / (CLPV_RUN / CLPV_LANES);
+  const uint item = get_global_id(0), run = item / (CLPV_RUN / CLPV_ABREAST);
   if (run >= count) return;
   const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
-  const uint8 number = runs[first + run] * CLPV_RUN + item % (CLPV_RUN / CLPV_LANES) * CLPV_LANES + lane;
+  const uint8 number = runs[first + run] * CLPV_RUN + item % (CLPV_RUN / CLPV_ABREAST) * CLPV_ABREAST + lane;
   const uint8 triangle = min(number, (uint8)(last - 1));
   Rows rows;
   gather_rows(triangles, triangle, &rows);
@@ -188,12 +188,12 @@ __kernel void set_up(const ClpvView view, __global const uint* runs, const uint 
 
 // Corners of a clipped triangle, and room for eight lanes from any of them.
 typedef struct {
-  int x[CLPV_CLIP_CORNERS + CLPV_LANES], y[CLPV_CLIP_CORNERS + CLPV_LANES];
-  float key[CLPV_CLIP_CORNERS + CLPV_LANES];
+  int x[CLPV_CLIP_CORNERS + CLPV_ABREAST], y[CLPV_CLIP_CORNERS + CLPV_ABREAST];
+  float key[CLPV_CLIP_CORNERS + CLPV_ABREAST];
 } Outline;
 
 static inline void project_polygon(const ClpvView view, const float4* polygon, const int corners, Outline* outline) {
-  for (int k = 0; k < CLPV_CLIP_CORNERS + CLPV_LANES; ++k) {
+  for (int k = 0; k < CLPV_CLIP_CORNERS + CLPV_ABREAST; ++k) {
     const float4 at = polygon[k < corners ? k : 0];
     const ViewPoint point = {(float8)(at.x), (float8)(at.y), (float8)(at.w), (float8)(at.z)};
     const Corner corner = project(view, point);
@@ -232,7 +232,7 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, CLPV_MESH, CL
     if (corners == 0) continue;
     Outline outline;
     project_polygon(view, polygon, corners, &outline);
-    for (int k = 1; k + 1 < corners; k += CLPV_LANES) {
+    for (int k = 1; k + 1 < corners; k += CLPV_ABREAST) {
       const Eight fan = {outline_apex(&outline), outline_from(&outline, k), outline_from(&outline, k + 1),
                          clpv_face(view, a, b, c), (uint8)(triangle), (uint8)(materials[t.w].flags)};
       append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries, places);

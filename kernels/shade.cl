@@ -102,16 +102,16 @@ CLPV_INLINE float visibility(const Receiver r, __global const float* row, const 
 // The same of eight receivers, of those that are `lit` at all.
 CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, const Receivers r, const int8 lit) {
   const Taps tx = taps(r.x, (int)view.width), ty = taps(r.y, (int)view.height);
-  int wanted[CLPV_LANES], first[CLPV_LANES];
-  float distance_x[CLPV_LANES], distance_y[CLPV_LANES], slope_x[CLPV_LANES], slope_y[CLPV_LANES];
-  float a[CLPV_LANES], b[CLPV_LANES], depth[CLPV_LANES], seen[CLPV_LANES];
+  int wanted[CLPV_ABREAST], first[CLPV_ABREAST];
+  float distance_x[CLPV_ABREAST], distance_y[CLPV_ABREAST], slope_x[CLPV_ABREAST], slope_y[CLPV_ABREAST];
+  float a[CLPV_ABREAST], b[CLPV_ABREAST], depth[CLPV_ABREAST], seen[CLPV_ABREAST];
   vstore8(lit, 0, wanted);
   vstore8(ty.first * (int)view.width + tx.first, 0, first);
   vstore8(tx.distance, 0, distance_x), vstore8(ty.distance, 0, distance_y);
   vstore8(r.slope_x, 0, slope_x), vstore8(r.slope_y, 0, slope_y);
   vstore8(r.a, 0, a), vstore8(r.b, 0, b), vstore8(r.depth, 0, depth);
   const float4 step = (float4)(0.0f, 1.0f, 2.0f, 3.0f);
-  for (int i = 0; i < CLPV_LANES; ++i) {
+  for (int i = 0; i < CLPV_ABREAST; ++i) {
     seen[i] = 0.0f;
     if (!wanted[i]) continue;
     const Receiver one = {step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],

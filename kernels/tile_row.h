@@ -25,7 +25,7 @@ static inline Eight this_row(const ClpvView view) {
   const uint tile = get_global_id(0), tiles = (view.width + CLPV_TILE - 1) / CLPV_TILE;
   p.px = tile * CLPV_TILE;
   p.py = get_global_id(1);
-  p.count = tile < tiles && p.py < view.height ? min(view.width - p.px, (uint)CLPV_LANES) : 0;
+  p.count = tile < tiles && p.py < view.height ? min(view.width - p.px, (uint)CLPV_ABREAST) : 0;
   p.row = (p.py / CLPV_TILE * tiles + tile) * CLPV_TILE + p.py % CLPV_TILE;
   p.x = (float)p.px + (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
   p.y = (float8)((float)p.py);
@@ -44,14 +44,14 @@ static inline float8 stored_depth(const ClpvView view, const float8 key) {
 }
 
 static inline void store_depth(const ClpvView view, const Eight p, const float8 key, __global float* depths) {
-  float stored[CLPV_LANES];
+  float stored[CLPV_ABREAST];
   vstore8(stored_depth(view, key), 0, stored);
   for (uint i = 0; i < p.count; ++i) depths[p.py * view.width + p.px + i] = stored[i];
 }
 
 // Lane by lane: a vector, or 0 where nothing is seen.
 typedef struct {
-  float x[CLPV_LANES], y[CLPV_LANES], z[CLPV_LANES];
+  float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
 } Unpacked;
 
 static inline Unpacked unpack(const int8 hit, const Vec v) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Vectors of three named components. CLPV_REAL, the type of a component, is float, or float8 after lanes.h: then a
+// Vectors of three named components. CLPV_COMPONENT, the type of a component, is float, or float8 after lanes.h: then a
 // Vec is eight of them side by side.
 #ifndef CLPV_VEC_H
 #define CLPV_VEC_H
 
-#ifndef CLPV_REAL
-#define CLPV_REAL float
+#ifndef CLPV_COMPONENT
+#define CLPV_COMPONENT float
 #endif
 
-typedef CLPV_REAL Real;
+typedef CLPV_COMPONENT Real;
 
 typedef struct {
   Real x, y, z;
