@@ -13,7 +13,9 @@
 // leave no gap. What lies in the very plane of c hides nothing from it.
 //
 // Triangles of masked materials hide nothing: holes are finer than what is asked here.
+#include "lanes.h"
 #include "region.h"
+#include "vec.h"
 
 #define CLPV_SEE_SEAM 1e-3f     // [cells]
 #define CLPV_SEE_FAR 1e6f       // [cells] where coordinates are kept
@@ -26,48 +28,78 @@
 #define CLPV_POINTS_Y ((float16)(.125f, .125f, .125f, .125f, .375f, .375f, .375f, .375f, .625f, .625f, .625f, .625f, \
                                  .875f, .875f, .875f, .875f))
 
-// a . x + offset: a linear function of the points of a layer.
+// The eight centres, corner by corner.
+#define CLPV_CENTRE_X ((float8)(0, 1, 0, 1, 0, 1, 0, 1))
+#define CLPV_CENTRE_Y ((float8)(0, 0, 1, 1, 0, 0, 1, 1))
+#define CLPV_CENTRE_Z ((float8)(0, 0, 0, 0, 1, 1, 1, 1))
+
+// For each centre a . x + offset: a linear function of points x.
 typedef struct {
-  float3 a;
-  float offset;
+  Vec a;
+  float8 offset;
 } Linear;
-
-static inline float16 clpv_layer(const Linear f, const float z) {
-  return f.a.x * CLPV_POINTS_X + (f.a.y * CLPV_POINTS_Y + (f.a.z * z + f.offset));
-}
-
-// The largest value of side a . (x - c) over all points.
-static inline float clpv_reach(const float3 a, const float3 c) {
-  const float3 first = a * (CLPV_SEE_FIRST - c), last = a * (CLPV_SEE_LAST - c);
-  const float3 most = fmax(first, last);
-  return most.x + most.y + most.z;
-}
 
 static inline float clpv_breadth(const float3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
 
-// The plane through centre c and an edge from a to b, positive on the triangle's inner side; the seam included.
-static inline Linear clpv_edge(const float3 a, const float3 b, const float3 c, const float side) {
+// The largest value of each over all points: the points' box has its middle at 1/2.
+static inline float8 clpv_most(const Linear f) {
+  const float to_side = 0.5f * (CLPV_SEE_LAST - CLPV_SEE_FIRST);
+  return 0.5f * (f.a.x + f.a.y + f.a.z) + to_side * (fabs(f.a.x) + fabs(f.a.y) + fabs(f.a.z)) + f.offset;
+}
+
+// The planes through each centre and an edge from a to b, positive on the triangle's inner side; the seam included.
+CLPV_INLINE Linear clpv_edges(const float3 a, const float3 b, const float8 side) {
   const float3 moment = cross(a, b), edge = b - a;
-  const Linear f = {side * (moment - cross(c, edge)), CLPV_SEE_SEAM * clpv_breadth(edge) - side * dot(moment, c)};
+  const float8 x = CLPV_CENTRE_X, y = CLPV_CENTRE_Y, z = CLPV_CENTRE_Z;
+  const Linear f = {vec(side * (moment.x - (y * edge.z - z * edge.y)), side * (moment.y - (z * edge.x - x * edge.z)),
+                        side * (moment.z - (x * edge.y - y * edge.x))),
+                    CLPV_SEE_SEAM * clpv_breadth(edge) - side * (moment.x * x + moment.y * y + moment.z * z)};
   return f;
 }
 
-// Adds the bit of `corner` to the points from which a triangle hides it.
-static inline void clpv_hide(const float3 v0, const float3 v1, const float3 v2, const float3 normal, const int corner,
-                             int16 hidden[CLPV_SEE_LAYERS]) {
-  const float3 c = (float3)((float)(corner & 1), (float)(corner >> 1 & 1), (float)(corner >> 2));
-  const float distance = dot(normal, v0 - c);
-  const float side = distance < 0.0f ? -1.0f : 1.0f;
-  if (distance == 0.0f || clpv_reach(side * normal, c) < fabs(distance)) return;
-  const Linear plane = {side * normal, -side * dot(normal, c) - fabs(distance)};
-  const Linear e0 = clpv_edge(v0, v1, c, side), e1 = clpv_edge(v1, v2, c, side), e2 = clpv_edge(v2, v0, c, side);
-  // Points on the centre's side of the whole triangle are not behind it.
-  const float near_z = corner & 4 ? fmax(v0.z, fmax(v1.z, v2.z)) : fmin(v0.z, fmin(v1.z, v2.z));
+// The functions of a centre whose signs tell what a triangle hides: its plane's, and its three edges'.
+typedef struct {
+  float x[4][CLPV_ABREAST], y[4][CLPV_ABREAST], z[4][CLPV_ABREAST], offset[4][CLPV_ABREAST];
+} Signs;
+
+CLPV_INLINE void clpv_put(const Linear f, const int which, Signs* signs) {
+  vstore8(f.a.x, 0, signs->x[which]);
+  vstore8(f.a.y, 0, signs->y[which]);
+  vstore8(f.a.z, 0, signs->z[which]);
+  vstore8(f.offset, 0, signs->offset[which]);
+}
+
+// Those of all centres, and which of them the triangle may hide from any point at all.
+CLPV_INLINE int8 clpv_signs(const float3 v0, const float3 v1, const float3 v2, const float3 normal, Signs* signs) {
+  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
+  const float8 x = v0.x - CLPV_CENTRE_X, y = v0.y - CLPV_CENTRE_Y, z = v0.z - CLPV_CENTRE_Z;
+  const float8 distance = normal.x * x + normal.y * y + normal.z * z;
+  const float8 side = distance < none ? -one : one;
+  const Linear plane = {vec(side * normal.x, side * normal.y, side * normal.z),
+                        -side * (normal.x * CLPV_CENTRE_X + normal.y * CLPV_CENTRE_Y + normal.z * CLPV_CENTRE_Z) -
+                            fabs(distance)};
+  const Linear e0 = clpv_edges(v0, v1, side), e1 = clpv_edges(v1, v2, side), e2 = clpv_edges(v2, v0, side);
+  const int8 may = (distance != none) & (clpv_most(plane) >= none) & (clpv_most(e0) >= none) &
+                   (clpv_most(e1) >= none) & (clpv_most(e2) >= none);
+  clpv_put(plane, 0, signs), clpv_put(e0, 1, signs), clpv_put(e1, 2, signs), clpv_put(e2, 3, signs);
+  return may;
+}
+
+// The points of a layer at which a function of a centre is not negative.
+#define CLPV_NOT_NEGATIVE(which, z_of_layer) \
+  (across[which] >= (float16)(-(signs->z[which][corner] * (z_of_layer) + signs->offset[which][corner])))
+
+// Adds the bit of `corner` to the points from which a triangle hides it. `near_z`: points on the centre's side of the whole
+// triangle are not behind it.
+CLPV_INLINE void clpv_hide(const Signs* signs, const int corner, const float near_z, int16 hidden[CLPV_SEE_LAYERS]) {
+  float16 across[4];
+  for (int which = 0; which < 4; ++which)
+    across[which] = signs->x[which][corner] * CLPV_POINTS_X + signs->y[which][corner] * CLPV_POINTS_Y;
   for (int layer = 0; layer < CLPV_SEE_LAYERS; ++layer) {
     const float z = CLPV_SEE_FIRST + 0.25f * (float)layer;
     if (corner & 4 ? z > near_z + CLPV_SEE_SEAM : z < near_z - CLPV_SEE_SEAM) continue;
-    const int16 crossed = (clpv_layer(plane, z) >= 0.0f) & (clpv_layer(e0, z) >= 0.0f) &
-                          (clpv_layer(e1, z) >= 0.0f) & (clpv_layer(e2, z) >= 0.0f);
+    const int16 crossed = CLPV_NOT_NEGATIVE(0, z) & CLPV_NOT_NEGATIVE(1, z) & CLPV_NOT_NEGATIVE(2, z) &
+                          CLPV_NOT_NEGATIVE(3, z);
     hidden[layer] |= crossed & (1 << corner);
   }
 }
@@ -79,8 +111,16 @@ static inline void clpv_set_word(__global volatile uint* word, const uint bits) 
 // A triangle in one cube.
 static inline void clpv_see_cube(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
                                  __global volatile uint* points) {
+  Signs signs;
+  const int8 may = clpv_signs(v0, v1, v2, normal, &signs);
+  if (none(may)) return;
+  int wanted[CLPV_ABREAST];
+  vstore8(may, 0, wanted);
+  const float lowest = fmin(v0.z, fmin(v1.z, v2.z)), highest = fmax(v0.z, fmax(v1.z, v2.z));
   int16 hidden[CLPV_SEE_LAYERS] = {0, 0, 0, 0};
-  for (int corner = 0; corner < 8; ++corner) clpv_hide(v0, v1, v2, normal, corner, hidden);
+  for (int corner = 0; corner < CLPV_ABREAST; ++corner) {
+    if (wanted[corner]) clpv_hide(&signs, corner, corner & 4 ? highest : lowest, hidden);
+  }
   for (int layer = 0; layer < CLPV_SEE_LAYERS; ++layer) {
     const uint4 bits = as_uint4(convert_uchar16(hidden[layer]));
     clpv_set_word(points + 4 * layer, bits.x);
