@@ -41,10 +41,10 @@ typedef struct {
 
 static inline float clpv_breadth(const float3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
 
-// The largest value of each over all points: the points' box has its middle at 1/2.
+// The largest value of each over a layer's points, less what the layer's z adds: their square has its middle at 1/2.
 static inline float8 clpv_most(const Linear f) {
   const float to_side = 0.5f * (CLPV_SEE_LAST - CLPV_SEE_FIRST);
-  return 0.5f * (f.a.x + f.a.y + f.a.z) + to_side * (fabs(f.a.x) + fabs(f.a.y) + fabs(f.a.z)) + f.offset;
+  return 0.5f * (f.a.x + f.a.y) + to_side * (fabs(f.a.x) + fabs(f.a.y)) + f.offset;
 }
 
 // The planes through each centre and an edge from a to b, positive on the triangle's inner side; the seam included.
@@ -57,51 +57,66 @@ CLPV_INLINE Linear clpv_edges(const float3 a, const float3 b, const float8 side)
   return f;
 }
 
-// The functions of a centre whose signs tell what a triangle hides: its plane's, and its three edges'.
+// The functions of the centres whose signs tell what a triangle hides: of its plane, and of its three edges.
+#define CLPV_SEE_SIGNS 4
 typedef struct {
-  float x[4][CLPV_ABREAST], y[4][CLPV_ABREAST], z[4][CLPV_ABREAST], offset[4][CLPV_ABREAST];
+  float x[CLPV_SEE_SIGNS][CLPV_ABREAST], y[CLPV_SEE_SIGNS][CLPV_ABREAST];
+  float z[CLPV_SEE_SIGNS][CLPV_ABREAST], offset[CLPV_SEE_SIGNS][CLPV_ABREAST];
 } Signs;
 
-CLPV_INLINE void clpv_put(const Linear f, const int which, Signs* signs) {
-  vstore8(f.a.x, 0, signs->x[which]);
-  vstore8(f.a.y, 0, signs->y[which]);
-  vstore8(f.a.z, 0, signs->z[which]);
-  vstore8(f.offset, 0, signs->offset[which]);
+// A bit a lane.
+static inline uint clpv_bits(const int8 lanes) {
+  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+  const int4 four = bits.lo | bits.hi;
+  return (uint)(four.x | four.y | four.z | four.w);
 }
 
-// Those of all centres, and which of them the triangle may hide from any point at all.
-CLPV_INLINE int8 clpv_signs(const float3 v0, const float3 v1, const float3 v2, const float3 normal, Signs* signs) {
-  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
+// The signs of a triangle, and for each layer the centres, a bit each, that it may hide from any point there.
+CLPV_INLINE void clpv_signs(const float3 v0, const float3 v1, const float3 v2, const float3 normal, Signs* signs,
+                            uint wanted[CLPV_SEE_LAYERS]) {
+  const float8 zero = (float8)(0.0f), one = (float8)(1.0f);
   const float8 x = v0.x - CLPV_CENTRE_X, y = v0.y - CLPV_CENTRE_Y, z = v0.z - CLPV_CENTRE_Z;
   const float8 distance = normal.x * x + normal.y * y + normal.z * z;
-  const float8 side = distance < none ? -one : one;
+  const float8 side = distance < zero ? -one : one;
   const Linear plane = {vec(side * normal.x, side * normal.y, side * normal.z),
                         -side * (normal.x * CLPV_CENTRE_X + normal.y * CLPV_CENTRE_Y + normal.z * CLPV_CENTRE_Z) -
                             fabs(distance)};
-  const Linear e0 = clpv_edges(v0, v1, side), e1 = clpv_edges(v1, v2, side), e2 = clpv_edges(v2, v0, side);
-  const int8 may = (distance != none) & (clpv_most(plane) >= none) & (clpv_most(e0) >= none) &
-                   (clpv_most(e1) >= none) & (clpv_most(e2) >= none);
-  clpv_put(plane, 0, signs), clpv_put(e0, 1, signs), clpv_put(e1, 2, signs), clpv_put(e2, 3, signs);
-  return may;
+  const Linear f[CLPV_SEE_SIGNS] = {plane, clpv_edges(v0, v1, side), clpv_edges(v1, v2, side), clpv_edges(v2, v0, side)};
+  // Points on the centre's side of the whole triangle are not behind it.
+  const float lowest = fmin(v0.z, fmin(v1.z, v2.z)) - CLPV_SEE_SEAM, highest = fmax(v0.z, fmax(v1.z, v2.z)) + CLPV_SEE_SEAM;
+  const float8 most0 = clpv_most(f[0]), most1 = clpv_most(f[1]), most2 = clpv_most(f[2]), most3 = clpv_most(f[3]);
+  for (int layer = 0; layer < CLPV_SEE_LAYERS; ++layer) {
+    const float at = CLPV_SEE_FIRST + 0.25f * (float)layer;
+    const int8 may = (distance != zero) & (at * f[0].a.z + most0 >= zero) & (at * f[1].a.z + most1 >= zero) &
+                     (at * f[2].a.z + most2 >= zero) & (at * f[3].a.z + most3 >= zero);
+    wanted[layer] = clpv_bits(may) & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
+  }
+#pragma unroll
+  for (int which = 0; which < CLPV_SEE_SIGNS; ++which) {
+    vstore8(f[which].a.x, 0, signs->x[which]);
+    vstore8(f[which].a.y, 0, signs->y[which]);
+    vstore8(f[which].a.z, 0, signs->z[which]);
+    vstore8(f[which].offset, 0, signs->offset[which]);
+  }
 }
 
 // The points of a layer at which a function of a centre is not negative.
-#define CLPV_NOT_NEGATIVE(which, z_of_layer) \
-  (across[which] >= (float16)(-(signs->z[which][corner] * (z_of_layer) + signs->offset[which][corner])))
+#define CLPV_NOT_NEGATIVE(which)                                                         \
+  (signs->x[which][corner] * CLPV_POINTS_X +                                             \
+       (signs->y[which][corner] * CLPV_POINTS_Y +                                        \
+        (float16)(signs->z[which][corner] * z + signs->offset[which][corner])) >=        \
+   0.0f)
 
-// Adds the bit of `corner` to the points from which a triangle hides it. `near_z`: points on the centre's side of the whole
-// triangle are not behind it.
-CLPV_INLINE void clpv_hide(const Signs* signs, const int corner, const float near_z, int16 hidden[CLPV_SEE_LAYERS]) {
-  float16 across[4];
-  for (int which = 0; which < 4; ++which)
-    across[which] = signs->x[which][corner] * CLPV_POINTS_X + signs->y[which][corner] * CLPV_POINTS_Y;
-  for (int layer = 0; layer < CLPV_SEE_LAYERS; ++layer) {
-    const float z = CLPV_SEE_FIRST + 0.25f * (float)layer;
-    if (corner & 4 ? z > near_z + CLPV_SEE_SEAM : z < near_z - CLPV_SEE_SEAM) continue;
-    const int16 crossed = CLPV_NOT_NEGATIVE(0, z) & CLPV_NOT_NEGATIVE(1, z) & CLPV_NOT_NEGATIVE(2, z) &
-                          CLPV_NOT_NEGATIVE(3, z);
-    hidden[layer] |= crossed & (1 << corner);
+// For the points of the layer at z the centres that a triangle hides from them, of those `wanted`.
+CLPV_INLINE int16 clpv_hide(const Signs* signs, uint wanted, const float z) {
+  int16 hidden = (int16)(0);
+  while (wanted != 0) {
+    const int corner = 31 - (int)clz(wanted);
+    wanted ^= 1u << corner;
+    const int16 crossed = CLPV_NOT_NEGATIVE(0) & CLPV_NOT_NEGATIVE(1) & CLPV_NOT_NEGATIVE(2) & CLPV_NOT_NEGATIVE(3);
+    hidden |= crossed & (1 << corner);
   }
+  return hidden;
 }
 
 static inline void clpv_set_word(__global volatile uint* word, const uint bits) {
@@ -112,17 +127,12 @@ static inline void clpv_set_word(__global volatile uint* word, const uint bits) 
 static inline void clpv_see_cube(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
                                  __global volatile uint* points) {
   Signs signs;
-  const int8 may = clpv_signs(v0, v1, v2, normal, &signs);
-  if (none(may)) return;
-  int wanted[CLPV_ABREAST];
-  vstore8(may, 0, wanted);
-  const float lowest = fmin(v0.z, fmin(v1.z, v2.z)), highest = fmax(v0.z, fmax(v1.z, v2.z));
-  int16 hidden[CLPV_SEE_LAYERS] = {0, 0, 0, 0};
-  for (int corner = 0; corner < CLPV_ABREAST; ++corner) {
-    if (wanted[corner]) clpv_hide(&signs, corner, corner & 4 ? highest : lowest, hidden);
-  }
+  uint wanted[CLPV_SEE_LAYERS];
+  clpv_signs(v0, v1, v2, normal, &signs, wanted);
   for (int layer = 0; layer < CLPV_SEE_LAYERS; ++layer) {
-    const uint4 bits = as_uint4(convert_uchar16(hidden[layer]));
+    if (wanted[layer] == 0) continue;
+    const int16 hidden = clpv_hide(&signs, wanted[layer], CLPV_SEE_FIRST + 0.25f * (float)layer);
+    const uint4 bits = as_uint4(convert_uchar16(hidden));
     clpv_set_word(points + 4 * layer, bits.x);
     clpv_set_word(points + 4 * layer + 1, bits.y);
     clpv_set_word(points + 4 * layer + 2, bits.z);
