@@ -7,6 +7,7 @@
 // INFINITY and UINT_MAX. `fresh`: onto nothing, else onto what they hold.
 #include "edges.h"
 #include "lanes.h"
+#include "shared/loops.h"
 #include "texture.h"
 #include "tile_row.h"
 #include "triangle.h"
@@ -176,16 +177,19 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   }
   const uint end = starts[(at + 1) * CLPV_SLICES];
   float hidden = farthest_of(tile.keys);  // what lies beyond is not seen
-  for (uint i = starts[at * CLPV_SLICES]; i < end; ++i) {
-    if (as_float(binned[i].y) > hidden) continue;
-    __global const ClpvRasterTriangle* r = list + binned[i].x;
-    const uint kind = r->triangle;
-    if (kind & CLPV_TRIANGLE_MASKED) {
-      draw_masked(view, tile, r, kind, scene);
-    } else {
-      draw(view, tile, r, kind, 0, texels);
+  for (uint first = starts[at * CLPV_SLICES]; first < end; first += CLPV_LONGEST_LOOP) {
+    const uint stop = min(end - first, CLPV_LONGEST_LOOP) + first;
+    for (uint i = first; i < stop; ++i) {
+      if (as_float(binned[i].y) > hidden) continue;
+      __global const ClpvRasterTriangle* r = list + binned[i].x;
+      const uint kind = r->triangle;
+      if (kind & CLPV_TRIANGLE_MASKED) {
+        draw_masked(view, tile, r, kind, scene);
+      } else {
+        draw(view, tile, r, kind, 0, texels);
+      }
+      hidden = farthest_of(tile.keys);
     }
-    hidden = farthest_of(tile.keys);
   }
 }
 

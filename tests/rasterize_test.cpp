@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include "kernels/shared/loops.h"
 #include "pipeline/view.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
@@ -247,6 +248,17 @@ TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
   for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.x, 1);
   add_quad(scene, {-9, -9, -3.99f}, {18, 0, 0}, {0, 18, 0}, green);
   for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.y, 1);
+}
+
+TEST(Rasterize, ATileOfMoreTrianglesThanALoopMayTurn) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  const int walls = CLPV_LONGEST_LOOP / 2 + 100;
+  for (int i = 0; i < walls; ++i)  // the nearest comes last
+    add_quad(scene, {-20, -20, -5 + static_cast<float>(i) / static_cast<float>(walls)}, {40, 0, 0},
+             {0, 40, 0}, material);
+  const float nearest = 5 - static_cast<float>(walls - 1) / static_cast<float>(walls);
+  for (const float depth : camera_image(scene, small_camera(8, 8)).depth) EXPECT_FLOAT_EQ(depth, nearest);
 }
 
 TEST(Rasterize, OrthographicDepthsBeforeTheNearOneClampToItAndFarOnesDrop) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "kernels/shared/loops.h"
 #include "kernels/shared/sort.h"
 #include "support/error.hpp"
 
@@ -14,8 +15,9 @@ static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
 constexpr std::size_t kMostTexels = std::size_t{1} << (32 - CLPV_RUN_BITS);  // a run's entry has no more bits
 // Chunks are as many as keep a GPU busy and the table of counts small, each long enough to pay for its
-// column.
-constexpr std::size_t kMostChunks = 512, kLeastChunk = 256;
+// column. A work-item goes through a chunk in one loop.
+constexpr std::size_t kMostChunks = 512, kLeastChunk = 256,
+                      kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
 // Work-items here are long and few: small groups let all compute units have some.
 const cl::NDRange kLocal(16);
 const ProgramSource kSource{"sort_by_cell.cl", {}, {}};
@@ -61,7 +63,8 @@ void CellSorter::sort(std::size_t texels, std::size_t cells) {
   const auto bits = static_cast<cl_uint>(std::bit_width(std::max<std::size_t>(cells, 2) - 1));
   const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits, high_digits = 1u << (bits - low_bits);
   const auto chunk = static_cast<cl_uint>(
-      round_up(std::max(kLeastChunk, (texels + kMostChunks - 1) / kMostChunks), CLPV_LONGEST_RUN));
+      std::min(kLongestChunk,
+               round_up(std::max(kLeastChunk, (texels + kMostChunks - 1) / kMostChunks), CLPV_LONGEST_RUN)));
   const auto count = static_cast<cl_uint>(texels);
   const cl_uint chunks = (count + chunk - 1) / chunk;
   reserve_counts(low_digits, chunks);
