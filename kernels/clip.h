@@ -23,7 +23,7 @@ static inline float clpv_clip_distance(const ClpvView view, const float4 p, cons
   if (plane == 1) return guard.x * p.z + p.x;
   if (plane == 2) return guard.y * p.z - p.y;
   if (plane == 3) return guard.y * p.z + p.y;
-  return CLPV_ORTHOGRAPHIC ? 1.0f : p.w - view.near_depth;
+  return CLPV_PARALLEL(view) ? 1.0f : p.w - view.near_depth;
 }
 
 // Keeps of the convex polygon `from` what is on the positive side of a plane; returns its number of corners.
@@ -38,7 +38,7 @@ static inline int clpv_clip_plane(const ClpvView view, const float4* from, const
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
       float4 met = inside + (outside - inside) * (di / (di - dd));
-      if (plane == CLPV_CLIP_PLANES - 1) met.zw = CLPV_ORTHOGRAPHIC ? met.zw : (float2)(view.near_depth);
+      if (plane == CLPV_CLIP_PLANES - 1) met.zw = CLPV_PARALLEL(view) ? met.zw : (float2)(view.near_depth);
       to[kept++] = met;
     }
   }

@@ -132,7 +132,7 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
     if (mask) {
       if (none(closer)) continue;
-      const float8 depth = CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+      const float8 depth = hit_depth(view, key);
       closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
     }
     tile.keys[row] = select(old, key, closer);
@@ -168,7 +168,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   const uint at = y * tiles_x + x;
   const Scene scene = {vertices, triangles, materials, textures, texels};
   const Tile tile = {keys + at * CLPV_TILE, seen + at * CLPV_TILE, (int)x * CLPV_TILE, (int)y * CLPV_TILE,
-                     CLPV_ORTHOGRAPHIC ? view.far_depth : -1.0f / view.far_depth};
+                     CLPV_PARALLEL(view) ? view.far_depth : -1.0f / view.far_depth};
   if (fresh) {
     for (int row = 0; row < CLPV_TILE; ++row) {
       tile.keys[row] = (float8)(INFINITY);

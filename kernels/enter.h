@@ -32,11 +32,8 @@ static inline Tiles tiles_of(const Words* words, const int lane) {
 // The slice that a triangle of this least key is in: equal ones along parallel rays, else one for each doubling of the
 // depth.
 static inline uint slice_of(const ClpvView view, const float nearest) {
-#if CLPV_ORTHOGRAPHIC
-  return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
-#else
+  if (CLPV_PARALLEL(view)) return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
   return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0, CLPV_SLICES - 1);
-#endif
 }
 
 // An entry of triangle `index` of the list, as the next one of a tile's slice.

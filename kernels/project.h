@@ -24,7 +24,7 @@ static inline ViewPoint view_point(const ClpvView view, const Vec position) {
   point.x = vec_dot(p, vec_of(view.right));
   point.y = vec_dot(p, vec_of(view.up));
   point.z = vec_dot(p, vec_of(view.forward));
-  point.w = CLPV_ORTHOGRAPHIC ? (float8)(1.0f) : point.z;
+  point.w = CLPV_PARALLEL(view) ? (float8)(1.0f) : point.z;
   return point;
 }
 
@@ -40,7 +40,7 @@ static inline int8 where_is(const ClpvView view, const ViewPoint p) {
   const float8 width = view.half_width * p.w, height = view.half_height * p.w;
   int8 where = ((p.x < -width) & CLPV_LEFT) | ((p.x > width) & CLPV_RIGHT) | ((p.y > height) & CLPV_ABOVE) |
                ((p.y < -height) & CLPV_BELOW) | ((p.z > view.far_depth) & CLPV_BEYOND);
-  if (!CLPV_ORTHOGRAPHIC) where |= (p.z < view.near_depth) & CLPV_BEHIND;
+  if (!CLPV_PARALLEL(view)) where |= (p.z < view.near_depth) & CLPV_BEHIND;
   const int8 in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
   return where | (~in_guard & CLPV_OUT_OF_GUARD);
 }
@@ -59,7 +59,7 @@ static inline Corner project(const ClpvView view, const ViewPoint p) {
   Corner corner;
   corner.x = subpixel(p.x / p.w, view.half_width, (float)view.width);
   corner.y = subpixel(-p.y / p.w, view.half_height, (float)view.height);
-  corner.key = CLPV_ORTHOGRAPHIC ? p.z : -1.0f / p.z;
+  corner.key = CLPV_PARALLEL(view) ? p.z : -1.0f / p.z;
   return corner;
 }
 

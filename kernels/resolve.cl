@@ -131,7 +131,7 @@ CLPV_INLINE void look(const ClpvView view, const Eight p, const float8 depth, co
 #if CLPV_TEXTURED
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
-  const float8 scale = CLPV_ORTHOGRAPHIC ? (float8)(1.0f) : depth;
+  const float8 scale = CLPV_PARALLEL(view) ? (float8)(1.0f) : depth;
   const Vec along = vec_times(ray, 1.0f / facing);
   const Vec right = vec_times(vec_of(view.right), scale * clpv_step_x(view));
   const Vec down = vec_times(vec_of(view.up), scale * clpv_step_y(view));
@@ -150,7 +150,7 @@ CLPV_INLINE void resolve(const ClpvView view, const Eight p, __global const floa
                          int8* hit, Seen* seen) {
   const float8 key = keys[p.row];
   *hit = key < (float8)(INFINITY);
-  look(view, p, hit_depth(key), *hit ? triangles_seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, seen);
+  look(view, p, hit_depth(view, key), *hit ? triangles_seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, seen);
   store_depth(view, p, key, depths);
 }
 

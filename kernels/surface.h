@@ -17,6 +17,14 @@ typedef uchar4 SurfaceTexel;
 typedef float4 SurfaceTexel;
 #endif
 
+// Whether a view's rays are parallel. Where a kernel is built for the views of one kind, the host says so by the literal
+// CLPV_ORTHOGRAPHIC (1: they are); otherwise the view does.
+#ifdef CLPV_ORTHOGRAPHIC
+#define CLPV_PARALLEL(view) CLPV_ORTHOGRAPHIC
+#else
+#define CLPV_PARALLEL(view) ((view).orthographic != 0.0f)
+#endif
+
 static inline float3 clpv_float3(const float v[3]) {
   return (float3)(v[0], v[1], v[2]);
 }

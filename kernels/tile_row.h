@@ -8,10 +8,6 @@
 #include "surface.h"
 #include "vec.h"
 
-#ifndef CLPV_ORTHOGRAPHIC
-#define CLPV_ORTHOGRAPHIC 0
-#endif
-
 // The eight pixels of a work-item.
 typedef struct {
   uint px, py;  // of the first
@@ -33,13 +29,13 @@ static inline Eight this_row(const ClpvView view) {
 }
 
 // The depth of the surface hit, which may lie before the near depth; unset where there is none.
-static inline float8 hit_depth(const float8 key) {
-  return CLPV_ORTHOGRAPHIC ? key : -1.0f / key;
+static inline float8 hit_depth(const ClpvView view, const float8 key) {
+  return CLPV_PARALLEL(view) ? key : -1.0f / key;
 }
 
 // What is kept of it; 0 where there is none.
 static inline float8 stored_depth(const ClpvView view, const float8 key) {
-  const float8 depth = hit_depth(key), near = (float8)(view.near_depth);
+  const float8 depth = hit_depth(view, key), near = (float8)(view.near_depth);
   return key == (float8)(INFINITY) ? (float8)(0.0f) : depth > near ? depth : near;
 }
 

@@ -2,17 +2,13 @@
 // A triangle of the scene as a view sees it: its plane, and what a pixel's ray hits on it.
 //
 // Of one triangle, or of eight side by side (vec.h). Everything is relative to the eye and built from edges, so that
-// small triangles far from the origin lose no digits. CLPV_ORTHOGRAPHIC 1: parallel rays; 0: rays through the eye.
+// small triangles far from the origin lose no digits.
 #ifndef CLPV_TRIANGLE_H
 #define CLPV_TRIANGLE_H
 
 #include "shared/mesh.h"
 #include "surface.h"
 #include "vec.h"
-
-#ifndef CLPV_ORTHOGRAPHIC
-#define CLPV_ORTHOGRAPHIC 0
-#endif
 
 typedef struct {
   Vec corner;        // first vertex - eye [m]
@@ -47,20 +43,14 @@ static inline Vec clpv_across(const ClpvView view, const Real px, const Real py)
 
 // Along a pixel's ray, one metre deeper.
 static inline Vec clpv_along(const ClpvView view, const Real px, const Real py) {
-#if CLPV_ORTHOGRAPHIC
-  return vec_of(view.forward);
-#else
+  if (CLPV_PARALLEL(view)) return vec_of(view.forward);
   return vec_add_scaled(clpv_across(view, px, py), (Real)(1.0f), vec_of(view.forward));
-#endif
 }
 
 // From the eye to the point at `depth` behind a pixel.
 static inline Vec clpv_to_point(const ClpvView view, const Real px, const Real py, const Real depth) {
-#if CLPV_ORTHOGRAPHIC
-  return vec_add_scaled(clpv_across(view, px, py), depth, vec_of(view.forward));
-#else
+  if (CLPV_PARALLEL(view)) return vec_add_scaled(clpv_across(view, px, py), depth, vec_of(view.forward));
   return vec_times(clpv_along(view, px, py), depth);
-#endif
 }
 
 // The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite
@@ -68,14 +58,13 @@ static inline Vec clpv_to_point(const ClpvView view, const Real px, const Real p
 static inline Vec clpv_key_plane(const ClpvView view, const Face face, const Real px, const Real py) {
   const Real right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);
   const Real down = vec_dot(face.normal, vec_of(view.up)) * clpv_step_y(view);
-#if CLPV_ORTHOGRAPHIC
-  const Real scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
-  const Vec beside = vec_minus(face.corner, clpv_across(view, px, py));
-  return vec(vec_dot(face.normal, beside) * scale, -right * scale, -down * scale);
-#else
+  if (CLPV_PARALLEL(view)) {
+    const Real scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
+    const Vec beside = vec_minus(face.corner, clpv_across(view, px, py));
+    return vec(vec_dot(face.normal, beside) * scale, -right * scale, -down * scale);
+  }
   const Real scale = -1.0f / vec_dot(face.normal, face.corner);
   return vec(vec_dot(face.normal, clpv_along(view, px, py)) * scale, right * scale, down * scale);
-#endif
 }
 
 // Weights of the second and third vertex, as functions of position: weight = (point - corner) . gradient.

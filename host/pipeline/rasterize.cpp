@@ -17,7 +17,7 @@ constexpr std::size_t kItemsARun = CLPV_RUN / 8;  // a work-item sets eight tria
 constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
-const ProgramSource kBin{"bin.cl", {}, {}};
+const ProgramSource kSetUp{"rasterize.cl", {}, {}}, kBin{"bin.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
 const cl::NDRange kTileRow(8, 1);  // tiles differ in work: small groups even it out between cores
 
 unsigned tiles_along(unsigned pixels) {
@@ -52,9 +52,13 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
     : session_(session),
       scene_(scene),
       most_listed_(most_listed),
+      set_up_(session, kSetUp, "set_up"),
+      set_up_clipped_(session, kSetUp, "set_up_clipped"),
       sum_places_(session, kBin, "sum_places"),
       start_places_(session, kBin, "start_places"),
-      bin_entries_(session, kBin, "bin_entries") {
+      bin_entries_(session, kBin, "bin_entries"),
+      draw_tiles_(session, kDraw, "draw_tiles"),
+      resolve_depth_(session, kDraw, "resolve_depth") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
   session_.reserve(runs_, scene.runs->bounds().size() * sizeof(cl_uint), "runs of triangles in sight");
@@ -80,20 +84,6 @@ void Rasterizer::reserve_entries(std::size_t count) {
   count += count / kSpare;
   session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
-}
-
-Rasterizer::Drawing Rasterizer::make_drawing(bool orthographic) const {
-  const Literals literals = Literals().flag("CLPV_ORTHOGRAPHIC", orthographic);
-  const ProgramSource list{"rasterize.cl", literals, {}}, draw{"draw_tiles.cl", literals, {}};
-  return {Kernel(session_, list, "set_up"), Kernel(session_, list, "set_up_clipped"),
-          Kernel(session_, draw, "draw_tiles"), Kernel(session_, draw, "resolve_depth")};
-}
-
-Rasterizer::Drawing& Rasterizer::drawing(const ClpvView& view) {
-  const bool orthographic = view.orthographic != 0;
-  auto found = drawing_.find(orthographic);
-  if (found == drawing_.end()) found = drawing_.emplace(orthographic, make_drawing(orthographic)).first;
-  return found->second;
 }
 
 Kernel& Rasterizer::resolve(const Resolving& wanted) {
@@ -130,16 +120,15 @@ unsigned Rasterizer::list_runs(const ClpvView& view) {
 
 /// Lists the triangles of a range of runs that may cover a pixel, and enters them for the tiles they are over.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
-  Drawing& kernels = drawing(pass.view);
   const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
   session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
-  kernels.set_up
+  set_up_
       .set(pass.view, runs_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
            scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, places_, to_clip_)
       .launch(count * kItemsARun, kGroup);
-  kernels.set_up_clipped
+  set_up_clipped_
       .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, places_, to_clip_)
       .launch(kClippers, kGroup);
@@ -180,8 +169,7 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
 }
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
-  drawing(view)
-      .draw_tiles
+  draw_tiles_
       .set(view, cl_uint{fresh}, listed_, places_, binned_, scene_.vertices, scene_.triangles,
            scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
       .launch(cl::NDRange(tiles_along(view.width), tiles_along(view.height)), kTileRow);
@@ -230,7 +218,7 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
   find_visible({view, false});
-  drawing(view).resolve_depth.set(view, keys_, depth).launch(rows_of_tiles(view), kTileRow);
+  resolve_depth_.set(view, keys_, depth).launch(rows_of_tiles(view), kTileRow);
 }
 
 }  // namespace clpv

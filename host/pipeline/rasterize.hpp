@@ -46,12 +46,6 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
-  /// Kernels of one projection, which is in their code.
-  struct Drawing {
-    Kernel set_up, set_up_clipped, draw_tiles, resolve_depth;
-  };
-  Drawing make_drawing(bool orthographic) const;
-  Drawing& drawing(const ClpvView& view);
   /// What the code that resolves a surface is made for.
   struct Resolving {
     bool orthographic, from_light, paper, emissive;
@@ -75,9 +69,8 @@ class Rasterizer {
   Session& session_;
   SceneBuffers scene_;
   std::size_t most_listed_;
-  std::map<bool, Drawing> drawing_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
-  Kernel sum_places_, start_places_, bin_entries_;
+  Kernel set_up_, set_up_clipped_, sum_places_, start_places_, bin_entries_, draw_tiles_, resolve_depth_;
   Buffer runs_, listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
 };
 
