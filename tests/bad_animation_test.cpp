@@ -106,7 +106,7 @@ TEST_F(BadAnimationTest, IndicesOutOfRange) {
   model.document["animations"][0]["channels"][0]["target"]["path"] = "colour";
   EXPECT_THAT(refused(),
               AllOf(HasSubstr("/animations/0/channels/0/target/path"), HasSubstr("translation, rotation")));
-  model.document["animations"] = {json::object()};
+  model.document["animations"] = json::array({json::object()});
   EXPECT_THAT(refused(), AllOf(HasSubstr("/animations/0/samplers"), HasSubstr("nothing")));
 }
 

@@ -77,7 +77,7 @@ TEST_F(BadGltfTest, InstancingBombs) {
 TEST_F(BadGltfTest, EveryIndexOutOfRange) {
   wear("image.png");
   folder.write("image.png", decode_base64(kPngGrey));
-  model.document["samplers"] = {json::object()};
+  model.document["samplers"] = json::array({json::object()});
   model.document["scenes"] = {{{"nodes", {0}}}};
   model.document["cameras"] =
       json::parse(R"([{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}])");

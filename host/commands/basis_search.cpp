@@ -46,7 +46,7 @@ nlohmann::json described(const Basis& basis, const BasisView& view, const LobeAi
 
 /// The found set, and those that it has to stand beside.
 nlohmann::json beside_others(const Basis& found, double lambda, const BasisView& view, const LobeAims& aims) {
-  nlohmann::json bases{described(found, view, aims)};
+  nlohmann::json bases = nlohmann::json::array({described(found, view, aims)});
   for (const char* name : kBeside) bases.push_back(described(*make_basis(name, lambda), view, aims));
   return bases;
 }
