@@ -17,7 +17,7 @@ constexpr std::size_t kItemsARun = CLPV_RUN / 8;  // a work-item sets eight tria
 constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
-const ProgramSource kSetUp{"rasterize.cl", {}, {}}, kBin{"bin.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
+const ProgramSource kBin{"bin.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
 const cl::NDRange kTileRow(8, 1);  // tiles differ in work: small groups even it out between cores
 
 unsigned tiles_along(unsigned pixels) {
@@ -52,8 +52,6 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
     : session_(session),
       scene_(scene),
       most_listed_(most_listed),
-      set_up_(session, kSetUp, "set_up"),
-      set_up_clipped_(session, kSetUp, "set_up_clipped"),
       sum_places_(session, kBin, "sum_places"),
       start_places_(session, kBin, "start_places"),
       bin_entries_(session, kBin, "bin_entries"),
@@ -84,6 +82,16 @@ void Rasterizer::reserve_entries(std::size_t count) {
   count += count / kSpare;
   session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
+}
+
+Rasterizer::SetUp& Rasterizer::set_up_kernels(const ClpvView& view) {
+  const bool orthographic = view.orthographic != 0;
+  if (const auto found = set_up_.find(orthographic); found != set_up_.end()) return found->second;
+  const ProgramSource source{"rasterize.cl", Literals().flag("CLPV_ORTHOGRAPHIC", orthographic), {}};
+  return set_up_
+      .emplace(orthographic,
+               SetUp{Kernel(session_, source, "set_up"), Kernel(session_, source, "set_up_clipped")})
+      .first->second;
 }
 
 Kernel& Rasterizer::resolve(const Resolving& wanted) {
@@ -120,15 +128,16 @@ unsigned Rasterizer::list_runs(const ClpvView& view) {
 
 /// Lists the triangles of a range of runs that may cover a pixel, and enters them for the tiles they are over.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
+  SetUp& kernels = set_up_kernels(pass.view);
   const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
   session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
-  set_up_
+  kernels.triangles
       .set(pass.view, runs_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
            scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, places_, to_clip_)
       .launch(count * kItemsARun, kGroup);
-  set_up_clipped_
+  kernels.clipped
       .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, places_, to_clip_)
       .launch(kClippers, kGroup);

@@ -46,6 +46,11 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
+  /// Of one projection, which is in the code: chosen as it runs, it would take RSMs a twelfth longer.
+  struct SetUp {
+    Kernel triangles, clipped;
+  };
+  SetUp& set_up_kernels(const ClpvView& view);
   /// What the code that resolves a surface is made for.
   struct Resolving {
     bool orthographic, from_light, paper, emissive;
@@ -69,8 +74,9 @@ class Rasterizer {
   Session& session_;
   SceneBuffers scene_;
   std::size_t most_listed_;
+  std::map<bool, SetUp> set_up_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
-  Kernel set_up_, set_up_clipped_, sum_places_, start_places_, bin_entries_, draw_tiles_, resolve_depth_;
+  Kernel sum_places_, start_places_, bin_entries_, draw_tiles_, resolve_depth_;
   Buffer runs_, listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
 };
 
