@@ -91,7 +91,8 @@ static inline int2 clpv_block_range(const int first, const int last, const float
 
 // The region's first and last cell along an axis, counted from the base.
 static inline int2 clpv_cells_along(const ClpvRegion* region, const uint axis) {
-  return region->first[axis] + (int2)(region->all.low[axis], region->all.high[axis]);
+  return clpv_of_axis(region->first, axis) +
+         (int2)(clpv_of_axis(region->all.low, axis), clpv_of_axis(region->all.high, axis));
 }
 
 #define CLPV_EIGHT ((float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f))

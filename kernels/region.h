@@ -6,17 +6,25 @@
 #include "shared/mesh.h"
 #include "shared/region.h"
 
+// Regions are arguments by value, whose arrays are only ever indexed by literals: where an index is known at run time alone,
+// the compiler of Mesa's rusticl 22.3 crashes.
+
+// Of three numbers that of an axis.
+static inline int clpv_of_axis(const int v[3], const uint axis) { return axis == 0 ? v[0] : (axis == 1 ? v[1] : v[2]); }
+
 // Whether a cell inside `region.all` is one of them.
 static inline bool clpv_in_region(const ClpvRegion* region, const int x, const int y, const int z) {
   if (region->boxes == 1) return true;
-  for (uint b = 0; b < region->boxes; ++b) {
-    const ClpvBox* box = region->box + b;
-    if (x >= box->low[0] && x <= box->high[0] && y >= box->low[1] && y <= box->high[1] && z >= box->low[2] &&
-        z <= box->high[2])
-      return true;
-  }
-  return false;
+#define CLPV_IN_BOX(b)                                                                                                 \
+  ((region->boxes > b) & (x >= region->box[b].low[0]) & (x <= region->box[b].high[0]) & (y >= region->box[b].low[1]) & \
+   (y <= region->box[b].high[1]) & (z >= region->box[b].low[2]) & (z <= region->box[b].high[2]))
+  return CLPV_IN_BOX(0) | CLPV_IN_BOX(1) | CLPV_IN_BOX(2) | CLPV_IN_BOX(3) | CLPV_IN_BOX(4) | CLPV_IN_BOX(5) |
+         CLPV_IN_BOX(6) | CLPV_IN_BOX(7);
+#undef CLPV_IN_BOX
 }
+#if CLPV_REGION_BOXES != 8
+#error "clpv_in_region tells of eight boxes"
+#endif
 
 // The arguments of kernels that go through triangles, an item each, a group a run: those of `runs` from `first_run` on;
 // `triangle_count`: of the scene.
