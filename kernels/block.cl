@@ -37,7 +37,7 @@ CLPV_INLINE void clpv_block_row(const ClpvRegion* region, __global volatile uint
   const int last = min(max(max(high4.x, high4.y), max(high4.z, high4.w)), cells.y);
   const int row = v % CLPV_BLOCK_SAMPLES;
   for (int k = first; k <= last; ++k) {
-    const uint bits = clpv_block_bits(covered & (cell == k));
+    const uint bits = clpv_bits(covered & (cell == k));
     if (bits == 0) continue;
     const uint word = clpv_block_word(region, axis, i, v / CLPV_BLOCK_SAMPLES, k);
     if (word != CLPV_NO_WORD) atomic_or(masks + word + row / 4, bits << (8 * (row % 4)));
@@ -73,7 +73,7 @@ __kernel void block_triangles(const ClpvRegion region, CLPV_TRIANGLES, __global 
       for (int i = columns.x / CLPV_BLOCK_SAMPLES; i <= columns.y / CLPV_BLOCK_SAMPLES; ++i) {
         const float u = (float)(i * CLPV_BLOCK_SAMPLES);
         int8 covered = clpv_block_covered(&t, u, (float)v);
-        if (clpv_block_bits(covered) == 0) continue;
+        if (clpv_bits(covered) == 0) continue;
 #if CLPV_MASKED
         if (masked) covered &= clpv_block_solid(&t, corner, material, textures, texels, u, (float)v);
 #endif

@@ -152,10 +152,4 @@ CLPV_INLINE int8 clpv_block_solid(const BlockTriangle* t, __global const ClpvVer
 }
 #endif
 
-static inline uint clpv_block_bits(const int8 lanes) {
-  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-  const int4 four = bits.lo | bits.hi;
-  return (uint)(four.x | four.y | four.z | four.w);
-}
-
 #endif

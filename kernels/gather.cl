@@ -62,7 +62,7 @@ CLPV_INLINE float4 clpv_irradiance(CLPV_GATHERED volume, const Places* places, c
 
 // What eight pixels have been given so far, and how they take it.
 typedef struct {
-  Vec position, normal;
+  Surfaces seen;
   float8 left;  // the share that finer cascades left
   Coefficients weights[CLPV_ABREAST];
   float4 sums[CLPV_ABREAST];
@@ -72,7 +72,7 @@ typedef struct {
 CLPV_INLINE void clpv_add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GATHERED volume) {
   const ClpvGrid grid = *of;
   const float per_cell = 1.0f / grid.cell;
-  const Vec off = vec_minus(g->position, vec_of(grid.middle));
+  const Vec off = vec_minus(g->seen.position, vec_of(grid.middle));
   const float8 x = fabs(off.x), y = fabs(off.y), z = fabs(off.z), xy = x > y ? x : y;
   const float8 farthest = xy > z ? xy : z;
   const float8 inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * per_cell;
@@ -80,8 +80,8 @@ CLPV_INLINE void clpv_add_cascade(Gathering* g, __global const ClpvGrid* of, CLP
   const float8 given = share * g->left * (per_cell * per_cell);
   g->left *= 1.0f - share;
   if (none(given > (float8)(0.0f))) return;
-  const Vec at = vec_times(vec_minus(g->position, vec_of(grid.origin)), (float8)(per_cell));
-  const Vec lifted = vec_add_scaled(at, (float8)(CLPV_GATHER_OFFSET), g->normal);
+  const Vec at = vec_times(vec_minus(g->seen.position, vec_of(grid.origin)), (float8)(per_cell));
+  const Vec lifted = vec_add_scaled(at, (float8)(CLPV_GATHER_OFFSET), g->seen.normal);
   Places places;
   clpv_places(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), &places);
   float shares[CLPV_ABREAST];
@@ -96,21 +96,15 @@ __kernel void gather(const ClpvView view, __global const float* depths, __global
                      CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
   const Eight p = this_row(view);
   if (p.count == 0) return;
-  const uint first = p.py * view.width + p.px;
-  const uint8 pixel = first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
-  const float8 depth = (float8)CLPV_GATHER(depths, pixel);
-  Rows rows;
-  gather_rows(normals, pixel, &rows);
   Gathering g;
-  g.position = positions(view, p, depth);
-  g.normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
-  g.left = depth > (float8)(0.0f) ? (float8)(1.0f) : (float8)(0.0f);
+  surfaces(view, p, depths, normals, &g.seen);
+  g.left = g.seen.depth > (float8)(0.0f) ? (float8)(1.0f) : (float8)(0.0f);
+  const Unpacked normal = unpack((int8)(-1), g.seen.normal);
   for (int i = 0; i < CLPV_ABREAST; ++i) {
-    const float4 normal = normals[first + min((uint)i, p.count - 1)];
-    g.weights[i] = clpv_gather_weights(normal.xyz CLPV_PASS_TABLE);
+    g.weights[i] = clpv_gather_weights((float3)(normal.x[i], normal.y[i], normal.z[i]) CLPV_PASS_TABLE);
     g.sums[i] = 0.0f;
   }
 #define CLPV_ADD_CASCADE(c, volume) clpv_add_cascade(&g, grids + c, volume)
   CLPV_ADD_CASCADES
-  for (uint i = 0; i < p.count; ++i) irradiance[first + i] = unit * g.sums[i];
+  for (uint i = 0; i < p.count; ++i) irradiance[g.seen.first + i] = unit * g.sums[i];
 }

@@ -138,7 +138,7 @@ CLPV_INLINE float4 clpv_weigh(const Coefficients weights, const Sampled sampled)
   { packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS }
 #endif
 #define CLPV_ADD_CASCADES                                  \
-  for (uint c = 0; c < cascades; ++c) {     \
+  for (uint c = 0; c < cascades; ++c) {                    \
     const PackedCascade cascade = CLPV_PACKED_CASCADE(c);  \
     CLPV_ADD_CASCADE(c, cascade);                          \
   }

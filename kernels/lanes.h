@@ -40,6 +40,13 @@ static inline bool none(const int8 lanes) {
   return (pairs.x | pairs.y | pairs.z | pairs.w) == 0;
 }
 
+// A comparison as bits, one a lane, the first the lowest.
+static inline uint clpv_bits(const int8 lanes) {
+  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+  const int4 four = bits.lo | bits.hi;
+  return (uint)(four.x | four.y | four.z | four.w);
+}
+
 // PoCL leaves large functions out of line.
 #define CLPV_INLINE static inline __attribute__((always_inline))
 

@@ -47,7 +47,7 @@ CLPV_INLINE void clpv_square(const BlockTriangle* t, CLPV_REFLECT_SCENE, const i
     int8 covered = 0;
     if (v >= rows.x && v <= rows.y) covered = clpv_block_covered(t, u, (float)v);
 #if CLPV_MASKED
-    if ((material->flags & CLPV_MATERIAL_MASKED) != 0 && clpv_block_bits(covered) != 0)
+    if ((material->flags & CLPV_MATERIAL_MASKED) != 0 && clpv_bits(covered) != 0)
       covered &= clpv_block_solid(t, CLPV_PASS_SCENE, u, (float)v);
 #endif
     const int8 cell = convert_int8(clpv_block_depth(t, u, (float)v) + 1.0f) - 1;
@@ -101,7 +101,7 @@ CLPV_INLINE void clpv_add_side(const BlockTriangle* t, CLPV_REFLECT_SCENE, const
   uint words[2] = {0, 0}, samples = 0;
   for (int row = 0; row < CLPV_BLOCK_SAMPLES; ++row) {
     const int8 here = square->covered[row] & (square->cell[row] == k);
-    const uint bits = clpv_block_bits(here);
+    const uint bits = clpv_bits(here);
     const int8 column = here & (int8)(0, 1, 2, 3, 4, 5, 6, 7);
     const int4 four = column.lo + column.hi;
     const uint of_row = popcount(bits);

@@ -64,13 +64,6 @@ typedef struct {
   float z[CLPV_SEE_SIGNS][CLPV_ABREAST], offset[CLPV_SEE_SIGNS][CLPV_ABREAST];
 } Signs;
 
-// A bit a lane.
-static inline uint clpv_bits(const int8 lanes) {
-  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-  const int4 four = bits.lo | bits.hi;
-  return (uint)(four.x | four.y | four.z | four.w);
-}
-
 // The signs of a triangle, and for each layer the centres, a bit each, that it may hide from any point there.
 CLPV_INLINE void clpv_signs(const float3 v0, const float3 v1, const float3 v2, const float3 normal, Signs* signs,
                             uint wanted[CLPV_SEE_LAYERS]) {

@@ -141,17 +141,14 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
                              __global const float* map, const uint fresh, __global float4* direct) {
   const Eight p = this_row(camera);
   if (p.count == 0) return;
-  const uint first = p.py * camera.width + p.px;
-  const uint8 pixel = first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
-  const float8 depth = (float8)CLPV_GATHER(depths, pixel), none = (float8)(0.0f);
-  Rows rows;
-  gather_rows(normals, pixel, &rows);
-  const Vec normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
-  const Vec position = positions(camera, p, depth);
+  Surfaces seen;
+  surfaces(camera, p, depths, normals, &seen);
+  const Vec normal = seen.normal, position = seen.position;
+  const float8 none = (float8)(0.0f);
   Vec towards;
   Vec irradiance = clpv_light_irradiance(light, position, &towards);
   const float8 cosine = vec_dot_unfused(normal, towards);
-  int8 lit = (depth > none) & (cosine > none);
+  int8 lit = (seen.depth > none) & (cosine > none);
   irradiance = vec_times(irradiance, cosine);
   if (count > 0) {
     const ClpvView view = views[which];
@@ -164,7 +161,7 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
   const Unpacked lanes = unpack(lit, irradiance);
   for (uint i = 0; i < p.count; ++i) {
     const float4 added = (float4)(lanes.x[i], lanes.y[i], lanes.z[i], 0.0f);
-    direct[first + i] = fresh ? added : direct[first + i] + added;
+    direct[seen.first + i] = fresh ? added : direct[seen.first + i] + added;
   }
 }
 

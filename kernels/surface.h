@@ -25,10 +25,6 @@ typedef float4 SurfaceTexel;
 #define CLPV_PARALLEL(view) ((view).orthographic != 0.0f)
 #endif
 
-static inline float3 clpv_float3(const float v[3]) {
-  return (float3)(v[0], v[1], v[2]);
-}
-
 // (sx, sy) of a pixel's centre.
 static inline float2 clpv_screen(const ClpvView view, const float px, const float py) {
   return (float2)((2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width,

@@ -37,4 +37,23 @@ static inline float8 footprints(const ClpvView view, const Eight p, const float8
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
 }
 
+// What eight pixels see.
+typedef struct {
+  uint first;  // the first one's place in the view
+  float8 depth;
+  Vec position, normal;
+} Surfaces;
+
+// Lanes beyond the view have the last pixel's.
+static inline void surfaces(const ClpvView view, const Eight p, __global const float* depths,
+                            __global const float4* normals, Surfaces* s) {
+  s->first = p.py * view.width + p.px;
+  const uint8 pixel = s->first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
+  Rows rows;
+  gather_rows(normals, pixel, &rows);
+  s->depth = (float8)CLPV_GATHER(depths, pixel);
+  s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  s->position = positions(view, p, s->depth);
+}
+
 #endif

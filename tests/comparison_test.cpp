@@ -8,6 +8,9 @@
 #include <cmath>
 #include <vector>
 
+#include "basis/basis.hpp"
+#include "reference/inject.hpp"
+
 namespace clpv::reference {
 namespace {
 
@@ -35,6 +38,25 @@ TEST(Comparison, ATwinOfNothingAllowsNothing) {
   const std::vector<double> twin(8, 0.0);
   std::vector<float> found(8, 0.0f);
   EXPECT_FALSE(compare_volumes(found, twin, 2).worst <= 1);  // 0 / 0 tells nothing: it does not pass
+}
+
+TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const std::vector<double> up = basis->clamped_cosine({0, 1, 0}), along = basis->clamped_cosine({1, 0, 0});
+  Volume a(2, basis->size(), 1), b = a;
+  const auto put = [](Volume& to, int x, const std::vector<double>& c, double scale) {
+    for (std::size_t i = 0; i < c.size(); ++i) to.at(0, static_cast<int>(i), x, 0, 0) = scale * c[i];
+  };
+  put(a, 0, up, 1), put(b, 0, along, 1.0005);  // as halves may round it
+  put(a, 1, up, 1), put(b, 1, along, 1.01);
+  Volume merged = a;
+  merge_geometry(b, *basis, Blocking::two_sided, merged);
+  EXPECT_EQ(merged.values, b.values);
+  const Volume other = otherwise_merged(a, b, *basis, Blocking::two_sided);
+  for (int i = 0; i < basis->size(); ++i) {
+    EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
+    EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));
+  }
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "reference/inject.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 
@@ -318,25 +317,6 @@ TEST(Inject, SurfacesThatSeeTheSameWallDoNotAddUp) {
   EXPECT_GT(larger_by_rsm, 0);
   EXPECT_GT(larger_by_camera, 0);
   EXPECT_EQ(merged.values, geometry_of(*basis, {seen, rsm}).values) << "in either order";
-}
-
-TEST(Inject, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const std::vector<double> up = basis->clamped_cosine({0, 1, 0}), along = basis->clamped_cosine({1, 0, 0});
-  reference::Volume a(2, basis->size(), 1), b = a;
-  const auto put = [](reference::Volume& to, int x, const std::vector<double>& c, double scale) {
-    for (std::size_t i = 0; i < c.size(); ++i) to.at(0, static_cast<int>(i), x, 0, 0) = scale * c[i];
-  };
-  put(a, 0, up, 1), put(b, 0, along, 1.0005);  // as halves may round it
-  put(a, 1, up, 1), put(b, 1, along, 1.01);
-  reference::Volume merged = a;
-  reference::merge_geometry(b, *basis, Blocking::two_sided, merged);
-  EXPECT_EQ(merged.values, b.values);
-  const reference::Volume other = reference::otherwise_merged(a, b, *basis, Blocking::two_sided);
-  for (int i = 0; i < basis->size(); ++i) {
-    EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
-    EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));
-  }
 }
 
 TEST(Inject, LightOfSeveralSurfacesAddsUp) {

@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "codegen/gather_source.hpp"
+#include "pipeline/tile_rows.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
-
-constexpr std::size_t kAbreast = 8;  // pixels of a row that a work-item gathers
-const cl::NDRange kRow(8, 1);
 
 /// Gathering by the cosine evaluates no basis function.
 LobeOptions looked_up(const Transport& transport, const GatherOptions& options) {
@@ -142,7 +140,7 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
     for (const Volume* volume : accumulated) kernel.add(volume->memory());
   }
   table_.add_to(kernel);
-  kernel.launch({(camera.view.width + kAbreast - 1) / kAbreast, camera.view.height}, kRow);
+  kernel.launch(rows_of_tiles(camera.view), kTileRow);
 }
 
 }  // namespace clpv

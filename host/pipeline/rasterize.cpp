@@ -5,6 +5,7 @@
 
 #include "kernels/shared/raster.h"
 #include "kernels/shared/region.h"
+#include "pipeline/tile_rows.hpp"
 #include "pipeline/view.hpp"
 
 namespace clpv {
@@ -18,20 +19,12 @@ constexpr std::size_t kClippers = 1024;  // work-items that share what is to be 
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
 const ProgramSource kBin{"bin.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
-const cl::NDRange kTileRow(8, 1);  // tiles differ in work: small groups even it out between cores
 
-unsigned tiles_along(unsigned pixels) {
-  return (pixels + CLPV_TILE - 1) / CLPV_TILE;
-}
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
 }
 unsigned slice_count(const ClpvView& view) {
   return tile_count(view) * CLPV_SLICES;
-}
-/// A work-item a row of pixels of a tile.
-cl::NDRange rows_of_tiles(const ClpvView& view) {
-  return {tiles_along(view.width), view.height};
 }
 unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
+#include "pipeline/tile_rows.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
 
-constexpr std::size_t kLocal = 64, kLanes = 8;  // pixels a group shades; a work-item lights
-const cl::NDRange kRow(8, 1);                   // work-items that light side by side
+constexpr std::size_t kLocal = 64;  // pixels a group shades
 constexpr unsigned kLeastShadowTexels = CLPV_SHADOW_TAPS;
 
 const ProgramSource kSource{"shade.cl", {}, {}};
@@ -61,7 +61,7 @@ void Shader::add(const Surface& camera, const ShadowedLight& shadowed, bool fres
         .set(camera.view, camera.depth, camera.normal, shadowed.light, views_, static_cast<cl_uint>(count),
              static_cast<cl_uint>(which), count > 0 ? shadowed.depths[which] : Buffer(),
              static_cast<cl_uint>(fresh && which == 0 ? 1 : 0), direct_)
-        .launch(cl::NDRange((camera.view.width + kLanes - 1) / kLanes, camera.view.height), kRow);
+        .launch(rows_of_tiles(camera.view), kTileRow);
   }
 }
 
