@@ -309,6 +309,14 @@ TEST_F(SkyFile, IsAConstantOrAMap) {
   EXPECT_NEAR(scene_.sky->rotation, pi / 2, 1e-12);
 }
 
+TEST_F(SkyFile, IsFoundFromTheFolderThatItLiesIn) {
+  ASSERT_EQ(refusal(R"({"map": "map.exr"})"), "none");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  for (const char* name : {"scene.json", "./scene.json"}) EXPECT_NO_THROW(load_scene(name)) << name;
+  std::filesystem::current_path(before);
+}
+
 TEST_F(SkyFile, RefusesWhatCannotShine) {
   const std::string map = R"({"map": "map.exr", "scale": 2})";
   EXPECT_NE(refusal(map, -0.5f).find("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"),

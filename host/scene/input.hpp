@@ -24,7 +24,7 @@ Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const st
 /// error.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
-/// The file that a relative URI of `file` means, percent-decoded, links resolved.
+/// The file that a relative URI of `file` means, percent-decoded, links resolved. `folder` is canonical.
 /// Throws Error(bad_input) for schemes, absolute paths, whatever leaves `folder`, and what is no regular
 /// file.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri,

@@ -245,7 +245,7 @@ json entries_at(const std::vector<KeyedEntry>& entries, double seconds) {
 }
 
 /// A constant, or a map that lies beside the scene file or below.
-Sky described_sky(const json& given, const std::filesystem::path& folder, const std::string& file) {
+Sky described_sky(const json& given, const std::filesystem::path& path, const std::string& file) {
   if (given.contains("radiance") == given.contains("map")) {
     refuse(file, "/sky", given.contains("map") ? "radiance and map" : "neither radiance nor map",
            "one of them");
@@ -260,6 +260,8 @@ Sky described_sky(const json& given, const std::filesystem::path& folder, const 
                                     : even_sky(above);
   }
   if (given.contains("ground")) refuse(file, "/sky/ground", "a value", "none, beside a map");
+  // Absolute first: a bare name has no folder.
+  const auto folder = std::filesystem::canonical(std::filesystem::absolute(path).parent_path());
   return read_sky(resolve_uri(folder, given["map"], file, "/sky/map"), given.value("scale", 1.0),
                   given.value("rotation_degrees", 0.0) * kRadians);
 }
@@ -295,7 +297,7 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
     if (cascades.contains("size_metres")) scene.cascade_size = cascades["size_metres"].get<float>();
   }
   if (parsed.contains("sky"))
-    scene.sky = std::make_shared<const Sky>(described_sky(parsed["sky"], path.parent_path(), scene.file));
+    scene.sky = std::make_shared<const Sky>(described_sky(parsed["sky"], path, scene.file));
   scene.cameras = read_entries(parsed, "cameras", keyed_cameras(), scene.file);
   scene.lights = read_entries(parsed, "lights", keyed_lights(), scene.file);
   return scene;

@@ -31,6 +31,8 @@ inline void write_neighbours() {
                                 0x4f, 0,    0x4e, 0xc4, 0x03, 0x7b, 0xd6, 0,    0,    0,    0, 0x49,
                                 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};  // one pixel of 77
   folder().write("image.png", {reinterpret_cast<const char*>(grey), sizeof grey});
+  folder().write("sky.hdr", std::string_view("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
+                                             "\x40\x80\x20\x80\x80\x40\x20\x81"));  // two texels
 }
 
 /// Reads the scene under that name, and shows it at several instants.
