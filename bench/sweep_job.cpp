@@ -61,7 +61,8 @@ struct Sweeping {
   }
 };
 
-/// Bins' means, light on its way and the sums are moved as the sweep keeps them, whatever the layout of what it is given.
+/// Bins' means, light on its way and the sums are moved as the sweep keeps them, whatever the layout of what it is given; means that
+/// are read where they were injected are not copied, but for the third of them that are turned.
 Cost cost_of(const Sweeping& p) {
   const VolumeFormat& format = p.options.format;
   const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
@@ -71,19 +72,20 @@ Cost cost_of(const Sweeping& p) {
   const auto number = static_cast<double>(number_bytes(format));
   const double light =
       kChannels * static_cast<double>(bytes_per_cell(format, coefficients) + bytes_per_cell(format, kept));
-  const double launches =
-      p.sweeper.whole_bins() ? 1 : n;  // each reads a plane of each direction and writes the next
+  const double copied = p.sweeper.in_place() ? 1.0 / 3 : 1;  // written, and read
+  // Where a launch is a plane, each reads a plane of each direction and writes the next, and what comes in: nothing.
+  const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
   Cost cost;
-  cost.bytes = cells * (light + (4 * bins + ways) * number) + 2 * sides * number +
-               swept * n * n * sizeof(float) * (1 + 2 * launches);
+  cost.bytes = cells * (light + ((2 + 2 * copied) * bins + ways) * number) + dark * number +
+               swept * n * n * sizeof(float) * planes;
   const double a_direction = kChannels * (4 + 1) * 2 + (p.geometry ? 4 : 0);
   cost.flops = cells * (kChannels * (sweep_source_text(*p.basis).operations.flops() +
                                      sweep_collect_text().operations.flops()) +
                         p.directions() * a_direction);
-  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + 2 * bins;
-  cost.writes_per_cell = kChannels * accesses_per_cell(format, kept) + 2 * bins;
+  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + (1 + copied) * bins;
+  cost.writes_per_cell = kChannels * accesses_per_cell(format, kept) + (1 + copied) * bins;
   cost.working_set =
-      cells * (light + (bins + ways) * number) + sides * number + swept * n * n * sizeof(float);
+      cells * (light + (bins + ways) * number) + dark * number / 2 + swept * n * n * sizeof(float);
   if (!p.geometry) return cost;
   const int areas = p.corners().coefficients;
   cost.bytes += corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * ways * number;

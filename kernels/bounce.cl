@@ -175,12 +175,12 @@ __kernel void bounce_meet(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_
 
 // What falls on a side of finer cells, a row of them from (x, y, z) on: of a coarser face, they have a quarter of the area.
 CLPV_INLINE CLPV_REAL clpv_from_coarser(CLPV_BUFFER_IN arriving, const int x, const int y, const int z) {
-  CLPV_BUFFER_IN from = arriving + clpv_sweep_at(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
+  CLPV_BUFFER_IN from = arriving + clpv_bordered_at(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
   const float tz = CLPV_UPPER_WEIGHT(z), ty = CLPV_UPPER_WEIGHT(y);
 #define CLPV_ACROSS(at)                                                                              \
   ((1.0f - tz) * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, at) + ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PITCH)) + \
-   tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PLANE) +                              \
-         ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PLANE + CLPV_SWEEP_PITCH)))
+   tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_LIVE) +                               \
+         ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_LIVE + CLPV_SWEEP_PITCH)))
   const CLPV_REAL v = CLPV_ACROSS(0);
 #if CLPV_LANES == 8
   return 0.25f * (x & 1 ? CLPV_ODD(v) : CLPV_EVEN(v));
@@ -192,7 +192,7 @@ CLPV_INLINE CLPV_REAL clpv_from_coarser(CLPV_BUFFER_IN arriving, const int x, co
 
 CLPV_INLINE Coefficients clpv_all_from_coarser(CLPV_BUFFER_IN arriving, const int x, const int y, const int z) {
   Coefficients all;
-#define CLPV_DO(i) all.c##i = clpv_from_coarser(arriving + i * CLPV_SWEEP_VOLUME, x, y, z);
+#define CLPV_DO(i) all.c##i = clpv_from_coarser(arriving + i * CLPV_BORDERED_VOLUME, x, y, z);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
   return all;
@@ -203,7 +203,7 @@ __kernel void bounce_finer(CLPV_BUFFER_IN arriving, const int dx, const int dy, 
                            CLPV_BUFFER_OUT light) {
   CLPV_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
-  CLPV_BUFFER_IN in = arriving + channel * CLPV_N * CLPV_SWEEP_VOLUME;
+  CLPV_BUFFER_IN in = arriving + channel * CLPV_N * CLPV_BORDERED_VOLUME;
   Tile tile[CLPV_X_BINS];
   CLPV_SEND_BACK(clpv_sent_back(clpv_all_from_coarser(in, x + dx, y + r + dy, z + dz),
                                 light_load(reflectors, channel, x, y + r, z)))

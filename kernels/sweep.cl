@@ -7,9 +7,10 @@
 // D [W/sr] is all light along the direction, I what was injected, T the transmittance of the way. Outside the grid D is the
 // coarser cascade's light.
 //
-// In: `sources` (I of each bin), `ways` (T), `border` (D beside the grid, sweep_border.h). Out: `sums`, which may be the same
-// memory, for each bin the sum of its directions by their shares; `kept`, D in the cells that a finer cascade's border is made of.
-// `live` holds the last plane of each direction and channel, at first the one before the grid.
+// In: I of each bin, in `injected` or `sources` (ClpvSweepBin); `ways` (T); `border` (D beside the grid, sweep_border.h). Out:
+// `sums`, which may be the same memory as `sources`, for each bin the sum of its directions by their shares; `kept`, D in the cells
+// that a finer cascade's border is made of. `live` holds the last plane of each direction and channel, at first the one before the
+// grid.
 //
 // Two forms. `sweep_bin`, for CPUs: a work-item is a bin, and walks all planes; rows downstream first, so that each plane
 // replaces the one before in place and stays in cache. `sweep_plane`, for GPUs: a launch a plane, a work-item a cell (or
@@ -18,11 +19,13 @@
 #include "sweep.h"
 #include "sweep_border.h"
 
-// CLPV_LANES cells of a plane, all channels and parts of a bin. `from`: the plane before.
+// CLPV_LANES cells of a plane, all channels and parts of a bin. `sources`: the buffer that the bin's are in. `from`: the plane
+// before.
 CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constant const ClpvSweepDirection* direction,
                                   CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways, CLPV_BUFFER_OUT sums,
                                   __global const float* from, __global float* to, const int plane, const int row,
                                   const int column) {
+  const int source = bin.source + plane * bin.plane + row * bin.row + column;
   const int at = clpv_sweep_at(plane, row, column);
   const int here = CLPV_SWEPT(b, 0, 0) * CLPV_SWEEP_LIVE + clpv_live_at(row, column);
   __global const float* from0 = from + here;
@@ -41,7 +44,7 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
 #endif
   CLPV_REAL injected[3], sum[3];
   for (int channel = 0; channel < 3; ++channel) {
-    injected[channel] = CLPV_SWEEP_LOAD(sources + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, at);
+    injected[channel] = CLPV_SWEEP_LOAD(sources + channel * bin.channel, source);
     sum[channel] = 0.0f;
   }
 #pragma unroll
@@ -72,27 +75,45 @@ CLPV_INLINE void clpv_border_row(CLPV_BUFFER_IN border, __global float* to, cons
 }
 CLPV_INLINE void clpv_border_column(CLPV_BUFFER_IN border, __global float* to, const ClpvSweepBin bin, const int swept,
                                     const int plane, const int row) {
-  to[swept * CLPV_SWEEP_LIVE + clpv_live_at(row, CLPV_UPSTREAM(bin.column_sign))] =
-      CLPV_READ(border, clpv_side_at(swept, CLPV_BORDER_COLUMN, plane, row));
+  const CLPV_REAL light = CLPV_SWEEP_LOAD(border, clpv_side_at(swept, CLPV_BORDER_COLUMN, plane, row));
+  to += swept * CLPV_SWEEP_LIVE + clpv_live_at(row, CLPV_UPSTREAM(bin.column_sign));
+#if CLPV_LANES == 8
+#define CLPV_DO(lane) \
+  if (row + 0x##lane <= CLPV_GRID) to[0x##lane * CLPV_SWEEP_PITCH] = light.s##lane;
+  CLPV_DO(0) CLPV_DO(1) CLPV_DO(2) CLPV_DO(3) CLPV_DO(4) CLPV_DO(5) CLPV_DO(6) CLPV_DO(7)
+#undef CLPV_DO
+#else
+  *to = light;
+#endif
 }
 
 // The lower of the two layers that a finer cascade's border wants across an axis of a bin.
 #define CLPV_SHELL_LAYER(shell, axis, sign) ((shell).layers[2 * (axis) + ((sign) > 0 ? 0 : 1)])
 
 #define CLPV_SWEEP_ARGUMENTS                                                                                          \
-  __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions, CLPV_BUFFER_IN sources,       \
-      CLPV_BUFFER_IN ways, CLPV_BUFFER_IN border, const ClpvSweepShell shell, __global float *live,                   \
+  __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions, CLPV_BUFFER_IN injected,      \
+      CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways, CLPV_BUFFER_IN border, const ClpvSweepShell shell, __global float *live,                   \
       CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT kept
 
 #if CLPV_WHOLE_BINS
 
-// Keeps a row of the box, in eights: what lies beyond the grid is dark.
+// Keeps a row of the box, or a column, in eights: what lies beyond the grid is dark.
+CLPV_INLINE void clpv_keep(const CLPV_REAL light, const int first, CLPV_BUFFER_OUT kept, const int at) {
+  const int8 i = first + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  CLPV_SWEEP_STORE(kept, at, select((CLPV_REAL)(0.0f), light, i >= 0 && i < CLPV_GRID));
+}
 CLPV_INLINE void clpv_keep_row(const ClpvSweepShell shell, __global const float* d, const int row, const int column,
                                CLPV_BUFFER_OUT kept, const int at) {
+  for (int i = 0; i < shell.side; i += CLPV_LANES)
+    clpv_keep(CLPV_LIVE_LOAD(d, clpv_live_at(row, column + i)), column + i, kept, at + i);
+}
+CLPV_INLINE void clpv_keep_column(const ClpvSweepShell shell, __global const float* d, const int row, const int column,
+                                  CLPV_BUFFER_OUT kept, const int at) {
   for (int i = 0; i < shell.side; i += CLPV_LANES) {
-    const CLPV_REAL light = CLPV_LIVE_LOAD(d, clpv_live_at(row, column + i));
-    const int8 c = column + i + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
-    CLPV_SWEEP_STORE(kept, at + i, select((CLPV_REAL)(0.0f), light, c >= 0 && c < CLPV_GRID));
+#define CLPV_OF(lane) d[clpv_live_at(clamp(row + i + lane, -1, CLPV_GRID), column)]
+    const float8 light = {CLPV_OF(0), CLPV_OF(1), CLPV_OF(2), CLPV_OF(3), CLPV_OF(4), CLPV_OF(5), CLPV_OF(6), CLPV_OF(7)};
+#undef CLPV_OF
+    clpv_keep(light, row + i, kept, at + i);
   }
 }
 
@@ -102,9 +123,9 @@ CLPV_INLINE void clpv_keep_plane(const ClpvSweepShell shell, const ClpvSweepBin 
   const int p = plane - shell.first[bin.plane_axis];
   if (p < 0 || p >= shell.side) return;
   const int first_row = shell.first[bin.row_axis], first_column = shell.first[bin.column_axis];
-  const int rows_from = max(first_row, 0), rows_to = min(first_row + shell.side, CLPV_GRID);
+  const int end = min(first_row + shell.side, CLPV_GRID);
   const int of_plane = plane - CLPV_SHELL_LAYER(shell, bin.plane_axis, bin.plane_sign);
-  for (int row = rows_from; row < rows_to && (of_plane == 0 || of_plane == 1); ++row)
+  for (int row = max(first_row, 0); row < end && (of_plane == 0 || of_plane == 1); ++row)
     clpv_keep_row(shell, d, row, first_column, kept,
                   clpv_shell_at(shell, swept, CLPV_BORDER_PLANE, of_plane, row - first_row, 0));
   for (int layer = 0; layer < 2; ++layer) {
@@ -112,28 +133,32 @@ CLPV_INLINE void clpv_keep_plane(const ClpvSweepShell shell, const ClpvSweepBin 
     if (row >= 0 && row < CLPV_GRID)
       clpv_keep_row(shell, d, row, first_column, kept, clpv_shell_at(shell, swept, CLPV_BORDER_ROW, layer, p, 0));
     const int column = CLPV_SHELL_LAYER(shell, bin.column_axis, bin.column_sign) + layer;
-    const int of_column = clpv_shell_at(shell, swept, CLPV_BORDER_COLUMN, layer, p, -first_row);
-    for (int r = rows_from; r < rows_to && column >= 0 && column < CLPV_GRID; ++r)
-      CLPV_WRITE(kept, of_column + r, d[clpv_live_at(r, column)]);
+    if (column >= 0 && column < CLPV_GRID)
+      clpv_keep_column(shell, d, first_row, column, kept, clpv_shell_at(shell, swept, CLPV_BORDER_COLUMN, layer, p, 0));
   }
 }
 
 // What the next plane and the finer cascade want of a plane that is done.
-CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const ClpvSweepShell shell,
-                                   CLPV_BUFFER_IN border, __global float* live, CLPV_BUFFER_OUT kept, const int plane) {
+CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const ClpvSweepShell shell, CLPV_BUFFER_IN border,
+                                   const int dark, __global float* live, CLPV_BUFFER_OUT kept, const int plane) {
   const int first = CLPV_SWEPT(b, 0, 0);
   for (int swept = first; swept < first + 3 * CLPV_PARTS; ++swept) {
     clpv_keep_plane(shell, bin, swept, plane, live + swept * CLPV_SWEEP_LIVE, kept);
-    for (int at = -1; at <= CLPV_GRID; at += CLPV_LANES)
+    for (int at = -1; at <= CLPV_GRID && !dark; at += CLPV_LANES) {
       clpv_border_row(border, live, bin, swept, plane, at);
-    for (int at = -1; at <= CLPV_GRID; ++at) clpv_border_column(border, live, bin, swept, plane, at);
+      clpv_border_column(border, live, bin, swept, plane, at);
+    }
   }
 }
 
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEEP_ARGUMENTS) {
+// `dark`: nothing comes in, and neither `border` nor what `live` holds at first is looked at.
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEEP_ARGUMENTS, const int dark) {
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
   __constant const ClpvSweepDirection* direction = directions + b * CLPV_PARTS;
+  CLPV_BUFFER_IN light = bin.injected ? injected : sources;
+  for (int i = 0; i < CLPV_SWEPT(1, 0, 0) * CLPV_SWEEP_LIVE && dark; i += CLPV_LANES)
+    CLPV_LIVE_STORE(live, CLPV_SWEPT(b, 0, 0) * CLPV_SWEEP_LIVE + i, (CLPV_REAL)(0.0f));
   const int last_column = (CLPV_GRID - 1) / CLPV_LANES * CLPV_LANES;
   for (int p = 0; p < CLPV_GRID; ++p) {
     const int plane = bin.plane_sign > 0 ? p : CLPV_GRID - 1 - p;
@@ -141,10 +166,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEE
       const int row = bin.row_sign > 0 ? CLPV_GRID - 1 - r : r;
       for (int c = 0; c <= last_column; c += CLPV_LANES) {
         const int column = bin.column_sign > 0 ? last_column - c : c;
-        clpv_sweep_cells(b, bin, direction, sources, ways, sums, live, live, plane, row, column);
+        clpv_sweep_cells(b, bin, direction, light, ways, sums, live, live, plane, row, column);
       }
     }
-    clpv_finish_plane(b, bin, shell, border, live, kept, plane);
+    clpv_finish_plane(b, bin, shell, border, dark, live, kept, plane);
   }
 }
 
@@ -173,7 +198,8 @@ __kernel void sweep_plane(CLPV_SWEEP_ARGUMENTS, const int p) {
   const int place = CLPV_SWEPT(CLPV_SWEEP_BINS, 0, 0) * CLPV_SWEEP_LIVE;  // from even planes to odd ones
   __global float* to = live + (p % 2) * place;
   __global const float* from = live + (1 - p % 2) * place;
-  clpv_sweep_cells(b, bin, directions + b * CLPV_PARTS, sources, ways, sums, from, to, plane, row, column);
+  CLPV_BUFFER_IN light = bin.injected ? injected : sources;
+  clpv_sweep_cells(b, bin, directions + b * CLPV_PARTS, light, ways, sums, from, to, plane, row, column);
   const int first = CLPV_SWEPT(b, 0, 0), before = row == 0 ? -1 : row, after = row == CLPV_GRID - 1 ? CLPV_GRID : row;
   for (int swept = first; swept < first + 3 * CLPV_PARTS; ++swept) {
     for (int lane = 0; lane < CLPV_LANES; ++lane) {

@@ -3,7 +3,8 @@
 //
 // A volume is of an axis: the planes across it follow each other, so that a direction walks through memory from one end to
 // the other. Rows of a plane lie along x, and above each other along y in planes across z, along z in those across y; in
-// planes across x they lie along y, above each other along z. There is a border of one cell all round.
+// planes across x they lie along y, above each other along z. A cache line or two more a plane and a volume: else numbers of the same
+// cell in several of them would share the few places of a cache that powers of two have.
 #ifndef CLPV_SWEEP_H
 #define CLPV_SWEEP_H
 
@@ -23,11 +24,17 @@
 #endif
 #endif
 
+#define CLPV_SWEEP_LINE 32
+#define CLPV_SWEEP_ROW ((CLPV_GRID + 7) / 8 * 8)
+#define CLPV_SWEEP_PLANE (CLPV_GRID * CLPV_SWEEP_ROW + CLPV_SWEEP_LINE)
+#define CLPV_SWEEP_VOLUME (CLPV_GRID * CLPV_SWEEP_PLANE + CLPV_SWEEP_LINE)
+
+// A plane by itself, and one of a volume of which a finer cascade asks for cells beside the grid, have a border of one cell all
+// round.
 #define CLPV_SWEEP_FIRST 8  // from the start of a row to its first cell: rows of eight lanes stay aligned
-#define CLPV_SWEEP_PITCH ((CLPV_GRID + 7) / 8 * 8 + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_PLANE ((CLPV_GRID + 2) * CLPV_SWEEP_PITCH)
-#define CLPV_SWEEP_VOLUME ((CLPV_GRID + 2) * CLPV_SWEEP_PLANE + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_LIVE (CLPV_SWEEP_PLANE + CLPV_SWEEP_FIRST)  // a plane by itself
+#define CLPV_SWEEP_PITCH (CLPV_SWEEP_ROW + CLPV_SWEEP_FIRST)
+#define CLPV_SWEEP_LIVE ((CLPV_GRID + 2) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST)
+#define CLPV_BORDERED_VOLUME ((CLPV_GRID + 2) * CLPV_SWEEP_LIVE)
 
 #if CLPV_LANES == 8
 #define CLPV_SWEEP_LOAD(from, at) CLPV_READ_ROW(from, at)
@@ -41,12 +48,15 @@
 #define CLPV_LIVE_STORE(to, at, value) (to)[at] = value
 #endif
 
-// The volume's place of a cell, and a single plane's.
+// A cell's place in a volume, in a plane by itself, and in a volume with a border.
+CLPV_INLINE int clpv_sweep_at(const int plane, const int row, const int column) {
+  return plane * CLPV_SWEEP_PLANE + row * CLPV_SWEEP_ROW + column;
+}
 CLPV_INLINE int clpv_live_at(const int row, const int column) {
   return (row + 1) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + column;
 }
-CLPV_INLINE int clpv_sweep_at(const int plane, const int row, const int column) {
-  return (plane + 1) * CLPV_SWEEP_PLANE + clpv_live_at(row, column);
+CLPV_INLINE int clpv_bordered_at(const int plane, const int row, const int column) {
+  return (plane + 1) * CLPV_SWEEP_LIVE + clpv_live_at(row, column);
 }
 
 // A tile of CLPV_LANES x CLPV_LANES cells, its rows turned into columns.

@@ -44,8 +44,9 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated CLP
     light_store(accumulated, channel, x, y + r, z, clpv_projected(m));
 #if CLPV_FOR_FINER
     const Sides on = clpv_arriving(m);
-    CLPV_BUFFER_OUT sides = arriving + channel * CLPV_SIDES * CLPV_SWEEP_VOLUME;
-#define CLPV_DO(i) CLPV_SWEEP_STORE(sides + i * CLPV_SWEEP_VOLUME, across_z, CLPV_WITHIN(x, on.c##i));
+    const int bordered = clpv_bordered_at(z, y + r, x);
+    CLPV_BUFFER_OUT sides = arriving + channel * CLPV_SIDES * CLPV_BORDERED_VOLUME;
+#define CLPV_DO(i) CLPV_SWEEP_STORE(sides + i * CLPV_BORDERED_VOLUME, bordered, CLPV_WITHIN(x, on.c##i));
     CLPV_EACH_SIDE(CLPV_DO)
 #undef CLPV_DO
 #endif

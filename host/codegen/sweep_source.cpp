@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
@@ -15,6 +16,8 @@ namespace clpv {
 namespace {
 
 constexpr int kLanes = 8;
+constexpr std::size_t kLine = 32;  // between planes, and volumes
+constexpr double kSame = 1e-9;
 constexpr const char* kAxisNames = "XYZ";
 
 int place_in(const std::vector<glm::ivec3>& list, const glm::ivec3& offset) {
@@ -58,8 +61,32 @@ std::string way_macros() {
   return text;
 }
 
-std::size_t pitch(int grid) {
-  return static_cast<std::size_t>((grid + kLanes - 1) / kLanes * kLanes + kLanes);
+std::size_t row_numbers(int grid) {
+  return static_cast<std::size_t>((grid + kLanes - 1) / kLanes * kLanes);
+}
+
+std::size_t of_volume_plane(int grid) {
+  return static_cast<std::size_t>(grid) * row_numbers(grid) + kLine;
+}
+
+/// Where the first cell's source is among a volume's numbers, and how far it is to the next channel, plane and row.
+void put_source(ClpvSweepBin& entry, std::size_t b, const SweepBin& bin, int grid,
+                const VolumeFormat& injected) {
+  const VolumeShape shape{grid, kSweepBins, 3};
+  const auto at = [&](int channel, const glm::ivec3& cell) {
+    return static_cast<int>(
+        stored_index(injected, shape, channel, static_cast<int>(b), cell.x, cell.y, cell.z));
+  };
+  const auto along = [](int axis) {
+    glm::ivec3 step(0);
+    step[axis] = 1;
+    return step;
+  };
+  entry.injected = 1;
+  entry.source = at(0, {});
+  entry.channel = at(1, {}) - entry.source;
+  entry.plane = at(0, along(bin.axis)) - entry.source;
+  entry.row = at(0, along(bin.v)) - entry.source;
 }
 
 }  // namespace
@@ -109,12 +136,15 @@ CountedText sweep_collect_text() {
 }
 
 std::size_t sweep_plane_numbers(int grid) {
-  return static_cast<std::size_t>(grid + 2) * pitch(grid) + kLanes;
+  return static_cast<std::size_t>(grid + 2) * (row_numbers(grid) + kLanes) + kLanes;
 }
 
 std::size_t sweep_volume_numbers(int grid) {
-  const auto rows = static_cast<std::size_t>(grid + 2);
-  return rows * rows * pitch(grid) + kLanes;
+  return static_cast<std::size_t>(grid) * of_volume_plane(grid) + kLine;
+}
+
+std::size_t sweep_bordered_numbers(int grid) {
+  return static_cast<std::size_t>(grid + 2) * sweep_plane_numbers(grid);
 }
 
 int sweep_way_count() {
@@ -122,15 +152,32 @@ int sweep_way_count() {
   return static_cast<int>(list.across[0].size() + list.across[1].size() + list.across[2].size());
 }
 
-std::vector<ClpvSweepBin> sweep_bin_table() {
+bool swept_in_place(const Basis& basis, const VolumeFormat& injected) {
+  if (injected.layout != Layout::soa || basis.size() != kSweepBins) return false;
+  const Matrix means = bin_means(basis);
+  for (int b = 0; b < kSweepBins; ++b) {
+    for (int i = 0; i < kSweepBins; ++i) {
+      if (std::abs(means(b, i) - (b == i ? 1 : 0)) > kSame) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected) {
   const WayList list = way_list();
+  const std::vector<SweepBin> bins = sweep_bins(1);
   std::vector<ClpvSweepBin> table;
-  for (const SweepBin& bin : sweep_bins(1)) {
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    const SweepBin& bin = bins[b];
     ClpvSweepBin entry{};
     entry.plane_axis = bin.axis, entry.row_axis = bin.v, entry.column_axis = bin.u;
     entry.plane_sign = bin.sign[bin.axis], entry.row_sign = bin.sign[bin.v],
     entry.column_sign = bin.sign[bin.u];
     for (std::size_t k = 0; k < bin.offset.size(); ++k) entry.ways[k] = list.volume(bin.axis, bin.offset[k]);
+    const auto volume = static_cast<int>(sweep_volume_numbers(grid));
+    entry.source = static_cast<int>(b) * volume, entry.channel = kSweepBins * volume;
+    entry.plane = static_cast<int>(of_volume_plane(grid)), entry.row = static_cast<int>(row_numbers(grid));
+    if (injected && bin.axis != 0) put_source(entry, b, bin, grid, *injected);
     table.push_back(entry);
   }
   return table;

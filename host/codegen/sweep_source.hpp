@@ -2,6 +2,7 @@
 // Generated text and tables of the kernels that sweep (kernels/sweep*.cl).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "basis/sweep.hpp"
 #include "codegen/linear_code.hpp"
 #include "kernels/shared/sweep.h"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 
@@ -26,13 +28,18 @@ std::string sweep_ways_text(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
 CountedText sweep_collect_text();
 
-/// Volumes of planes (kernels/sweep.h) of a grid: numbers in one, and in a plane by itself.
+/// Of a grid (kernels/sweep.h): numbers in a volume of planes, in a plane by itself, and in a volume with a border.
 std::size_t sweep_volume_numbers(int grid);
 std::size_t sweep_plane_numbers(int grid);
+std::size_t sweep_bordered_numbers(int grid);
 /// Volumes that sweep_ways.cl writes.
 int sweep_way_count();
 
-std::vector<ClpvSweepBin> sweep_bin_table();
+/// Whether injected light can be swept from where it lies, but for the bins across x, whose rows lie along y: it is the bins'
+/// means, row by row.
+bool swept_in_place(const Basis& basis, const VolumeFormat& injected);
+/// `injected`: where light is swept from, if swept_in_place(); none: all of it from volumes of planes.
+std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected = {});
 /// `coarser_parts`: of the next coarser cascade; 0: there is none.
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);
 

@@ -25,13 +25,13 @@ Bouncer::Bouncer(Session& session, const SweepOptions& options)
                                      "reflectors of all bounces", options.format);
   for (std::size_t coarser = 1; coarser < options.parts.size(); ++coarser)
     arriving_.push_back(
-        volumes_.make(kChannels * kReflectingSides, "light on surfaces of a coarser cascade"));
+        volumes_.make_bordered(kChannels * kReflectingSides, "light on surfaces of a coarser cascade"));
 }
 
 double Bouncer::bytes(const SweepOptions& options) {
   if (options.bounces != Bounces::all) return 0;
-  const double arriving =
-      kChannels * kReflectingSides * static_cast<double>(SweepVolumes::bytes(options.grid, options.format));
+  const double arriving = kChannels * kReflectingSides *
+                          static_cast<double>(SweepVolumes::bordered_bytes(options.grid, options.format));
   return static_cast<double>(stored_bytes(options.format, {options.grid, kReflectingSides, kChannels})) +
          static_cast<double>(options.parts.size() - 1) * arriving;
 }

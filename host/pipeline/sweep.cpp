@@ -65,6 +65,13 @@ ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_b
   return source;
 }
 
+/// `in_place`: of the bins across x alone.
+ProgramSource source_program(const SweepVolumes& volumes, const Basis& basis, bool in_place) {
+  ProgramSource source = volumes.program("sweep_source.cl", sweep_source_text(basis).text);
+  source.literals.flag("CLPV_X_ALONE", in_place);
+  return source;
+}
+
 ProgramSource border_program(const SweepOptions& options, int parts, int coarser_parts) {
   ProgramSource source{"sweep_border.cl", {}, {}};
   source.literals.integer("CLPV_GRID", options.grid)
@@ -105,11 +112,13 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     : session_(session),
       options_(options),
       volumes_(session, options.grid, options.format),
-      source_(session, volumes_.program("sweep_source.cl", sweep_source_text(basis).text), "sweep_source"),
+      in_place_(options.bounces == Bounces::one && swept_in_place(basis, options.format)),
+      source_(session, source_program(volumes_, basis, in_place_), "sweep_source"),
       collect_(session, volumes_.program("sweep_collect.cl", sweep_collect_text().text), "sweep_collect") {
   const std::size_t plane = sweep_plane_numbers(options.grid) * sizeof(float);
   const std::size_t swept = 3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
-  bins_ = session.upload(sweep_bin_table(), "bins to sweep");
+  const std::optional<VolumeFormat> swept_from = in_place_ ? std::optional(options.format) : std::nullopt;
+  bins_ = session.upload(sweep_bin_table(options.grid, swept_from), "bins to sweep");
   light_ = volumes_.make(3 * kSweepBins, "light to sweep, and swept");
   live_ = zeroed_buffer(session, (whole_bins() ? 1 : 2) * swept * plane, "planes being swept");
   border_ =
@@ -170,8 +179,7 @@ void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
   for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
     session_.fill_zero(first_light_, first_light_.bytes());
     bouncer_->send_on(first_light_);
-    let_nothing_in(first_passes_.back());
-    sweep(first_passes_.back(), cascade, {first_light_, first_light_}, {});
+    sweep(first_passes_.back(), cascade, {first_light_.handle(), first_light_, first_light_}, {}, false);
     bouncer_->meet_again(first_light_);
   }
 }
@@ -201,19 +209,14 @@ void Sweeper::let_sky_in(Pass& pass, float cell) {
                           {1, std::min(rows, kRowGroup), 1});
 }
 
-void Sweeper::let_nothing_in(const Pass& pass) {
-  const std::size_t planes = 3 * directions_of(pass.parts) * sweep_plane_numbers(options_.grid);
-  session_.fill_zero(border_, 2 * planes * number_bytes(options_.format));
-  session_.fill_zero(live_, (whole_bins() ? 1 : 2) * planes * sizeof(float));
+/// Into the coarsest cascade; whether anything is.
+bool Sweeper::let_beyond_in(Pass& pass, float cell) {
+  if (!pass.let_sky_in) return false;
+  let_sky_in(pass, cell);
+  return true;
 }
 
-/// Into the coarsest cascade.
-void Sweeper::let_beyond_in(Pass& pass, float cell) {
-  if (pass.let_sky_in) return let_sky_in(pass, cell);
-  let_nothing_in(pass);
-}
-
-void Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
+bool Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   Pass& pass = passes[cascade];
   if (!pass.let_in) return let_beyond_in(pass, grids[cascade].cell);
   const std::size_t swept = 3 * directions_of(pass.parts);
@@ -222,6 +225,7 @@ void Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<Clpv
                    offset[0], offset[1], offset[2], live_, static_cast<cl_int>(before_first(pass)), border_);
   const auto rows = static_cast<std::size_t>(options_.grid) + 2;
   pass.let_in->launch({(rows + 7) / 8, rows, 3 * swept}, {1, std::min(rows, kRowGroup), 1});
+  return true;
 }
 
 ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const {
@@ -229,35 +233,47 @@ ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& 
   return shell_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
 }
 
-void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell) {
-  pass.sweep.set(bins_, pass.directions, light.sources, through_[cascade], border_, shell, live_, light.sums,
-                 pass.shell);
+/// `lit`: light has been let in at the border.
+void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell,
+                    bool lit) {
+  const auto set = [&](cl_int last) {
+    pass.sweep.set(bins_, pass.directions, light.injected, light.sources, through_[cascade], border_, shell,
+                   live_, light.sums, pass.shell, last);
+  };
   if (whole_bins()) {
+    set(lit ? 0 : 1);
     pass.sweep.launch({kSweepBins}, {1});
     return;
   }
+  if (!lit) let_nothing_in(pass);
   const auto n = static_cast<std::size_t>(options_.grid);
   for (int plane = 0; plane < options_.grid; ++plane) {
-    pass.sweep.set(bins_, pass.directions, light.sources, through_[cascade], border_, shell, live_,
-                   light.sums, pass.shell, plane);
+    set(plane);
     pass.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});
   }
 }
 
+/// Where planes are swept one by one: a work-item finds what comes in beside its cell.
+void Sweeper::let_nothing_in(const Pass& pass) {
+  const std::size_t planes = 3 * directions_of(pass.parts) * sweep_plane_numbers(options_.grid);
+  session_.fill_zero(border_, 2 * planes * number_bytes(options_.format));
+  session_.fill_zero(live_, 2 * planes * sizeof(float));
+}
+
 void Sweeper::sweep(Passes& passes, std::size_t cascade, const Light& light,
                     const std::vector<ClpvGrid>& grids) {
-  let_in(passes, cascade, grids);
+  const bool lit = let_in(passes, cascade, grids);
   Pass& pass = passes[cascade];
   const ClpvSweepShell kept = shell(cascade, grids);
   // What lies beyond this grid is dark.
   if (!within(kept, options_.grid)) session_.fill_zero(pass.shell, pass.shell.bytes());
-  sweep(pass, cascade, light, kept);
+  sweep(pass, cascade, light, kept, lit);
 }
 
 /// Adds to light_ what surfaces send back.
 void Sweeper::bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   if (options_.bounces == Bounces::two) {
-    sweep(first_passes_, cascade, {light_, first_light_}, grids);
+    sweep(first_passes_, cascade, {light_.handle(), light_, first_light_}, grids);
     bouncer_->bounce(cascade, first_light_, light_);
   } else if (cascade + 1 == options_.parts.size()) {
     bounce_in_all(grids[cascade].cell);
@@ -270,12 +286,11 @@ void Sweeper::bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
 void Sweeper::bounce_in_all(float cell) {
   Pass& pass = first_passes_.back();
   const std::size_t coarsest = options_.parts.size() - 1;
-  let_beyond_in(pass, cell);
-  sweep(pass, coarsest, {light_, first_light_}, {});
+  const bool lit = let_beyond_in(pass, cell);
+  sweep(pass, coarsest, {light_.handle(), light_, first_light_}, {}, lit);
   session_.fill_zero(second_light_, second_light_.bytes());
   bouncer_->bounce(coarsest, first_light_, second_light_);
-  let_nothing_in(pass);
-  sweep(pass, coarsest, {second_light_, second_light_}, {});
+  sweep(pass, coarsest, {second_light_.handle(), second_light_, second_light_}, {}, false);
   bouncer_->bounce_on(first_light_, second_light_, light_);
 }
 
@@ -295,7 +310,7 @@ void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, con
   source_.set(injected.memory(), light_);
   volumes_.launch(source_, 3);
   if (bouncer_) bounce(cascade, grids);
-  sweep(passes_, cascade, {light_, light_}, grids);
+  sweep(passes_, cascade, {in_place_ ? injected.memory() : light_.handle(), light_, light_}, grids);
   collect(cascade, accumulated);
 }
 

@@ -53,6 +53,9 @@ class Sweeper {
   /// Whether a launch sweeps all planes, a work-item a bin; else it sweeps one (kernels/sweep.cl).
   bool whole_bins() const;
 
+  /// Whether it reads injected light where it lies, but for the bins across x (swept_in_place()).
+  bool in_place() const { return in_place_; }
+
   /// Device memory of all that a sweeper keeps [bytes].
   static double bytes(const SweepOptions& options);
 
@@ -71,13 +74,14 @@ class Sweeper {
   void let_in(Passes& passes, const Sky& sky);
   void let_nothing_in(const Pass& pass);
   void let_sky_in(Pass& pass, float cell);
-  void let_beyond_in(Pass& pass, float cell);
-  void let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  bool let_beyond_in(Pass& pass, float cell);
+  bool let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   struct Light {
+    const cl::Memory& injected;  ///< as bins_ says, some of the sources are here
     const Buffer& sources;
     const Buffer& sums;  ///< may be the same
   };
-  void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell);
+  void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell, bool lit);
   void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
   void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
   void bounce_in_all(float cell);
@@ -89,6 +93,7 @@ class Sweeper {
   SweepVolumes volumes_;
   Buffer bins_, light_, live_, border_;
   std::vector<Buffer> through_;  ///< transmittance of the ways through each cascade
+  bool in_place_;
   Kernel source_, collect_;
   std::optional<Kernel> ways_, collect_for_finer_;
   Passes passes_;

@@ -39,6 +39,14 @@ std::size_t SweepVolumes::bytes(int grid, const VolumeFormat& format) {
   return sweep_volume_numbers(grid) * number_bytes(format);
 }
 
+std::size_t SweepVolumes::bordered_bytes(int grid, const VolumeFormat& format) {
+  return sweep_bordered_numbers(grid) * number_bytes(format);
+}
+
+Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
+  return zeroed_buffer(session_, count * bordered_bytes(grid_, format_), what);
+}
+
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   return zeroed_buffer(session_, count * bytes(grid_, format_), what);
 }

@@ -20,10 +20,12 @@ class SweepVolumes {
   /// Over the tiles of all slices, of `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// `count` of them, zeroed.
+  /// `count` of them, zeroed; and of those with a border.
   Buffer make(std::size_t count, const char* what) const;
+  Buffer make_bordered(std::size_t count, const char* what) const;
   /// Of one [bytes].
   static std::size_t bytes(int grid, const VolumeFormat& format);
+  static std::size_t bordered_bytes(int grid, const VolumeFormat& format);
 
  private:
   Session& session_;

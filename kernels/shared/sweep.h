@@ -10,9 +10,11 @@ typedef struct {
   int plane_sign, row_sign, column_sign;  // 1: light goes upwards
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
   int ways[4];                            // volumes of the transmittance from the cells 0, u, v, u and v aside
+  int injected;                           // 1: its sources are read where they were injected; 0: from a volume of its own
+  int source, channel, plane, row;        // where the sources of its first cell are; from there to the next channel, plane, row
 } ClpvSweepBin;
 
-#define CLPV_SIZEOF_SWEEP_BIN 40
+#define CLPV_SIZEOF_SWEEP_BIN 60
 
 typedef struct {
   float taps[4];       // of those four cells
