@@ -62,7 +62,7 @@ struct Sweeping {
 };
 
 /// Bins' means, light on its way and the sums are moved as the sweep keeps them, whatever the layout of what it is given; means that
-/// are read where they were injected are not copied, but for the third of them that are turned.
+/// are read where they were injected, those across z, are not copied.
 Cost cost_of(const Sweeping& p) {
   const VolumeFormat& format = p.options.format;
   const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
@@ -72,7 +72,7 @@ Cost cost_of(const Sweeping& p) {
   const auto number = static_cast<double>(number_bytes(format));
   const double light =
       kChannels * static_cast<double>(bytes_per_cell(format, coefficients) + bytes_per_cell(format, kept));
-  const double copied = p.sweeper.in_place() ? 1.0 / 3 : 1;  // written, and read
+  const double copied = p.sweeper.in_place() ? 2.0 / 3 : 1;  // written, and read
   // Where a launch is a plane, each reads a plane of each direction and writes the next, and what comes in: nothing.
   const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
   Cost cost;

@@ -43,6 +43,7 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
 #define CLPV_TAP(k) ((CLPV_REAL)(direction[part].taps[k]))
 #endif
   CLPV_REAL injected[3], sum[3];
+#pragma unroll
   for (int channel = 0; channel < 3; ++channel) {
     injected[channel] = CLPV_SWEEP_LOAD(sources + channel * bin.channel, source);
     sum[channel] = 0.0f;
@@ -62,6 +63,7 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
       sum[channel] = fma((CLPV_REAL)(direction[part].share), d, sum[channel]);
     }
   }
+#pragma unroll
   for (int channel = 0; channel < 3; ++channel)
     CLPV_SWEEP_STORE(sums + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, at, sum[channel]);
 }

@@ -177,7 +177,7 @@ std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFo
     const auto volume = static_cast<int>(sweep_volume_numbers(grid));
     entry.source = static_cast<int>(b) * volume, entry.channel = kSweepBins * volume;
     entry.plane = static_cast<int>(of_volume_plane(grid)), entry.row = static_cast<int>(row_numbers(grid));
-    if (injected && bin.axis != 0) put_source(entry, b, bin, grid, *injected);
+    if (injected && bin.axis == 2) put_source(entry, b, bin, grid, *injected);
     table.push_back(entry);
   }
   return table;

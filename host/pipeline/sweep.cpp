@@ -65,10 +65,10 @@ ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_b
   return source;
 }
 
-/// `in_place`: of the bins across x alone.
+/// `in_place`: of the bins across x and y alone.
 ProgramSource source_program(const SweepVolumes& volumes, const Basis& basis, bool in_place) {
   ProgramSource source = volumes.program("sweep_source.cl", sweep_source_text(basis).text);
-  source.literals.flag("CLPV_X_ALONE", in_place);
+  source.literals.flag("CLPV_Z_IN_PLACE", in_place);
   return source;
 }
 

@@ -53,7 +53,7 @@ class Sweeper {
   /// Whether a launch sweeps all planes, a work-item a bin; else it sweeps one (kernels/sweep.cl).
   bool whole_bins() const;
 
-  /// Whether it reads injected light where it lies, but for the bins across x (swept_in_place()).
+  /// Whether it reads injected light where it lies, for the bins across z (swept_in_place()).
   bool in_place() const { return in_place_; }
 
   /// Device memory of all that a sweeper keeps [bytes].
