@@ -170,18 +170,14 @@ __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
   int8 hit;
   Seen seen;
   resolve(view, p, keys, triangles_seen, CLPV_PASS_SCENE, depths, &hit, &seen);
-  const Unpacked normal = unpack(hit, seen.normal), albedo = unpack(hit, seen.albedo);
+  const uint first = p.py * view.width + p.px;
+  store_normals(p, seen_alone(hit, seen.normal), normals + first);
+  store_colours(p, seen_alone(hit, seen.albedo), 1.0f, colours + first);
 #if CLPV_EMISSIVE
   const Unpacked emissive = unpack(hit, seen.emissive);
+  for (uint i = 0; i < p.count; ++i)
+    emissives[first + i] = (float4)(emissive.x[i], emissive.y[i], emissive.z[i], 0.0f);
 #endif
-  for (uint i = 0; i < p.count; ++i) {
-    const uint pixel = p.py * view.width + p.px + i;
-    clpv_store_normal(normals, pixel, normal.x[i], normal.y[i], normal.z[i]);
-    clpv_store_colour(colours, pixel, albedo.x[i], albedo.y[i], albedo.z[i], 1.0f);
-#if CLPV_EMISSIVE
-    emissives[pixel] = (float4)(emissive.x[i], emissive.y[i], emissive.z[i], 0.0f);
-#endif
-  }
 }
 
 #else
@@ -200,12 +196,9 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
   Vec towards;
   const Vec sent = vec_times(clpv_light_irradiance(light, positions(view, p, depth), &towards),
                              footprints(view, p, depth));
-  const Unpacked normal = unpack(hit, seen.normal), flux = unpack(hit, vec_product(seen.albedo, sent));
-  for (uint i = 0; i < p.count; ++i) {
-    const uint pixel = p.py * view.width + p.px + i;
-    clpv_store_normal(normals, pixel, normal.x[i], normal.y[i], normal.z[i]);
-    clpv_store_colour(fluxes, pixel, flux.x[i], flux.y[i], flux.z[i], colour_scale);
-  }
+  const uint first = p.py * view.width + p.px;
+  store_normals(p, seen_alone(hit, seen.normal), normals + first);
+  store_colours(p, seen_alone(hit, vec_product(seen.albedo, sent)), colour_scale, fluxes + first);
 }
 
 #endif

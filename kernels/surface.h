@@ -72,29 +72,6 @@ static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, cons
 #endif
 }
 
-// As convert_uchar_sat(value + 0.5f), which is a call on PoCL.
-static inline uchar clpv_byte(const float value) {
-  const float bounded = value > 0.0f ? (value < 255.0f ? value : 255.0f) : 0.0f;
-  return (uchar)(int)(bounded + 0.5f);
-}
-
-static inline void clpv_store_normal(__global SurfaceTexel* normals, const uint pixel, const float x,
-                                     const float y, const float z) {
-#if CLPV_SURFACE_PAPER
-  __global uchar* n = (__global uchar*)(normals + pixel);
-  n[0] = clpv_byte(x * 127.5f + 127.5f);
-  n[1] = clpv_byte(y * 127.5f + 127.5f);
-  n[2] = clpv_byte(z * 127.5f + 127.5f);
-  n[3] = 255;
-#else
-  __global float* n = (__global float*)(normals + pixel);
-  n[0] = x;
-  n[1] = y;
-  n[2] = z;
-  n[3] = 0.0f;
-#endif
-}
-
 // `scale`: what a stored 1 means (the light's largest flux a texel; 1 for albedo).
 static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, const uint pixel,
                                       const float scale) {
@@ -104,23 +81,6 @@ static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, cons
 #else
   __global const float* c = (__global const float*)(colours + pixel);
   return (float3)(c[0], c[1], c[2]);
-#endif
-}
-
-static inline void clpv_store_colour(__global SurfaceTexel* colours, const uint pixel, const float r,
-                                     const float g, const float b, const float scale) {
-#if CLPV_SURFACE_PAPER
-  __global uchar* c = (__global uchar*)(colours + pixel);
-  c[0] = clpv_byte(r * (255.0f / scale));
-  c[1] = clpv_byte(g * (255.0f / scale));
-  c[2] = clpv_byte(b * (255.0f / scale));
-  c[3] = 255;
-#else
-  __global float* c = (__global float*)(colours + pixel);
-  c[0] = r;
-  c[1] = g;
-  c[2] = b;
-  c[3] = 1.0f;
 #endif
 }
 

@@ -56,4 +56,55 @@ static inline void surfaces(const ClpvView view, const Eight p, __global const f
   s->position = positions(view, p, s->depth);
 }
 
+#if CLPV_SURFACE_PAPER
+typedef uchar Number;
+typedef uchar8 Numbers;
+typedef uchar16 FourTexels;
+// As convert_uchar8_sat(value + 0.5f), which is a call on PoCL.
+static inline uchar8 clpv_bytes(const float8 value) {
+  const float8 none = (float8)(0.0f), all = (float8)(255.0f);
+  return convert_uchar8(convert_int8((value > none ? (value < all ? value : all) : none) + 0.5f));
+}
+#else
+typedef float Number;
+typedef float8 Numbers;
+typedef float16 FourTexels;
+#endif
+
+// Texels of four numbers, those that the view has, from `to` on.
+CLPV_INLINE void store_texels(const uint count, const Numbers x, const Numbers y, const Numbers z, const Numbers w,
+                              __global SurfaceTexel* to) {
+  const FourTexels left = ((FourTexels)(x.lo, y.lo, z.lo, w.lo)).s048c159d26ae37bf;
+  const FourTexels right = ((FourTexels)(x.hi, y.hi, z.hi, w.hi)).s048c159d26ae37bf;
+  __global Number* numbers = (__global Number*)to;
+  if (count == CLPV_ABREAST) {
+    vstore16(left, 0, numbers);
+    vstore16(right, 1, numbers);
+    return;
+  }
+  Number each[4 * CLPV_ABREAST];
+  vstore16(left, 0, each);
+  vstore16(right, 1, each);
+  for (uint i = 0; i < count; ++i) vstore4(vload4(i, each), i, numbers);
+}
+
+CLPV_INLINE void store_normals(const Eight p, const Vec n, __global SurfaceTexel* to) {
+#if CLPV_SURFACE_PAPER
+  store_texels(p.count, clpv_bytes(n.x * 127.5f + 127.5f), clpv_bytes(n.y * 127.5f + 127.5f),
+               clpv_bytes(n.z * 127.5f + 127.5f), (uchar8)(255), to);
+#else
+  store_texels(p.count, n.x, n.y, n.z, (float8)(0.0f), to);
+#endif
+}
+
+// `scale`: as of clpv_load_colour().
+CLPV_INLINE void store_colours(const Eight p, const Vec c, const float scale, __global SurfaceTexel* to) {
+#if CLPV_SURFACE_PAPER
+  const float byte = 255.0f / scale;
+  store_texels(p.count, clpv_bytes(c.x * byte), clpv_bytes(c.y * byte), clpv_bytes(c.z * byte), (uchar8)(255), to);
+#else
+  store_texels(p.count, c.x, c.y, c.z, (float8)(1.0f), to);
+#endif
+}
+
 #endif

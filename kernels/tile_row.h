@@ -45,17 +45,23 @@ static inline void store_depth(const ClpvView view, const Eight p, const float8 
   for (uint i = 0; i < p.count; ++i) depths[p.py * view.width + p.px + i] = stored[i];
 }
 
+// 0 where nothing is seen.
+static inline Vec seen_alone(const int8 hit, const Vec v) {
+  const float8 none = (float8)(0.0f);
+  return vec(hit ? v.x : none, hit ? v.y : none, hit ? v.z : none);
+}
+
 // Lane by lane: a vector, or 0 where nothing is seen.
 typedef struct {
   float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
 } Unpacked;
 
 static inline Unpacked unpack(const int8 hit, const Vec v) {
-  const float8 none = (float8)(0.0f);
+  const Vec seen = seen_alone(hit, v);
   Unpacked lanes;
-  vstore8(hit ? v.x : none, 0, lanes.x);
-  vstore8(hit ? v.y : none, 0, lanes.y);
-  vstore8(hit ? v.z : none, 0, lanes.z);
+  vstore8(seen.x, 0, lanes.x);
+  vstore8(seen.y, 0, lanes.y);
+  vstore8(seen.z, 0, lanes.z);
   return lanes;
 }
 
