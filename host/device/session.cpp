@@ -21,6 +21,8 @@ ProgramSource words_program() {
   return {.file = "words.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
+constexpr int kKeepingPart = 10;  // of the time that a process runs, for programs to be kept in
+const auto kProcessStart = std::chrono::steady_clock::now();
 
 cl_uint words_of(std::size_t bytes) {
   return static_cast<cl_uint>(bytes / sizeof(cl_uint));
@@ -117,8 +119,11 @@ bool Session::load(Program& program) {
 void Session::store_programs() {
   if (!cache_) return;
   bool told = false;
+  const auto start = std::chrono::steady_clock::now();
+  const auto most = (start - kProcessStart) / kKeepingPart;
   for (auto& [key, program] : programs_) {
     if (program->stored || program->built() == nullptr) continue;
+    if (std::chrono::steady_clock::now() - start > most) return;
     if (!std::exchange(told, true)) tell_of_keeping(build_ms_);
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries[0].empty()) {

@@ -50,9 +50,9 @@ class Session {
   /// The kernel `name` of a program of describe().
   cl::Kernel kernel(Program& program, const std::string& name);
 
-  /// Keeps the programs compiled so far in the cache. To be called last, when results are out: PoCL's
-  /// binaries hold the code for the work-group sizes launched until then, and making one costs about as long
-  /// as the first launches.
+  /// Keeps the programs compiled so far in the cache, for a tenth of the time that the process has run: the rest is left to
+  /// later starts. To be called last, when results are out: on PoCL giving a program away costs about as long as its
+  /// first launches, while starts without find its kernels in PoCL's own cache.
   void store_programs();
 
   /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill_zero(). `what` names it in errors.
