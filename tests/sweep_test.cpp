@@ -2,6 +2,7 @@
 // The sweep, held against what is known of light in closed form; and the kernels against the twin.
 #include "pipeline/sweep.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,6 +24,8 @@ namespace {
 
 using namespace test;
 using reference::SweptCascade;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 constexpr double kExact = 1e-12;
 constexpr double kFloat = 2e-6;  // relative: some dozen roundings of float32
@@ -301,6 +304,34 @@ TEST(Sweep, RefusesGridsThatAreNotNested) {
   Volume light(test_session(), {6, kSweepBins, 3}, "test: light");
   const auto grids = cascade_grids(glm::vec3(0), 3, 3, 6);
   EXPECT_THROW(sweeper.sweep(1, {grids[0], grids[2]}, light, light), Error);
+}
+
+TEST(Sweep, RefusesVolumesThatKernelsCannotAddress) {
+  const SweepVolumes volumes(test_session(), 512, {Layout::soa, Storage::float16});
+  EXPECT_THAT([&] { volumes.make(3 * kSweepBins, "light to sweep"); },
+              ThrowsMessage<Error>(HasSubstr("light to sweep of 9")));
+}
+
+/// Bins24 across z are swept from where they were injected: by the same numbers as from volumes of planes.
+TEST(Sweep, WhereSourcesLieIsNoMatter) {
+  const auto basis = make_basis("bins24");
+  constexpr int kGrid = 12;
+  std::vector<std::vector<float>> swept;
+  for (const Layout layout : {Layout::soa, Layout::aos}) {
+    const VolumeFormat format{layout, Storage::float32};
+    Sweeper sweeper(test_session(), *basis, swept_by(*basis),
+                    {.grid = kGrid, .parts = {2}, .blocking = false, .format = format});
+    EXPECT_EQ(sweeper.in_place(), layout == Layout::soa);
+    Volume light(test_session(), {kGrid, kSweepBins, 3}, "test: light", format);
+    Volume result(test_session(), {kGrid, swept_basis()->size(), 3}, "test: swept", format);
+    std::vector<float> values(3 * kSweepBins * kGrid * kGrid * kGrid);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 97) - 20;
+    light.write(test_session(), values);
+    sweeper.sweep(0, cascade_grids(glm::vec3(0), 3, 1, kGrid), light, result);
+    swept.push_back(result.read(test_session()));
+    EXPECT_EQ(light.read(test_session()), values) << "what was injected is kept";
+  }
+  EXPECT_EQ(swept[0], swept[1]);
 }
 
 TEST(Sweep, IsNoMatterOfSteps) {

@@ -2,9 +2,12 @@
 #include "pipeline/sweep_volumes.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "codegen/sweep_source.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 
@@ -48,6 +51,11 @@ Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
 }
 
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  const std::size_t numbers = count * sweep_volume_numbers(grid_);
+  if (numbers > kMost)
+    throw Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what, numbers,
+                kMost);
   return zeroed_buffer(session_, count * bytes(grid_, format_), what);
 }
 

@@ -20,7 +20,7 @@ class SweepVolumes {
   /// Over the tiles of all slices, of `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// `count` of them, zeroed; and of those with a border.
+  /// `count` of them, zeroed; and of those with a border. Throws Error(device) "unsupported: ..." for more than kernels can address.
   Buffer make(std::size_t count, const char* what) const;
   Buffer make_bordered(std::size_t count, const char* what) const;
   /// Of one [bytes].
