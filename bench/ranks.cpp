@@ -36,7 +36,6 @@ void RankWork::share(int ranks, int frames) {
   if (mine && !frame_) frame_ = std::make_unique<Frame>(session_, *scene_, options_);
   team_.begin(static_cast<std::size_t>(frames));
   while (mine && team_.take()) {
-    session_.timeline().clear();
     frame_->forget_light();
     frame_->render(camera_);
     session_.queue().finish();

@@ -223,7 +223,6 @@ TEST(EmissiveFrame, LightsByEveryTransport) {
 TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   Scene scene = lamp_over_floor();
   const auto passes = [](Frame& frame, const Camera& camera) {
-    test_session().timeline().clear();
     frame.render(camera);
     int emitted = 0, injected = 0;
     for (const StageTime& time : test_session().timeline().times()) {
@@ -255,7 +254,6 @@ TEST(EmissiveFrame, AtRestItsPointsDoNotDependOnWhatElseMoves) {
   frame.render(scene.cameras[0]);
   for (std::size_t i = 0; i < 4; ++i) scene.vertices[i].position[1] -= 0.1f;
   frame.scene_moved();
-  test_session().timeline().clear();
   frame.render(scene.cameras[0]);
   for (const StageTime& time : test_session().timeline().times()) EXPECT_NE(time.mark.pass, Pass::emit);
 }

@@ -64,7 +64,6 @@ class KeptFrame : public ::testing::Test {
   /// The passes of the frame at those instants, which is held against the same frame rendered alone.
   Passes passes(const Instants& at) {
     const Camera camera = show(at);
-    session_.timeline().clear();
     const Found kept = rendered(session_, frame_, camera);
     Passes passes;
     for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
@@ -112,6 +111,14 @@ TEST_F(KeptFrame, MakesWhatChanged) {
   at.wall = at.sun = 5;
   EXPECT_EQ(passes(at), kOfEveryFrame) << "what moved has come to rest";
   EXPECT_EQ(passes(Instants{}), all);
+}
+
+TEST_F(KeptFrame, ForgetsTheEventsOfTheFrameBefore) {
+  const Camera camera = show({});
+  Passes passes;
+  for (int i = 0; i < 2; ++i) frame_.render(camera);
+  for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
+  EXPECT_EQ(passes, kOfEveryFrame);
 }
 
 TEST_F(KeptFrame, IsTheSameAlongAPathAcrossCells) {

@@ -32,7 +32,6 @@ class SweptFrame {
 
   Lit render(const Camera& camera) {
     Lit lit;
-    test_session().timeline().clear();
     frame_.render(camera, [&](const CascadeVolumes& volumes) {
       lit.volumes.push_back(volumes.accumulated.read(test_session()));
       if (volumes.geometry != nullptr) lit.volumes.push_back(volumes.geometry->read(test_session()));

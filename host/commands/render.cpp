@@ -133,7 +133,6 @@ void run(const Options& options, const Shared& shared) {
   progress.advance();
   for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
     stop_if_interrupted();
-    session.timeline().clear();
     frame.forget_light();
     stats.begin_frame();
     frame.render(camera);

@@ -108,7 +108,6 @@ FrameTimes Sequence::render(Session& session, Frame& frame, int number) {
   moving_.pose(options_.instant(number));
   if (moving_.moves()) frame.scene_moved();
   const Clock::time_point posed = Clock::now();
-  session.timeline().clear();
   frame.render(camera());
   session.queue().finish();
   const Clock::time_point rendered = Clock::now();

@@ -65,7 +65,6 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
   std::map<std::string, std::vector<double>> samples;
   std::vector<double> totals;
   for (int i = 0; i <= frames; ++i) {
-    session.timeline().clear();
     frame.forget_light();
     frame.render(camera);
     const Image image = shown(frame, show);

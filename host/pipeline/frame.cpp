@@ -274,6 +274,7 @@ void Frame::gather(const Surface& surface, Buffer& irradiance) {
 }
 
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
+  session_.timeline().clear();  // the events of every frame would add up
   grids_ = cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
   prepare_light(camera);
   rasterize_camera(camera);

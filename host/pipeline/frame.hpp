@@ -61,8 +61,8 @@ class Frame {
   /// To be called when the scene given may show another instant (MovingScene): the next frame is of that.
   void scene_moved();
 
-  /// Enqueues the stages whose products are not there yet, marked on the session's timeline; shaded views are there once the
-  /// queue is finished. A frame is the same to the bit, whatever was rendered before it.
+  /// Enqueues the stages whose products are not there yet, marked on the session's timeline, which forgets the frame before;
+  /// shaded views are there once the queue is finished. A frame is the same to the bit, whatever was rendered before it.
   /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).
   void render(const Camera& camera, const CascadeObserver& observer = {});
 
