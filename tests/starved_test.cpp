@@ -114,6 +114,14 @@ TEST_F(Starved, OfACompiler) {
   EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
 }
 
+TEST_F(Starved, OfACompilerOnce) {
+  const Outcome outcome = run("CLPV_SHIM=clBuildProgram:3:-11 CLPV_SHIM_REPORT= LD_PRELOAD=" CLPV_OPENCL_SHIM
+                              " CLPV_PROGRAM_CACHE=off timeout 120 " CLPV_PROGRAM +
+                              kTiny + "-o " + (folder_ / "a.exr").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder_ / "a.exr"));
+}
+
 /// A limit on the size of files stands in for a full disk where nothing may be mounted: writing says "File too large".
 /// Not where there is a device: drivers write as well.
 TEST_F(Starved, OfDisk) {
