@@ -90,7 +90,10 @@ CLPV_INLINE void clpv_border_column(CLPV_BUFFER_IN border, __global float* to, c
 }
 
 // The lower of the two layers that a finer cascade's border wants across an axis of a bin.
-#define CLPV_SHELL_LAYER(shell, axis, sign) ((shell).layers[2 * (axis) + ((sign) > 0 ? 0 : 1)])
+#define CLPV_SHELL_LAYER(shell, axis, sign)                                                                   \
+  ((axis) == 0 ? ((sign) > 0 ? (shell).layers[0] : (shell).layers[1])                                         \
+               : ((axis) == 1 ? ((sign) > 0 ? (shell).layers[2] : (shell).layers[3])                          \
+                              : ((sign) > 0 ? (shell).layers[4] : (shell).layers[5])))
 
 #define CLPV_SWEEP_ARGUMENTS                                                                                          \
   __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions, CLPV_BUFFER_IN injected,      \
@@ -122,9 +125,9 @@ CLPV_INLINE void clpv_keep_column(const ClpvSweepShell shell, __global const flo
 // Keeps what of a plane belongs to the shell, if anything.
 CLPV_INLINE void clpv_keep_plane(const ClpvSweepShell shell, const ClpvSweepBin bin, const int swept, const int plane,
                                  __global const float* d, CLPV_BUFFER_OUT kept) {
-  const int p = plane - shell.first[bin.plane_axis];
+  const int p = plane - CLPV_SHELL_FIRST(shell, bin.plane_axis);
   if (p < 0 || p >= shell.side) return;
-  const int first_row = shell.first[bin.row_axis], first_column = shell.first[bin.column_axis];
+  const int first_row = CLPV_SHELL_FIRST(shell, bin.row_axis), first_column = CLPV_SHELL_FIRST(shell, bin.column_axis);
   const int end = min(first_row + shell.side, CLPV_GRID);
   const int of_plane = plane - CLPV_SHELL_LAYER(shell, bin.plane_axis, bin.plane_sign);
   for (int row = max(first_row, 0); row < end && (of_plane == 0 || of_plane == 1); ++row)
@@ -180,8 +183,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEE
 // Keeps a cell of the shell, if it is one: in each face it belongs to.
 CLPV_INLINE void clpv_keep_cell(const ClpvSweepShell shell, const ClpvSweepBin bin, const int swept, const int plane,
                                 const int row, const int column, const float d, CLPV_BUFFER_OUT kept) {
-  const int p = plane - shell.first[bin.plane_axis], r = row - shell.first[bin.row_axis],
-            c = column - shell.first[bin.column_axis];
+  const int p = plane - CLPV_SHELL_FIRST(shell, bin.plane_axis), r = row - CLPV_SHELL_FIRST(shell, bin.row_axis),
+            c = column - CLPV_SHELL_FIRST(shell, bin.column_axis);
   if (p < 0 || r < 0 || c < 0 || p >= shell.side || r >= shell.side || c >= shell.side) return;
   int layer = plane - CLPV_SHELL_LAYER(shell, bin.plane_axis, bin.plane_sign);
   if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_shell_at(shell, swept, CLPV_BORDER_PLANE, layer, r, c), d);

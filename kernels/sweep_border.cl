@@ -30,8 +30,8 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
   const int r = row + CLPV_OFFSET(row_axis), c = column + CLPV_OFFSET(column_axis);
   const int pitch = CLPV_SHELL_PITCH(shell), next = shell.side * pitch;
   const int from = swept / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
-  CLPV_BUFFER_IN light = kept + clpv_shell_at(shell, from, face, 0, CLPV_LOWER(r) - shell.first[row_axis],
-                                                     CLPV_LOWER(c) - shell.first[column_axis]);
+  CLPV_BUFFER_IN light = kept + clpv_shell_at(shell, from, face, 0, CLPV_LOWER(r) - CLPV_SHELL_FIRST(shell, row_axis),
+                                                     CLPV_LOWER(c) - CLPV_SHELL_FIRST(shell, column_axis));
   const float tl = CLPV_UPPER_WEIGHT(layer), tr = CLPV_UPPER_WEIGHT(r);
   const float8 lower = (1.0f - tr) * CLPV_READ_ROW(light, 0) + tr * CLPV_READ_ROW(light, pitch);
   const float8 upper = (1.0f - tr) * CLPV_READ_ROW(light, next) + tr * CLPV_READ_ROW(light, next + pitch);
