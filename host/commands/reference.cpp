@@ -119,7 +119,8 @@ void run(const Options& options, Shared& shared) {
                  traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, camera, traced, seconds);
-  spdlog::info("{} paths a pixel, noise {:.4f}, {:.1f} s", traced.samples, traced.noise, seconds);
+  const std::string noise = std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
+  spdlog::info("{} paths a pixel, {}{:.1f} s", traced.samples, noise, seconds);
 }
 
 void add_options(CLI::App& command, Options& options) {
