@@ -4,9 +4,11 @@
 A row tells what it is in its fields; its name is for readers. Each chart is a function from rows to a figure, or None
 where no row is for it.
 """
+import itertools
 import math
 
 from matplotlib import pyplot
+from matplotlib.lines import Line2D
 
 from clpv_draw import documents, style
 from clpv_draw.documents import NUMBER, TEXT_OR_NULL
@@ -74,15 +76,19 @@ def roofline(rows, ceilings):
     axis.axhline(ceilings["gflops"], color=style.INK, lw=1)
     axis.annotate(f"{ceilings['gflops']:.0f} GFLOP/s fused multiply-adds", (highest, ceilings["gflops"]), size=7,
                   ha="right", va="bottom")
-    markers = "osD^vPX*"
-    for i, kind in enumerate(distinct((r["stage"], r["layout"]) for r in points)):
-        members = [r for r in points if (r["stage"], r["layout"]) == kind]
+    stages, kinds = distinct(r["stage"] for r in points), distinct(r["layout"] for r in points)
+    markers = dict(zip(stages, itertools.cycle("osD^vPX*")))
+    colours = {layout: style.colour(i) for i, layout in enumerate(kinds)}
+    for stage, layout in distinct((r["stage"], r["layout"]) for r in points):
+        members = [r for r in points if (r["stage"], r["layout"]) == (stage, layout)]
         axis.scatter([r["flops"] / r["bytes"] for r in members], [r["gflops"] for r in members], s=18,
-                     color=style.colour(i), marker=markers[i % len(markers)], label=" ".join(kind), zorder=3)
+                     color=colours[layout], marker=markers[stage], zorder=3)
+    key = [Line2D([], [], ls="", marker=markers[stage], color=style.SOFT, label=stage) for stage in stages]
+    key += [Line2D([], [], ls="", marker="s", ms=8, color=colours[layout], label=layout) for layout in kinds if layout]
     axis.set(xlabel="operations a byte that must move", ylabel="GFLOP/s", xlim=(lowest, highest), title="Roofline")
     style.logarithmic(axis.xaxis)
     style.logarithmic(axis.yaxis)
-    axis.legend(fontsize=7, loc="lower right")
+    axis.legend(handles=key, fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
     return figure
 
 
