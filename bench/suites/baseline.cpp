@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "basis/basis.hpp"
+#include "bench/baseline/own_cores.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/baseline/sweep_avx2.hpp"
 #include "bench/suites.hpp"
@@ -37,7 +38,6 @@ void require_support() {
 }
 
 Job native_propagate_job(Bench& bench, const Variant& variant) {
-  require_support();
   const RenderOptions& o = variant.options;
   const auto p = std::make_shared<Native<PropagateBaseline>>(o);
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
@@ -65,7 +65,6 @@ Job native_propagate_job(Bench& bench, const Variant& variant) {
 
 /// What sweep_job times: what blocks the ways, from injected light to the nine harmonics that are kept.
 Job native_sweep_job(Bench& bench, const Variant& variant) {
-  require_support();
   const RenderOptions& o = variant.options;
   const auto p = std::make_shared<Native<SweepBaseline>>(o, parts_of(o.directions));
   p->baseline.set(bench.inputs().light(*p->basis, 0), o.occlusion ? &bench.inputs().areas(0) : nullptr);
@@ -84,7 +83,11 @@ Job native_sweep_job(Bench& bench, const Variant& variant) {
 
 /// The same by hand.
 Case native_case(Bench& bench, const Variant& variant, Job (*make)(Bench&, const Variant&)) {
-  return {make_row("baseline", kNative, variant), [&bench, variant, make] { return make(bench, variant); }};
+  return {make_row("baseline", kNative, variant), [&bench, variant, make] {
+            require_support();
+            give_threads_own_cores();
+            return make(bench, variant);
+          }};
 }
 
 std::vector<Case> propagate_cases(Bench& bench, const SuiteOptions& options) {
