@@ -74,8 +74,10 @@ typedef float16 FourTexels;
 // Texels of four numbers, those that the view has, from `to` on.
 CLPV_INLINE void store_texels(const uint count, const Numbers x, const Numbers y, const Numbers z, const Numbers w,
                               __global SurfaceTexel* to) {
-  const FourTexels left = ((FourTexels)(x.lo, y.lo, z.lo, w.lo)).s048c159d26ae37bf;
-  const FourTexels right = ((FourTexels)(x.hi, y.hi, z.hi, w.hi)).s048c159d26ae37bf;
+#define CLPV_TEXEL(lane) x.lane, y.lane, z.lane, w.lane
+  const FourTexels left = (FourTexels)(CLPV_TEXEL(s0), CLPV_TEXEL(s1), CLPV_TEXEL(s2), CLPV_TEXEL(s3));
+  const FourTexels right = (FourTexels)(CLPV_TEXEL(s4), CLPV_TEXEL(s5), CLPV_TEXEL(s6), CLPV_TEXEL(s7));
+#undef CLPV_TEXEL
   __global Number* numbers = (__global Number*)to;
   if (count == CLPV_ABREAST) {
     vstore16(left, 0, numbers);
