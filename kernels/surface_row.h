@@ -59,7 +59,6 @@ static inline void surfaces(const ClpvView view, const Eight p, __global const f
 #if CLPV_SURFACE_PAPER
 typedef uchar Number;
 typedef uchar8 Numbers;
-typedef uchar16 FourTexels;
 // As convert_uchar8_sat(value + 0.5f), which is a call on PoCL.
 static inline uchar8 clpv_bytes(const float8 value) {
   const float8 none = (float8)(0.0f), all = (float8)(255.0f);
@@ -68,26 +67,25 @@ static inline uchar8 clpv_bytes(const float8 value) {
 #else
 typedef float Number;
 typedef float8 Numbers;
-typedef float16 FourTexels;
 #endif
+
+// Lanes i to i + 3 of both by turns, and pairs of those by turns: two vectors at a time, which the compiler makes shuffles of.
+#define CLPV_BY_TURNS(a, b, i, j, k, l) ((Numbers)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
+#define CLPV_BY_PAIRS(a, b, i, j, k, l) ((Numbers)(a.s##i, a.s##j, b.s##i, b.s##j, a.s##k, a.s##l, b.s##k, b.s##l))
 
 // Texels of four numbers, those that the view has, from `to` on.
 CLPV_INLINE void store_texels(const uint count, const Numbers x, const Numbers y, const Numbers z, const Numbers w,
                               __global SurfaceTexel* to) {
-#define CLPV_TEXEL(lane) x.lane, y.lane, z.lane, w.lane
-  const FourTexels left = (FourTexels)(CLPV_TEXEL(s0), CLPV_TEXEL(s1), CLPV_TEXEL(s2), CLPV_TEXEL(s3));
-  const FourTexels right = (FourTexels)(CLPV_TEXEL(s4), CLPV_TEXEL(s5), CLPV_TEXEL(s6), CLPV_TEXEL(s7));
-#undef CLPV_TEXEL
+  const Numbers left_xy = CLPV_BY_TURNS(x, y, 0, 1, 2, 3), left_zw = CLPV_BY_TURNS(z, w, 0, 1, 2, 3);
+  const Numbers right_xy = CLPV_BY_TURNS(x, y, 4, 5, 6, 7), right_zw = CLPV_BY_TURNS(z, w, 4, 5, 6, 7);
+  const Numbers twos[4] = {CLPV_BY_PAIRS(left_xy, left_zw, 0, 1, 2, 3), CLPV_BY_PAIRS(left_xy, left_zw, 4, 5, 6, 7),
+                           CLPV_BY_PAIRS(right_xy, right_zw, 0, 1, 2, 3), CLPV_BY_PAIRS(right_xy, right_zw, 4, 5, 6, 7)};
   __global Number* numbers = (__global Number*)to;
   if (count == CLPV_ABREAST) {
-    vstore16(left, 0, numbers);
-    vstore16(right, 1, numbers);
+    for (int i = 0; i < 4; ++i) vstore8(twos[i], i, numbers);
     return;
   }
-  Number each[4 * CLPV_ABREAST];
-  vstore16(left, 0, each);
-  vstore16(right, 1, each);
-  for (uint i = 0; i < count; ++i) vstore4(vload4(i, each), i, numbers);
+  for (uint i = 0; i < count; ++i) vstore4(i % 2 == 0 ? twos[i / 2].lo : twos[i / 2].hi, i, numbers);
 }
 
 CLPV_INLINE void store_normals(const Eight p, const Vec n, __global SurfaceTexel* to) {

@@ -29,11 +29,7 @@ constexpr double kCollectFlops = kChannels * (3 * (3 * kOctants + 2 * kKept) - k
 SweepBaseline::SweepBaseline(const Basis& basis, const Transport& transport, int grid, int parts) {
   if (grid % kLane != 0)
     throw Error(ExitCode::run_time, "baseline: grid {}; allowed: multiples of {}", grid, kLane);
-  const Matrix means = bin_means(basis);
-  require(basis.size() == kSweepBins);
-  for (int b = 0; b < kSweepBins; ++b) {
-    for (int i = 0; i < kSweepBins; ++i) require(same(means(b, i), b == i ? 1 : 0));
-  }
+  require(holds_bin_means(basis));
   impl_ = std::make_unique<Impl>(transport, grid, parts);
 }
 

@@ -136,6 +136,18 @@ Matrix bin_means(const Basis& basis) {
   return sums;
 }
 
+bool holds_bin_means(const Basis& basis) {
+  constexpr double kSame = 1e-9;
+  if (basis.size() != kSweepBins) return false;
+  const Matrix means = bin_means(basis);
+  for (int b = 0; b < kSweepBins; ++b) {
+    for (int i = 0; i < kSweepBins; ++i) {
+      if (std::abs(means(b, i) - (b == i ? 1 : 0)) > kSame) return false;
+    }
+  }
+  return true;
+}
+
 std::unique_ptr<Basis> swept_basis() {
   return std::make_unique<SphericalHarmonics>(kSweptBands);
 }

@@ -52,6 +52,9 @@ int coarser_part(int part, int parts, int coarser_parts);
 /// too: the energy of any field is kept.
 Matrix bin_means(const Basis& basis);
 
+/// Whether a basis's coefficients are these means already: bins24's.
+bool holds_bin_means(const Basis& basis);
+
 /// What is kept of swept light: the nine spherical harmonics of bands 0 to 2, all that gathering asks of it (gather_form.hpp).
 std::unique_ptr<Basis> swept_basis();
 

@@ -6,8 +6,8 @@
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "pipeline/marks.hpp"
 #include "pipeline/scene_buffers.hpp"
-#include "pipeline/triangle_marks.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {

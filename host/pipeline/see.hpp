@@ -7,8 +7,8 @@
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "pipeline/marks.hpp"
 #include "pipeline/scene_buffers.hpp"
-#include "pipeline/triangle_marks.hpp"
 
 namespace clpv {
 

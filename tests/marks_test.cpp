@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What triangles leave in cells is the same whether it was made from nothing or brought along with a cascade and with what
 // moved.
-#include "pipeline/triangle_marks.hpp"
+#include "pipeline/marks.hpp"
 
 #include <gtest/gtest.h>
 

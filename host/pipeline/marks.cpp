@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/triangle_marks.hpp"
+#include "pipeline/marks.hpp"
 
 #include <cmath>
 #include <cstdlib>
