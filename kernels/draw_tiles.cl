@@ -7,6 +7,7 @@
 // INFINITY and UINT_MAX. `fresh`: onto nothing, else onto what they hold.
 #include "edges.h"
 #include "lanes.h"
+#include "prefetch.h"
 #include "shared/loops.h"
 #include "texture.h"
 #include "tile_row.h"
@@ -158,6 +159,9 @@ static inline float farthest_of(__global const float8* keys) {
   return two.x > two.y ? two.x : two.y;
 }
 
+// Triangles of a tile lie anywhere in the list: each is asked for while those before it are drawn.
+#define CLPV_DRAW_AHEAD 2
+
 __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
                          __global const uint* starts, __global const uint2* binned,
                          __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
@@ -182,6 +186,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
     for (uint i = first; i < stop; ++i) {
       if (as_float(binned[i].y) > hidden) continue;
       __global const ClpvRasterTriangle* r = list + binned[i].x;
+      CLPV_PREFETCH(list + binned[min(i + CLPV_DRAW_AHEAD, stop - 1)].x);
       const uint kind = r->triangle;
       if (kind & CLPV_TRIANGLE_MASKED) {
         draw_masked(view, tile, r, kind, scene);

@@ -45,6 +45,12 @@ static inline void enter(__global uint* entry, const uint slice, const uint inde
   entry[3] = nearest;
 }
 
+// A side of a triangle, at a tile's upper left pixel.
+static inline Edge side_of(const Words* words, const int i, const int lane, const int px, const int py) {
+  return edge_between(words->word[i][lane], words->word[4 + i][lane], words->word[i + 1][lane], words->word[5 + i][lane],
+                      px, py);
+}
+
 // Enters a triangle for each tile of its box that it may cover a pixel of. Returns where its entries end.
 static inline uint enter_all(const ClpvView view, const Words* words, const int lane, const uint index, uint at,
                              __global uint* entries, volatile __global uint* places) {
@@ -56,23 +62,20 @@ static inline uint enter_all(const ClpvView view, const Words* words, const int 
     enter(entries + CLPV_ENTRY_WORDS * at, CLPV_SLICE_AT(tiles.left, tiles.top), index, nearest, places);
     return at + 1;
   }
-  long at_left[3], step_x[3], step_y[3];
-  for (int i = 0; i < 3; ++i) {
-    const Edge edge = edge_between(words->word[i][lane], words->word[4 + i][lane], words->word[i + 1][lane],
-                                   words->word[5 + i][lane], tiles.left * CLPV_TILE, tiles.top * CLPV_TILE);
-    at_left[i] = largest_in_tile(edge);
-    step_x[i] = CLPV_TILE * edge.step_x;
-    step_y[i] = CLPV_TILE * edge.step_y;
-  }
+  const int left = tiles.left * CLPV_TILE, top = tiles.top * CLPV_TILE;
+  // (In scalars: arrays of these are written by eights of bytes and read by sixteens, which a processor waits for.)
+  const Edge a = side_of(words, 0, lane, left, top), b = side_of(words, 1, lane, left, top),
+             c = side_of(words, 2, lane, left, top);
+  long a_left = largest_in_tile(a), b_left = largest_in_tile(b), c_left = largest_in_tile(c);
   for (int y = tiles.top; y <= tiles.bottom; ++y) {
-    long e0 = at_left[0], e1 = at_left[1], e2 = at_left[2];
+    long a_here = a_left, b_here = b_left, c_here = c_left;
     for (int x = tiles.left; x <= tiles.right; ++x) {
-      if ((e0 | e1 | e2) >= 0) {
+      if ((a_here | b_here | c_here) >= 0) {
         enter(entries + CLPV_ENTRY_WORDS * at++, CLPV_SLICE_AT(x, y), index, nearest, places);
       }
-      e0 += step_x[0], e1 += step_x[1], e2 += step_x[2];
+      a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x, c_here += CLPV_TILE * c.step_x;
     }
-    at_left[0] += step_y[0], at_left[1] += step_y[1], at_left[2] += step_y[2];
+    a_left += CLPV_TILE * a.step_y, b_left += CLPV_TILE * b.step_y, c_left += CLPV_TILE * c.step_y;
   }
 #undef CLPV_SLICE_AT
   return at;

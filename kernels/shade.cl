@@ -87,24 +87,24 @@ CLPV_INLINE float8 blocking_rows(const Receiver r, const float8 d, const float2 
   return select((float8)(0.0f), weights, (d > 0.0f) & before & (d < r.depth));
 }
 
-// How much of the light arrives, 0..1; 1 outside the map. `row`: the filter's first texel.
-CLPV_INLINE float visibility(const Receiver r, __global const float* row, const uint width) {
+// The weight of those texels of a receiver's filter that block, and of all: 0 outside the map. `row`: the filter's first.
+CLPV_INLINE float blocking(const Receiver r, __global const float* row, const uint width, float* whole) {
   const float4 wx = tap_weights(r.dx), wy = tap_weights(r.dy), one = 1.0f;
   const float8 upper = side_by_side(vload4(0, row), vload4(0, row + width));
   const float8 lower = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
   const float8 above = blocking_rows(r, upper, r.dy.lo, side_by_side(wx, wx), wy.lo);
   const float8 below = blocking_rows(r, lower, r.dy.hi, side_by_side(wx, wx), wy.hi);
   const float4 blocked = above.lo + above.hi + below.lo + below.hi;
-  const float whole = dot(wx, one) * dot(wy, one);
-  return whole > 0.0f ? 1.0f - dot(blocked, one) / whole : 1.0f;
+  *whole = dot(wx, one) * dot(wy, one);
+  return dot(blocked, one);
 }
 
-// The same of eight receivers, of those that are `lit` at all.
+// How much of the light arrives at eight receivers, 0..1; 1 outside the map. Only of those that are `lit` at all.
 CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, const Receivers r, const int8 lit) {
   const Taps tx = taps(r.x, (int)view.width), ty = taps(r.y, (int)view.height);
   int wanted[CLPV_ABREAST], first[CLPV_ABREAST];
   float distance_x[CLPV_ABREAST], distance_y[CLPV_ABREAST], slope_x[CLPV_ABREAST], slope_y[CLPV_ABREAST];
-  float a[CLPV_ABREAST], b[CLPV_ABREAST], depth[CLPV_ABREAST], seen[CLPV_ABREAST];
+  float a[CLPV_ABREAST], b[CLPV_ABREAST], depth[CLPV_ABREAST], blocked[CLPV_ABREAST], whole[CLPV_ABREAST];
   vstore8(lit, 0, wanted);
   vstore8(ty.first * (int)view.width + tx.first, 0, first);
   vstore8(tx.distance, 0, distance_x), vstore8(ty.distance, 0, distance_y);
@@ -112,13 +112,14 @@ CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, 
   vstore8(r.a, 0, a), vstore8(r.b, 0, b), vstore8(r.depth, 0, depth);
   const float4 step = (float4)(0.0f, 1.0f, 2.0f, 3.0f);
   for (int i = 0; i < CLPV_ABREAST; ++i) {
-    seen[i] = 0.0f;
+    blocked[i] = whole[i] = 0.0f;
     if (!wanted[i]) continue;
-    const Receiver one = {step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
+    const Receiver receiver = {step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
                           r.per_depth};
-    seen[i] = visibility(one, map + first[i], view.width);
+    blocked[i] = blocking(receiver, map + first[i], view.width, whole + i);
   }
-  return vload8(0, seen);
+  const float8 all = vload8(0, whole), one = (float8)(1.0f);
+  return all > (float8)(0.0f) ? one - vload8(0, blocked) / all : one;
 }
 
 // Of several views from one eye, whether the one that looks most along `offset` is `which`; of equals the first.
