@@ -6,6 +6,8 @@
 #ifndef CLPV_PREFETCH_H
 #define CLPV_PREFETCH_H
 
+#define CLPV_LINE 64  // bytes of a cache line, as most CPUs have them
+
 #ifndef CLPV_ONE_MEMORY
 #define CLPV_ONE_MEMORY 0
 #endif

@@ -15,6 +15,7 @@
 // Two forms. `sweep_bin`, for CPUs: a work-item is a bin, and walks all planes; rows downstream first, so that each plane
 // replaces the one before in place and stays in cache. `sweep_plane`, for GPUs: a launch a plane, a work-item a cell (or
 // CLPV_LANES) of a bin; planes of even and odd number have their places.
+#include "prefetch.h"
 #include "shared/sweep.h"
 #include "sweep.h"
 #include "sweep_border.h"
@@ -156,6 +157,21 @@ CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const Cl
   }
 }
 
+// Asks for a row of the next plane, of all that is read and written in it: the next row of memory is in another page every other
+// plane.
+CLPV_INLINE void clpv_ask_for_row(const int b, const ClpvSweepBin bin, CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways,
+                                  CLPV_BUFFER_OUT sums, const int plane, const int row) {
+  const int next = clamp(plane + bin.plane_sign, 0, CLPV_GRID - 1);
+  for (int column = 0; column < CLPV_SWEEP_ROW; column += CLPV_LINE / (CLPV_STORAGE_HALF ? 2 : 4)) {
+    const int source = bin.source + next * bin.plane + row * bin.row + column, at = clpv_sweep_at(next, row, column);
+    for (int channel = 0; channel < 3; ++channel) {
+      CLPV_PREFETCH(sources + channel * bin.channel + source);
+      CLPV_PREFETCH(sums + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME + at);
+    }
+    for (int k = 0; k < 4 && CLPV_BLOCKING; ++k) CLPV_PREFETCH(ways + bin.ways[k] * CLPV_SWEEP_VOLUME + at);
+  }
+}
+
 // `dark`: nothing comes in, and neither `border` nor what `live` holds at first is looked at.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEEP_ARGUMENTS, const int dark) {
   const int b = (int)get_global_id(0);
@@ -169,6 +185,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEE
     const int plane = bin.plane_sign > 0 ? p : CLPV_GRID - 1 - p;
     for (int r = 0; r < CLPV_GRID; ++r) {
       const int row = bin.row_sign > 0 ? CLPV_GRID - 1 - r : r;
+      clpv_ask_for_row(b, bin, light, ways, sums, plane, row);
       for (int c = 0; c <= last_column; c += CLPV_LANES) {
         const int column = bin.column_sign > 0 ? last_column - c : c;
         clpv_sweep_cells(b, bin, direction, light, ways, sums, live, live, plane, row, column);

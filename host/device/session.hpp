@@ -35,8 +35,8 @@ class Session {
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt);
 
   const Device& device() const { return device_; }
-  /// Whether the device is Oclgrind 21.10, which has peculiarities of its own.
-  bool oclgrind() const { return device_.platform == "Oclgrind"; }
+  /// CLPV_ONE_MEMORY of kernels/prefetch.h; Oclgrind knows no prefetching.
+  bool one_memory() const { return device_.type == "cpu" && !oclgrind(); }
   cl::Context& context() { return context_; }
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }
@@ -120,6 +120,8 @@ class Session {
 
   void require_room(std::size_t bytes, const std::string& what) const;
   void fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from);
+
+  bool oclgrind() const { return device_.platform == "Oclgrind"; }
 
   std::optional<ProgramCache> cache_;
   std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key

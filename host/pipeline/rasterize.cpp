@@ -21,8 +21,7 @@ constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
 const ProgramSource kBin{"bin.cl", {}, {}};
 
 ProgramSource draw_program(const Session& session) {
-  const bool one_memory = session.device().type == "cpu" && !session.oclgrind();  // that knows no prefetching
-  return {"draw_tiles.cl", Literals().flag("CLPV_ONE_MEMORY", one_memory), {}};
+  return {"draw_tiles.cl", Literals().flag("CLPV_ONE_MEMORY", session.one_memory()), {}};
 }
 
 unsigned tile_count(const ClpvView& view) {
