@@ -35,8 +35,6 @@ class Session {
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt);
 
   const Device& device() const { return device_; }
-  /// CLPV_ONE_MEMORY of kernels/prefetch.h; Oclgrind knows no prefetching.
-  bool one_memory() const { return device_.type == "cpu" && !oclgrind(); }
   cl::Context& context() { return context_; }
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }

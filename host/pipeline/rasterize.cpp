@@ -18,11 +18,7 @@ constexpr std::size_t kItemsARun = CLPV_RUN / 8;  // a work-item sets eight tria
 constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
-const ProgramSource kBin{"bin.cl", {}, {}};
-
-ProgramSource draw_program(const Session& session) {
-  return {"draw_tiles.cl", Literals().flag("CLPV_ONE_MEMORY", session.one_memory()), {}};
-}
+const ProgramSource kBin{"bin.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
 
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
@@ -52,8 +48,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       sum_places_(session, kBin, "sum_places"),
       start_places_(session, kBin, "start_places"),
       bin_entries_(session, kBin, "bin_entries"),
-      draw_tiles_(session, draw_program(session), "draw_tiles"),
-      resolve_depth_(session, draw_program(session), "resolve_depth") {
+      draw_tiles_(session, kDraw, "draw_tiles"),
+      resolve_depth_(session, kDraw, "resolve_depth") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
   session_.reserve(runs_, scene.runs->bounds().size() * sizeof(cl_uint), "runs of triangles in sight");

@@ -55,13 +55,12 @@ bool within(const ClpvSweepShell& shell, int grid) {
                      [&](int first) { return first >= 0 && first + shell.side <= grid; });
 }
 
-ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_bins, bool one_memory) {
+ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_bins) {
   ProgramSource source{"sweep.cl", {}, {}};
   source.literals.integer("CLPV_GRID", options.grid)
       .integer("CLPV_PARTS", squared(parts))
       .flag("CLPV_BLOCKING", options.blocking)
-      .flag("CLPV_WHOLE_BINS", whole_bins)
-      .flag("CLPV_ONE_MEMORY", one_memory);
+      .flag("CLPV_WHOLE_BINS", whole_bins);
   add_format_literals(source.literals, options.format, whole_bins ? 8 : 1);
   return source;
 }
@@ -156,7 +155,7 @@ Sweeper::Passes Sweeper::make_passes(const std::vector<int>& parts) {
     const int coarser = c + 1 < parts.size() ? parts[c + 1] : 0;
     Pass pass{parts[c],
               session_.upload(sweep_direction_table(parts[c], coarser), "directions to sweep"),
-              Kernel(session_, sweep_program(options_, parts[c], whole_bins(), session_.one_memory()),
+              Kernel(session_, sweep_program(options_, parts[c], whole_bins()),
                      whole_bins() ? "sweep_bin" : "sweep_plane"),
               {},
               zeroed_buffer(session_, shell_bytes(options_, parts[c], c), "light for a finer cascade"),
