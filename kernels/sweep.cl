@@ -157,8 +157,8 @@ CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const Cl
   }
 }
 
-// Asks for a row of the next plane, of all that is read and written in it: the next row of memory is in another page every other
-// plane.
+// Asks for a row of the next plane, in all that is read and written there. Processors ask for lines ahead by themselves, but not
+// beyond a page of memory, and two planes of 32 x 32 halves fill one.
 CLPV_INLINE void clpv_ask_for_row(const int b, const ClpvSweepBin bin, CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways,
                                   CLPV_BUFFER_OUT sums, const int plane, const int row) {
   const int next = clamp(plane + bin.plane_sign, 0, CLPV_GRID - 1);
