@@ -33,6 +33,18 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was refused does not count";
 }
 
+TEST(Session, WhatWasEnqueuedIsDoneWhenItEnds) {
+  std::vector<cl::Event> events(8);
+  {
+    Session session(choose_device());
+    const Buffer buffer = session.buffer(64u << 20, "filled again and again");
+    for (cl::Event& event : events)
+      session.queue().enqueueFillBuffer(buffer.handle(), cl_uint{7}, 0, buffer.bytes(), nullptr, &event);
+  }
+  for (const cl::Event& event : events)
+    EXPECT_EQ(event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>(), CL_COMPLETE);
+}
+
 TEST(Session, MemoryIsGivenBackWhenABufferGoes) {
   Device device = choose_device();
   device.memory_bytes = 6u << 20;

@@ -51,6 +51,11 @@ enum class TransportKind {
   sweep,  ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its ways and gather
 };
 
+/// Whether its scheme is a FaceTransport.
+constexpr bool has_faces(TransportKind kind) {
+  return kind == TransportKind::sampled || kind == TransportKind::exact;
+}
+
 constexpr std::string_view name_of(TransportKind kind) {
   switch (kind) {
     case TransportKind::sampled:

@@ -62,12 +62,9 @@ void run(const Options& options, const Shared& shared) {
   const RenderOptions& settings = options.tune.suite.settings;
   if (settings.transport == TransportKind::sweep)
     throw Error(ExitCode::usage, "--transport sweep: it takes no steps to tune; allowed: all others");
-  for (const std::string& basis : options.tune.suite.bases) {
-    const Transport transport = make_transport(settings, *make_basis(basis));
-    if (settings.state == State::fluxes && !std::holds_alternative<FaceTransport>(transport.scheme))
-      throw Error(ExitCode::usage, "--state fluxes: transport '{}' has no faces; allowed: coefficients",
-                  name_of(transport.kind));
-  }
+  if (settings.state == State::fluxes && !has_faces(settings.transport))
+    throw Error(ExitCode::usage, "--state fluxes: transport '{}' has no faces; allowed: coefficients",
+                name_of(settings.transport));
   const auto cache = TuningCache::of_user();
   if (!cache) throw Error(ExitCode::run_time, "nowhere to keep it: neither XDG_CACHE_HOME nor HOME is set");
   Session session(choose_device(shared.device), ProgramCache::of_user());

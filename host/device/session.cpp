@@ -69,6 +69,16 @@ Session::Session(Device device, std::optional<ProgramCache> cache)
       timeline_(device_.profiling_valid),
       cache_(std::move(cache)) {}
 
+// An error leaves commands behind. PoCL's threads go on with them, and compile their kernels, while the process ends and what
+// they work with is torn down: one run of eight crashed after it had told its error.
+Session::~Session() {
+  try {
+    queue_.finish();
+  } catch (const cl::Error& error) {
+    spdlog::debug("the queue's end: {}", cl_error_name(error.err()));
+  }
+}
+
 std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
   std::string text = program_text(source);
   std::string key = ProgramCache::key(device_, source.options, text);

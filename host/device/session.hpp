@@ -33,6 +33,10 @@ class Session {
   /// `cache`: where compiled programs are looked for, and where store_programs() keeps them; none: always
   /// compiled.
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt);
+  /// Waits for what was enqueued.
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   const Device& device() const { return device_; }
   cl::Context& context() { return context_; }

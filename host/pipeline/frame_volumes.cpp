@@ -78,7 +78,7 @@ void require_memory(const Session& session, const RenderOptions& options, const 
               device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
 }
 
-/// Refuses what a sweep cannot do, and what the scene's triangles cannot.
+/// Refuses what a transport cannot do, and what the scene's triangles cannot.
 void require_compatible(const RenderOptions& options) {
   if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
     throw Error(ExitCode::usage,
@@ -89,15 +89,15 @@ void require_compatible(const RenderOptions& options) {
     throw Error(ExitCode::usage, "bounces: found '{}' with transport '{}', allowed: 1 (or transport 'sweep')",
                 name_of(options.bounces), name_of(options.transport));
   }
-  if (!sweeps(options)) return;
+  if (has_faces(options.transport)) return;
   if (options.state != State::coefficients) {
-    throw Error(ExitCode::usage, "state: found '{}' with transport 'sweep', allowed: coefficients",
-                name_of(options.state));
+    throw Error(ExitCode::usage, "state: found '{}' with transport '{}', allowed: coefficients",
+                name_of(options.state), name_of(options.transport));
   }
   if (options.lobe_time != LobeTime::host) {
     throw Error(ExitCode::usage,
-                "lobe-time: found '{}' with transport 'sweep', which has no lobes; allowed: host",
-                name_of(options.lobe_time));
+                "lobe-time: found '{}' with transport '{}', which has no lobes; allowed: host",
+                name_of(options.lobe_time), name_of(options.transport));
   }
 }
 
