@@ -61,6 +61,10 @@ TEST(HostileScenes, Models) {
           model("an extension that must be known",
                 model_with("/extensionsRequired", {"KHR_draco_mesh_compression"}),
                 {"/extensionsRequired/0", "KHR_draco_mesh_compression"}),
+          model("an extension that clears the screen",
+                model_with("/extensionsRequired", {"\x1b[2J\xc2\x9b"
+                                                   "0m"}),
+                {"'?[2J?0m'"}),
           model("a scene that is not there", model_with("/scene", 5), {"/scene", "found 5"}),
           model("a node of itself", model_with("/nodes/0/children", {0}), {"a cycle"}),
           model("a mesh below none", model_with("/nodes/0/mesh", -1), {"/nodes/0/mesh", "-1"}),

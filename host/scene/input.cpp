@@ -14,7 +14,7 @@ namespace clpv {
 namespace fs = std::filesystem;
 namespace {
 
-/// A URI as it may stand in a message: short, and without control characters.
+/// A URI as it may stand in a message: short, on one line.
 std::string shown(std::string_view text) {
   constexpr std::size_t kShown = 80;
   std::string out(text.substr(0, kShown));

@@ -23,7 +23,8 @@ enum class ExitCode {
 /// A failure told in the user's words: file, place, value found, value allowed; or what to do about it.
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  /// Control characters of the message, but for newline and tab, become '?'.
+  Error(ExitCode code, const std::string& message);
 
   template <typename... Args>
   Error(ExitCode code, fmt::format_string<Args...> format, Args&&... args)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Hostile inputs as rows of tables: the files that are made, the command that meets them, how it must end, and the words it
-// must say. What is said must not be a library's own words (what(), std::), and nothing may be left behind.
+// must say. What is said must not be a library's own words (what(), std::), nor move a terminal's cursor, and nothing may be left
+// behind.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/printable.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::test {
@@ -45,6 +47,7 @@ inline void expect_refused(const HostileInput& input) {
   for (const std::string& word : input.words) EXPECT_THAT(outcome.err, ::testing::HasSubstr(word));
   for (const char* foreign : {"basic_", "std::", "what()", "terminate", "[json.exception.type_error"})
     EXPECT_THAT(outcome.err, ::testing::Not(::testing::HasSubstr(foreign)));
+  EXPECT_EQ(outcome.err, printable(outcome.err)) << "moves the cursor";
   EXPECT_LT(outcome.err.size(), 4000u) << "a flood of words";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(
            folder.path(), std::filesystem::directory_options::skip_permission_denied)) {
