@@ -29,7 +29,9 @@ std::string sound_exr() {
 /// The sound image with bytes put over what follows that text, so many bytes after it.
 std::string exr_with(const std::string& after, std::size_t skip, const std::string& bytes) {
   std::string image = sound_exr();
-  image.replace(image.find(after) + after.size() + skip, bytes.size(), bytes);
+  const std::size_t at = image.find(after);
+  EXPECT_NE(at, std::string::npos) << after;
+  image.replace(at + after.size() + skip, bytes.size(), bytes);
   return image;
 }
 
@@ -64,12 +66,23 @@ TEST(HostileFiles, Images) {
           image("a PNG by another name", png, {"named as openexr", "png"}),
           image("an EXR by another name", sound, {"named as png", "openexr"}, "a.png"),
           image("a name of another kind", png, {"'.tif'", ".exr, .png and .hdr"}, "a.tif"),
-          image("the first bytes alone", sound.substr(0, 4), {"cannot be read"}),
-          image("half a header", sound.substr(0, 60), {"cannot be read"}),
+          image("the first bytes alone", sound.substr(0, 4), {"header", "the 0 left in the file"}),
+          image("half a header", sound.substr(0, 60), {"part 0", "does not end"}),
           image("half an image", sound.substr(0, sound.size() - 40), {"damaged or truncated"}),
           image("a window without end", exr_with(type, 4, window(2147483647, 2147483647)), {}),
           image("a window wide as the world", exr_with(type, 4, window(99999, 5)), {"100000 x 6", "16384"}),
-          image("a window inside out", exr_with(type, 4, window(-5, -5)), {"cannot be read"}),
+          image("a window inside out", exr_with(type, 4, window(-5, -5)), {"-4 x -4", "1 to 16384"}),
+          image("a text of 2 GiB", exr_with(std::string("capDate\0string\0", 15), 0, "\xff\xff\xff\x7f"),
+                {"part 0, attribute 'capDate' (string)", "2147483647 bytes", "left in the file"}),
+          image("a text of 2 GiB, of a type of no name",
+                exr_with(std::string("capDate\0", 8), 0, std::string("strinx\0\xff\xff\xff\x7f", 11)),
+                {"'capDate' (strinx)", "2147483647 bytes"}),
+          image("a type that clears the screen",
+                exr_with(std::string("capDate\0", 8), 0, std::string("\x1b[2J!!\0\xff\xff\xff\x7f", 11)),
+                {"'capDate' (?[2J!!)"}),
+          image("a number of 2 GiB",
+                exr_with(std::string("pixelAspectRatio\0float\0", 23), 0, "\xff\xff\xff\x7f"),
+                {"'pixelAspectRatio' (float)"}),
           image("a compression of no name",
                 exr_with(std::string("compression\0compression\0", 24), 4, "\x7f"), {"cannot be read"}),
           image("a version of the future",
@@ -97,7 +110,7 @@ TEST(HostileFiles, Images) {
            {"'moon'"},
            {{"a.exr", sound}}},
       },
-      25);
+      29);
 }
 
 HostileInput centres(const std::string& name, const std::string& text, std::vector<std::string> words,

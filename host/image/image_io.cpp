@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "image/exr_header.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
 
@@ -23,7 +24,7 @@ constexpr std::string_view kMetadataPrefix = "clpv:";
 constexpr const char* kFixedDate = "1970:01:01 00:00:00";
 
 // A tile may be larger than its image, but is decoded whole: one of 65535 a side would take 20 s and its memory.
-constexpr int kLargestTile = 1024;
+constexpr std::int64_t kLargestTile = 1024;
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
@@ -80,25 +81,40 @@ std::string checked_format(const fs::path& path, const std::vector<unsigned char
   return named;
 }
 
-void check_size(const fs::path& path, const OIIO::ImageSpec& spec, const ImageLimits& limits) {
-  if (spec.width < 1 || spec.height < 1 || spec.width > limits.side || spec.height > limits.side) {
+/// Of an image and of what is decoded of it at once, as the file says and as OpenImageIO does.
+void check_size(const fs::path& path, const ImageExtent& found, const ImageLimits& limits) {
+  if (found.width < 1 || found.height < 1 || found.width > limits.side || found.height > limits.side) {
     refuse(path,
-           fmt::format("{} x {} pixels; allowed are 1 to {} a side", spec.width, spec.height, limits.side));
+           fmt::format("{} x {} pixels; allowed are 1 to {} a side", found.width, found.height, limits.side));
   }
-  if (spec.nchannels < 1 || spec.nchannels > limits.channels) {
-    refuse(path, fmt::format("{} channels; allowed are 1 to {}", spec.nchannels, limits.channels));
+  if (found.channels < 1 || found.channels > limits.channels) {
+    refuse(path, fmt::format("{} channels; allowed are 1 to {}", found.channels, limits.channels));
   }
-  const int tile_side = std::max({spec.width, spec.height, kLargestTile});
-  if (spec.tile_width > tile_side || spec.tile_height > tile_side) {
+  const std::int64_t tile_side = std::max({found.width, found.height, kLargestTile});
+  if (found.tiled && (found.chunk_width > tile_side || found.chunk_height > tile_side)) {
     refuse(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed are {} a side",
-                             spec.tile_width, spec.tile_height, spec.width, spec.height, tile_side));
+                             found.chunk_width, found.chunk_height, found.width, found.height, tile_side));
   }
-  if (spec.depth > 1 || spec.deep) refuse(path, "a volume or deep image; allowed are flat ones");
-  const std::size_t bytes = sizeof(float) * spec.width * spec.height * spec.nchannels;
-  if (bytes > limits.pixel_bytes) {
-    refuse(path, fmt::format("{} x {} pixels of {} channels take {} MiB; allowed are {}", spec.width,
-                             spec.height, spec.nchannels, bytes >> 20, limits.pixel_bytes >> 20));
-  }
+  if (found.deep) refuse(path, "a volume or deep image; allowed are flat ones");
+  const auto check_bytes = [&](const char* what, std::int64_t width, std::int64_t height) {
+    const auto bytes = static_cast<std::size_t>(width * height * found.channels) * sizeof(float);
+    if (bytes <= limits.pixel_bytes) return;
+    refuse(path, fmt::format("{}{} x {} pixels of {} channels take {} MiB; allowed are {}", what, width,
+                             height, found.channels, bytes >> 20, limits.pixel_bytes >> 20));
+  };
+  check_bytes("", found.width, found.height);
+  check_bytes(found.tiled ? "tiles of " : "chunks of ", found.chunk_width, found.chunk_height);
+}
+
+ImageExtent extent_of(const OIIO::ImageSpec& spec) {
+  const bool tiled = spec.tile_width > 0;
+  return {.width = spec.width,
+          .height = spec.height,
+          .chunk_width = tiled ? spec.tile_width : spec.width,
+          .chunk_height = tiled ? spec.tile_height : 1,
+          .channels = spec.nchannels,
+          .tiled = tiled,
+          .deep = spec.deep || spec.depth > 1};
 }
 
 std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
@@ -131,12 +147,13 @@ struct OpenImage {
         input(OIIO::ImageInput::create(format)) {
     if (!input)
       refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
+    if (format == "openexr") check_size(path, read_exr_header(path, bytes), limits);
     input->set_ioproxy(&memory);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open(path.string(), spec, config))
       refuse(path, "cannot be read: " + first_line(input->geterror()));
-    check_size(path, spec, limits);
+    check_size(path, extent_of(spec), limits);
   }
 };
 

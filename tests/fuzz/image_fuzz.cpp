@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
-// An image as clpv compare reads it (EXR, PNG, HDR, by content), held against itself and against its difference image.
+// An image as clpv compare reads it (EXR, PNG, HDR, by content), held against itself and against its difference image. What
+// the walk through an EXR's headers saw must be what OpenEXR read.
+#include <span>
+
 #include "image/compare.hpp"
+#include "image/exr_header.hpp"
 #include "image/image_io.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
@@ -16,14 +20,24 @@ const char* name_for(std::string_view bytes) {
   return "image.exr";
 }
 
+void hold_against_header(const clpv::Image& image, const char* name, std::span<const unsigned char> bytes) {
+  const clpv::ImageExtent extent = clpv::read_exr_header(name, bytes);
+  if (extent.width != image.width || extent.height != image.height ||
+      extent.channels != static_cast<std::int64_t>(image.channels.size())) {
+    std::abort();
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clpv;
   const std::string_view bytes = fuzz::text_of(data, size);
-  const auto path = fuzz::folder().write(name_for(bytes), bytes);
+  const char* const name = name_for(bytes);
+  const auto path = fuzz::folder().write(name, bytes);
   fuzz::read_or_refuse({ExitCode::bad_input}, [&] {
     const Image image = read_image(path, kLimits);
+    if (path.extension() == ".exr") hold_against_header(image, name, {data, size});
     for (const std::string& layer : layers(image)) {
       fuzz::read_or_refuse({ExitCode::bad_input}, [&] {
         const Image one = extract_layer(image, layer, "fuzzed");

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "image/exr_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "support/refuse.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;  // of the version
+constexpr std::size_t kFlagsAt = 4;
+constexpr std::size_t kNameBytes = 255;
+constexpr std::int64_t kOffsetBytes = 8;
+
+struct FixedSize {
+  std::string_view type;
+  std::size_t bytes;
+};
+
+/// OpenEXR reads these whatever size the file gives them: another would have it go on from another place than this walk.
+constexpr std::array<FixedSize, 24> kFixedSizes = {{
+    {"box2f", 16},
+    {"box2i", 16},
+    {"chromaticities", 32},
+    {"compression", 1},
+    {"deepImageState", 1},
+    {"double", 8},
+    {"envmap", 1},
+    {"float", 4},
+    {"int", 4},
+    {"keycode", 28},
+    {"lineOrder", 1},
+    {"m33d", 72},
+    {"m33f", 36},
+    {"m44d", 128},
+    {"m44f", 64},
+    {"rational", 8},
+    {"tiledesc", 9},
+    {"timecode", 8},
+    {"v2d", 16},
+    {"v2f", 8},
+    {"v2i", 8},
+    {"v3d", 24},
+    {"v3f", 12},
+    {"v3i", 12},
+}};
+
+/// Rows of a chunk by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+constexpr std::array<std::int64_t, 10> kChunkRows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+
+/// Of four bytes, the least first.
+std::int32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
+  return static_cast<std::int32_t>(bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 |
+                                   std::uint32_t{bytes[at + 3]} << 24);
+}
+
+/// The bytes from some place on; whoever takes more than there are is refused.
+class Cursor {
+ public:
+  Cursor(std::string file, std::span<const unsigned char> bytes) : file_(std::move(file)), left_(bytes) {}
+
+  std::size_t left() const { return left_.size(); }
+  const std::string& file() const { return file_; }
+
+  std::span<const unsigned char> take(std::size_t count, std::string_view place) {
+    if (count > left_.size()) {
+      refuse(file_, place, fmt::format("{} bytes", count),
+             fmt::format("the {} left in the file", left_.size()));
+    }
+    const auto taken = left_.first(count);
+    left_ = left_.subspan(count);
+    return taken;
+  }
+
+  std::uint32_t number(std::string_view place) {
+    return static_cast<std::uint32_t>(number_at(take(4, place), 0));
+  }
+
+  /// Text that ends with a NUL, which is taken too.
+  std::string name(std::string_view place) {
+    const auto within = left_.first(std::min(left_.size(), kNameBytes + 1));
+    const auto end = std::ranges::find(within, 0);
+    if (end == within.end()) {
+      refuse(file_, place, fmt::format("a name that does not end within {} bytes", within.size()),
+             fmt::format("{}", kNameBytes));
+    }
+    const auto taken = take(static_cast<std::size_t>(end - within.begin()) + 1, place);
+    return {taken.begin(), taken.end() - 1};
+  }
+
+ private:
+  std::string file_;
+  std::span<const unsigned char> left_;
+};
+
+/// One part, while its header is read.
+struct Part : ImageExtent {
+  std::int64_t rows = 1;                         ///< of a chunk, where it has no tiles
+  std::int64_t tile_width = 0, tile_height = 0;  ///< 0: no such attribute
+  std::int64_t chunks = 0;                       ///< that it says it has
+  std::string type;
+  bool empty = true;
+};
+
+/// A list of names, each with 16 bytes of kind and sampling, that an empty name ends: as long as the attribute says.
+std::int64_t count_channels(Cursor list, std::string_view place) {
+  constexpr std::size_t kChannelBytes = 16;
+  std::int64_t count = 0;
+  for (; !list.name(place).empty(); ++count) list.take(kChannelBytes, place);
+  if (list.left() != 0) {
+    refuse(list.file(), place, fmt::format("{} bytes after the last channel", list.left()), "none");
+  }
+  return count;
+}
+
+/// Its size stands in its first two numbers too, and those OpenEXR believes.
+void check_preview(const Cursor& file, std::string_view place, std::span<const unsigned char> bytes) {
+  constexpr std::size_t kPixelsAt = 8, kPixelBytes = 4;
+  if (bytes.size() < kPixelsAt) refuse(file.file(), place, "no size", "two numbers, then pixels");
+  const std::int64_t width = number_at(bytes, 0), height = number_at(bytes, 4);
+  const std::size_t pixels = (bytes.size() - kPixelsAt) / kPixelBytes;
+  const bool whole = bytes.size() == kPixelsAt + kPixelBytes * pixels;
+  if (!whole || width < 0 || height < 0 || width * height != static_cast<std::int64_t>(pixels)) {
+    refuse(file.file(), place,
+           fmt::format("{} x {} pixels in {} bytes", width, height, bytes.size() - kPixelsAt),
+           "4 bytes each");
+  }
+}
+
+/// Texts, each after its length.
+void check_texts(Cursor list, std::string_view place) {
+  while (list.left() > 0) list.take(list.number(place), place);
+}
+
+/// Refuses a value that is not as long as its type, or as what it holds says.
+void check_value(const Cursor& file, std::string_view place, std::string_view type,
+                 std::span<const unsigned char> bytes) {
+  const auto fixed = std::ranges::find(kFixedSizes, type, &FixedSize::type);
+  if (fixed != kFixedSizes.end() && fixed->bytes != bytes.size()) {
+    refuse(file.file(), place, fmt::format("{} bytes", bytes.size()), fmt::format("{}", fixed->bytes));
+  }
+  if (type == "preview") check_preview(file, place, bytes);
+  if (type == "stringvector") check_texts(Cursor(file.file(), bytes), place);
+  if (type == "floatvector" && bytes.size() % 4 != 0) {
+    refuse(file.file(), place, fmt::format("{} bytes", bytes.size()), "4 a number");
+  }
+}
+
+/// Keeps what memory is taken by; the last of a name counts, as for OpenEXR.
+void keep_value(Part& part, const Cursor& file, std::string_view place, std::string_view name,
+                std::string_view type, std::span<const unsigned char> bytes) {
+  if (name == "dataWindow" && type == "box2i") {
+    part.width = std::int64_t{number_at(bytes, 8)} - number_at(bytes, 0) + 1;
+    part.height = std::int64_t{number_at(bytes, 12)} - number_at(bytes, 4) + 1;
+  } else if (name == "tiles" && type == "tiledesc") {
+    part.tile_width = static_cast<std::uint32_t>(number_at(bytes, 0));
+    part.tile_height = static_cast<std::uint32_t>(number_at(bytes, 4));
+  } else if (name == "compression" && type == "compression") {
+    part.rows = kChunkRows[std::min<std::size_t>(bytes[0], kChunkRows.size() - 1)];
+  } else if (name == "chunkCount" && type == "int") {
+    part.chunks = number_at(bytes, 0);
+  } else if (name == "type" && type == "string") {
+    part.type.assign(bytes.begin(), bytes.end());
+  }
+  if (type == "chlist") {
+    const std::int64_t channels = count_channels(Cursor(file.file(), bytes), place);
+    if (name == "channels") part.channels = channels;
+  }
+}
+
+/// One header: attributes, each a name, its type's name, a size and so many bytes, that an empty name ends.
+Part read_part(Cursor& file, std::size_t index) {
+  Part part;
+  for (;; part.empty = false) {
+    const std::string before = fmt::format("part {}", index);
+    const std::string name = file.name(before);
+    if (name.empty()) return part;
+    const std::string type = file.name(fmt::format("{}, attribute '{}'", before, name));
+    const std::string place = fmt::format("{}, attribute '{}' ({})", before, name, type);
+    const auto bytes = file.take(file.number(place), place);
+    check_value(file, place, type, bytes);
+    keep_value(part, file, place, name, type, bytes);
+  }
+}
+
+/// The least number of chunks that it has: finer levels of tiles come on top.
+std::int64_t least_chunks(const Part& part) {
+  const auto quotient_up = [](std::int64_t count, std::int64_t by) {
+    return by > 0 && count > 0 ? (count + by - 1) / by : 0;
+  };
+  const std::int64_t rows = quotient_up(part.height, part.chunk_height);
+  if (!part.tiled) return std::max(part.chunks, rows);
+  constexpr std::int64_t kMany = 1ll << 31;  // of each: their product fits
+  const std::int64_t columns = quotient_up(part.width, part.chunk_width);
+  return std::max(part.chunks, std::min(rows, kMany) * std::min(columns, kMany));
+}
+
+/// What of a part is decoded at once. A file of several parts, or deep ones, tells by their types what they are.
+void settle_chunks(Part& part, std::uint32_t flags) {
+  const bool typed = (flags & (kDeepFlag | kMultiPartFlag)) != 0;
+  part.deep = typed && part.type.starts_with("deep");
+  part.tiled = typed ? part.type.ends_with("tile") || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
+  part.chunk_width = part.tiled ? part.tile_width : part.width;
+  part.chunk_height = part.tiled ? part.tile_height : part.rows;
+}
+
+}  // namespace
+
+ImageExtent read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes) {
+  Cursor file(path.string(), bytes);
+  file.take(kFlagsAt, "the header");
+  const std::uint32_t flags = file.number("the header");
+  const bool several = (flags & kMultiPartFlag) != 0;
+  // A table has 8 bytes a chunk; those of all parts come after the last header.
+  const auto check_tables = [&](const std::string& place, std::int64_t chunks) {
+    const std::int64_t most = static_cast<std::int64_t>(file.left()) / kOffsetBytes;
+    if (chunks <= most) return;
+    refuse(file.file(), place, fmt::format("{} chunks", chunks),
+           fmt::format("{}, as the rest of the file has places for", most));
+  };
+  ImageExtent first;
+  std::int64_t chunks = 0;
+  for (std::size_t index = 0;; ++index) {
+    Part part = read_part(file, index);
+    if (several && part.empty) break;  // which ends their list
+    settle_chunks(part, flags);
+    if (index == 0) first = part;
+    check_tables(fmt::format("part {}", index), least_chunks(part));
+    chunks += least_chunks(part);
+    if (!several) break;
+  }
+  check_tables("all parts", chunks);
+  return first;
+}
+
+}  // namespace clpv

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+// The walk through an EXR's headers, against files that OpenEXR wrote and against headers put together here, byte by byte.
+#include "image/exr_header.hpp"
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/image_io.hpp"
+#include "support/error.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace clpv {
+namespace {
+
+using namespace std::string_literals;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+ImageExtent walked(const std::string& bytes) {
+  return read_exr_header("a.exr",
+                         std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+std::string refusal(const std::string& bytes) {
+  try {
+    walked(bytes);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    return error.what();
+  }
+  return "not refused";
+}
+
+std::string number(std::uint32_t value) {
+  return test::bytes_of<std::uint32_t>({value});
+}
+
+std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
+  return name + '\0' + type + '\0' + number(static_cast<std::uint32_t>(value.size())) + value;
+}
+
+std::string window(std::uint32_t x, std::uint32_t y) {
+  return attribute("dataWindow", "box2i", test::bytes_of<std::uint32_t>({0, 0, x - 1, y - 1}));
+}
+
+std::string channel(const std::string& name) {
+  return name + '\0' + test::bytes_of<std::uint32_t>({2, 0, 1, 1});
+}
+
+enum Flags : std::uint32_t { scan_lines = 0, tiled = 0x200, deep = 0x800, several = 0x1000 };
+
+/// Headers, each with the NUL that ends it, and room for what follows them.
+std::string file(Flags flags, const std::string& headers, std::size_t room = 8) {
+  return "\x76\x2f\x31\x01" + number(2 | flags) + headers + std::string(room, '\0');
+}
+
+/// One part with these attributes in it.
+std::string one(const std::string& attributes, std::size_t room = 8) {
+  return file(scan_lines, attributes + '\0', room);
+}
+
+TEST(ExrHeader, IsWhatOpenExrReads) {
+  int images = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image")) {
+    const std::string bytes = test::read_file(entry.path());
+    if (!bytes.starts_with("\x76\x2f\x31\x01")) continue;
+    const test::TemporaryFolder folder;
+    const Image image = read_image(folder.write("a.exr", bytes));
+    const ImageExtent extent = walked(bytes);
+    EXPECT_EQ(extent.width, image.width) << entry.path();
+    EXPECT_EQ(extent.height, image.height) << entry.path();
+    EXPECT_EQ(extent.channels, static_cast<int>(image.channels.size())) << entry.path();
+    EXPECT_EQ(extent.tiled, entry.path().string().ends_with("_tile")) << entry.path();
+    EXPECT_FALSE(extent.deep);
+    ++images;
+  }
+  EXPECT_GE(images, 10);
+}
+
+TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
+  const test::TemporaryFolder folder;
+  std::vector<OIIO::ImageSpec> specs = {OIIO::ImageSpec(5, 3, 1, OIIO::TypeFloat),
+                                        OIIO::ImageSpec(40, 70, 3, OIIO::TypeHalf)};
+  for (OIIO::ImageSpec& spec : specs)
+    spec.full_width = 40, spec.full_height = 70;  // one display window for all
+  specs[0].attribute("oiio:subimagename", "first");
+  specs[1].attribute("oiio:subimagename", "second");
+  const std::string path = (folder / "a.exr").string();
+  const auto output = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(output->open(path, 2, specs.data())) << output->geterror();
+  const std::vector<float> pixels(40 * 70 * 3, 0.5f);
+  ASSERT_TRUE(output->write_image(OIIO::TypeFloat, pixels.data()));
+  ASSERT_TRUE(output->open(path, specs[1], OIIO::ImageOutput::AppendSubimage));
+  ASSERT_TRUE(output->write_image(OIIO::TypeFloat, pixels.data()));
+  ASSERT_TRUE(output->close());
+
+  std::string bytes = test::read_file(path);
+  const ImageExtent extent = walked(bytes);
+  EXPECT_EQ(extent.width, 5);
+  EXPECT_EQ(extent.height, 3);
+  EXPECT_EQ(extent.channels, 1);
+  EXPECT_EQ(read_image(path).width, 5);
+  const std::size_t second = bytes.rfind("compression\0compression\0"s);
+  bytes.replace(second + 24, 4, number(1u << 30));
+  EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
+}
+
+TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
+  const std::string size = window(64, 64),
+                    tiles = attribute("tiles", "tiledesc", number(16) + number(8) + '\0');
+  const std::string deep_type = attribute("type", "string", "deepscanline");
+  EXPECT_FALSE(walked(one(size + tiles, 512)).tiled);
+  const ImageExtent extent = walked(file(tiled, size + tiles + '\0', 256));
+  EXPECT_TRUE(extent.tiled);
+  EXPECT_EQ(extent.chunk_width, 16);
+  EXPECT_EQ(extent.chunk_height, 8);
+  EXPECT_TRUE(walked(file(deep, size + deep_type + '\0', 512)).deep);
+  EXPECT_FALSE(walked(one(size + deep_type, 512)).deep);
+  const std::string tiled_type = attribute("type", "string", "tiledimage");
+  EXPECT_TRUE(walked(file(several, size + tiles + tiled_type + '\0' + '\0', 256)).tiled);
+}
+
+TEST(ExrHeader, TextsAndUnknownTypesAreNoLongerThanTheFile) {
+  for (const std::string type : {"string", "bytes", "idmanifest", "of no name", "floatvector"}) {
+    const std::string found = refusal(one("a\0"s + type + '\0' + number(1u << 30) + "text", 0));
+    EXPECT_THAT(found, AllOf(HasSubstr("a.exr: part 0, attribute 'a' (" + type + ")"),
+                             HasSubstr("1073741824"), HasSubstr("5 left in the file")));
+  }
+  EXPECT_THAT(refusal(one("a\0string\0"s + number(0xffffffffu))), HasSubstr("4294967295 bytes"));
+  EXPECT_EQ(walked(one(attribute("a", "string", ""))).width, 0);
+}
+
+TEST(ExrHeader, ValuesHaveTheSizeOfTheirTypes) {
+  // OpenEXR would read past a shorter one, and would take the rest of a longer one for attributes.
+  for (const std::string type : {"box2f",
+                                 "box2i",
+                                 "chromaticities",
+                                 "compression",
+                                 "deepImageState",
+                                 "double",
+                                 "envmap",
+                                 "float",
+                                 "int",
+                                 "keycode",
+                                 "lineOrder",
+                                 "m33d",
+                                 "m33f",
+                                 "m44d",
+                                 "m44f",
+                                 "rational",
+                                 "tiledesc",
+                                 "timecode",
+                                 "v2d",
+                                 "v2f",
+                                 "v2i",
+                                 "v3d",
+                                 "v3f",
+                                 "v3i"}) {
+    EXPECT_THAT(refusal(one(attribute("a", type, ""))), HasSubstr("'a' (" + type + "): found 0 bytes"));
+    EXPECT_THAT(refusal(one(attribute("a", type, std::string(200, '\0')))), HasSubstr("found 200 bytes"));
+  }
+  EXPECT_THAT(refusal(one(attribute("a", "floatvector", "12345"))), HasSubstr("4 a number"));
+}
+
+TEST(ExrHeader, ValuesHaveTheSizeThatTheySay) {
+  const auto preview = [](std::uint32_t width, std::uint32_t height, std::size_t bytes) {
+    return one(attribute("preview", "preview", number(width) + number(height) + std::string(bytes, 'x')));
+  };
+  EXPECT_EQ(refusal(preview(2, 3, 24)), "not refused");
+  for (const std::string& bytes :
+       {preview(2, 3, 23), preview(2, 3, 28), preview(40000, 40000, 24), preview(0xffffffffu, 0xffffffffu, 4),
+        preview(0x7fffffff, 0x7fffffff, 4)}) {
+    EXPECT_THAT(refusal(bytes), HasSubstr("pixels in"));
+  }
+  EXPECT_THAT(refusal(one(attribute("preview", "preview", "1234567"))), HasSubstr("no size"));
+  const auto texts = [](const std::string& value) { return one(attribute("a", "stringvector", value)); };
+  EXPECT_EQ(refusal(texts(number(1) + "a" + number(0) + number(2) + "bc")), "not refused");
+  EXPECT_THAT(refusal(texts(number(1) + "a" + number(9) + "bc")), HasSubstr("found 9 bytes"));
+  EXPECT_THAT(refusal(texts(number(1) + "ab")), HasSubstr("found 4 bytes"));
+}
+
+TEST(ExrHeader, ChannelsAreCountedAndEndWhereTheySay) {
+  const auto channels = [](const std::string& list) { return one(attribute("channels", "chlist", list)); };
+  EXPECT_EQ(walked(channels(channel("B") + channel("G") + '\0')).channels, 2);
+  EXPECT_EQ(walked(channels("\0"s)).channels, 0);
+  EXPECT_THAT(refusal(channels(channel("B"))), HasSubstr("does not end within 0 bytes"));
+  EXPECT_THAT(refusal(channels(channel("B") + '\0' + "more")), HasSubstr("4 bytes after the last channel"));
+  EXPECT_THAT(refusal(channels("B\0"s + "123")), HasSubstr("found 16 bytes"));
+  EXPECT_THAT(refusal(one(attribute(std::string(256, 'n'), "int", "1234"))),
+              HasSubstr("does not end within 256 bytes"));
+}
+
+TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
+  const auto compressed = [](char kind) {
+    return attribute("compression", "compression", std::string(1, kind));
+  };
+  // 1000 rows: one by one, by 16 (ZIP), by 256 (DWAB), each with 8 bytes in the table.
+  for (const auto& [kind, chunks] : {std::pair{'\0', 1000}, {'\3', 63}, {'\11', 4}, {'\177', 4}}) {
+    const std::string attributes = window(5, 1000) + compressed(kind);
+    EXPECT_EQ(refusal(one(attributes, 8 * chunks)), "not refused") << chunks;
+    EXPECT_THAT(refusal(one(attributes, 8 * chunks - 1)),
+                HasSubstr(fmt::format("part 0: found {} chunks", chunks)));
+  }
+  const auto tiles = [](std::uint32_t width, std::uint32_t height) {
+    return window(16384, 16384) + attribute("tiles", "tiledesc", number(width) + number(height) + '\0');
+  };
+  EXPECT_THAT(refusal(file(tiled, tiles(1, 1) + '\0')), HasSubstr("found 268435456 chunks"));
+  EXPECT_EQ(refusal(file(tiled, tiles(16384, 8192) + '\0', 16)), "not refused");
+  EXPECT_EQ(refusal(file(tiled, tiles(0, 0) + '\0', 0)), "not refused");  // which OpenEXR does
+  EXPECT_THAT(refusal(one(attribute("chunkCount", "int", number(1u << 30)))), HasSubstr("1073741824 chunks"));
+  const std::string part = window(4, 4) + '\0';  // 4 chunks, and as many
+  EXPECT_EQ(refusal(file(several, part + part + '\0', 64)), "not refused");
+  EXPECT_THAT(refusal(file(several, part + part + '\0', 8)), HasSubstr("part 1: found 4 chunks"));
+  EXPECT_THAT(refusal(file(several, part + part + '\0', 40)),
+              HasSubstr("all parts: found 8 chunks; allowed: 5,"));
+}
+
+TEST(ExrHeader, WindowsAreTakenAsTheyAre) {
+  EXPECT_EQ(walked(one(window(0, 0))).width, 0);
+  const auto spanning = [](std::int32_t least, std::int32_t most) {
+    return one(attribute("dataWindow", "box2i", test::bytes_of<std::int32_t>({least, 0, most, 0})));
+  };
+  EXPECT_EQ(walked(spanning(-2147483647 - 1, 2147483647)).width, 1ll << 32);
+  EXPECT_EQ(walked(spanning(7, 2)).width, -4);
+}
+
+TEST(ExrHeader, AFileMayEndAnywhere) {
+  const std::string whole = one(window(4, 4) + attribute("channels", "chlist", channel("Y") + '\0'), 0);
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    EXPECT_THAT(refusal(whole.substr(0, length)), AllOf(HasSubstr("a.exr"), HasSubstr("found"))) << length;
+  }
+}
+
+}  // namespace
+}  // namespace clpv
