@@ -13,7 +13,7 @@ struct ImageExtent {
   std::int64_t width = 0, height = 0;  ///< [pixels]; of the data window
   std::int64_t chunk_width = 0,
                chunk_height = 0;  ///< [pixels]; of what is decoded at once: a tile, or some rows
-  std::int64_t channels = 0;
+  std::int64_t channels = 0;      ///< at most: of those of one name, one counts
   bool tiled = false;
   bool deep = false;  ///< or a volume
 };
