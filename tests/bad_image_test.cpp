@@ -71,6 +71,14 @@ TEST_F(BadImageTest, ACorruptPng) {
   EXPECT_THAT(refused(), AllOf(HasSubstr("/images/0"), HasSubstr("does not decode")));
 }
 
+TEST_F(BadImageTest, APngWithATextOf2GiB) {
+  std::string png = decode_base64(kPngRgba2x2);
+  png.insert(33, "\x7f\xff\xff\xffzTXtComment");
+  folder.write("image.png", png);
+  wear("image.png");
+  EXPECT_THAT(refused(), AllOf(HasSubstr("/images/0"), HasSubstr("truncated")));
+}
+
 TEST_F(BadImageTest, ATextureWithoutASource) {
   wear("image.png");
   model.document["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};

@@ -56,7 +56,8 @@ TEST(HostileFiles, Images) {
   std::string no_number = sound;
   Image nan = sample(8, 6, {"R", "G", "B", "A"});
   nan.pixels[5] = std::numeric_limits<float>::quiet_NaN();
-  std::string huge_png = png, broken_png = png;
+  std::string huge_png = png, broken_png = png, long_png = png;
+  long_png.insert(33, "\x7f\xff\xff\xfftEXtComment");
   huge_png.replace(16, 4, std::string("\0\1\0\0", 4));
   for (std::size_t i = 43; i < 52; ++i) broken_png[i] = '\x55';
   expect_all_refused(
@@ -95,7 +96,8 @@ TEST(HostileFiles, Images) {
           image("another's size", exr(sample(9, 6, {"R", "G", "B", "A"})), {"9 x 6", "8 x 6"}),
           image("other channels", exr(sample(8, 6, {"Z"})), {}),
           image("a value of no number", exr(nan), {"nan"}),
-          image("a PNG whose header was changed", huge_png, {"cannot be read"}, "a.png"),
+          image("a PNG whose header was changed", huge_png, {"65536 x 2", "1 to 16384"}, "a.png"),
+          image("a PNG with a text of 2 GiB", long_png, {"damaged or truncated"}, "a.png"),
           image("a PNG that does not decode", broken_png, {"damaged"}, "a.png"),
           image("half a PNG", png.substr(0, 40), {}, "a.png"),
           image("an HDR of its first line", "#?RADIANCE\n", {}, "a.hdr"),
@@ -110,7 +112,7 @@ TEST(HostileFiles, Images) {
            {"'moon'"},
            {{"a.exr", sound}}},
       },
-      29);
+      30);
 }
 
 HostileInput centres(const std::string& name, const std::string& text, std::vector<std::string> words,

@@ -8,8 +8,10 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include "image/exr_header.hpp"
+#include "image/image_header.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
 
@@ -132,23 +134,34 @@ std::string first_line(const std::string& message) {
   return message.substr(0, message.find('\n'));
 }
 
+/// What a decoder would take memory by, looked at before one does, and put right: a PNG is left without its packed texts.
+void check_before_decoding(const fs::path& path, const std::string& format, std::vector<unsigned char>& bytes,
+                           const ImageLimits& limits) {
+  if (format == "openexr") check_size(path, read_exr_header(path, bytes), limits);
+  if (format != "png") return;
+  const auto header = read_image_header(bytes);
+  if (!header || !header->complete) refuse(path, "damaged or truncated: a PNG's chunks do not end within it");
+  check_size(path, {.width = header->width, .height = header->height, .channels = 1}, limits);
+  bytes = bare_png(bytes);
+}
+
 /// A file that was looked at, down to its size, and whose pixels can be read.
 struct OpenImage {
   std::vector<unsigned char> bytes;
   std::string format;
-  OIIO::Filesystem::IOMemReader memory;
+  std::optional<OIIO::Filesystem::IOMemReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
 
   OpenImage(const fs::path& path, const ImageLimits& limits)
       : bytes(read_bytes(path, limits)),
         format(checked_format(path, bytes)),
-        memory(bytes.data(), bytes.size()),
         input(OIIO::ImageInput::create(format)) {
     if (!input)
       refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
-    if (format == "openexr") check_size(path, read_exr_header(path, bytes), limits);
-    input->set_ioproxy(&memory);
+    check_before_decoding(path, format, bytes, limits);
+    memory.emplace(bytes.data(), bytes.size());
+    input->set_ioproxy(&*memory);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open(path.string(), spec, config))

@@ -11,8 +11,8 @@
 #include <optional>
 #include <thread>
 
+#include "image/image_header.hpp"
 #include "scene/bounds.hpp"
-#include "scene/image_header.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -91,8 +91,11 @@ std::vector<std::uint8_t> decode(const GltfDocument& document, const Encoded& en
     refuse(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, why),
            "a readable PNG or JPEG image");
   };
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(encoded.bytes.data()), encoded.bytes.size());
-  const char* name = encoded.header.format == ImageFormat::png ? "memory.png" : "memory.jpg";
+  const bool png = encoded.header.format == ImageFormat::png;
+  const Bytes bare = png ? bare_png(encoded.bytes) : Bytes();
+  const std::span<const std::uint8_t> bytes = png ? bare : encoded.bytes;
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  const char* name = png ? "memory.png" : "memory.jpg";
   OIIO::ImageSpec wishes;
   wishes["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not times alpha
   OIIO::Filesystem::IOProxy* proxy = &memory;

@@ -2,7 +2,7 @@
 // A texture: bytes of a buffer, which say themselves whether they are a PNG or a JPEG.
 #include <span>
 
-#include "scene/image_header.hpp"
+#include "image/image_header.hpp"
 #include "scene/texture_image.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -2,10 +2,11 @@
 // Decoders allocate by the header's size before a caller is asked (libjpeg for progressive images,
 // OpenImageIO for interlaced ones), so the size is read here first. PNG: ISO 15948, section 11.2.2. JPEG: ITU
 // T.81, annex B.
-#include "scene/image_header.hpp"
+#include "image/image_header.hpp"
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace clpv {
 namespace {
@@ -26,14 +27,30 @@ bool contains(Data bytes, Data wanted) {
   return std::search(bytes.begin(), bytes.end(), wanted.begin(), wanted.end()) != bytes.end();
 }
 
+constexpr std::size_t kPngSignature = 8;
+
+/// Calls `visit(type, chunk)` for each chunk of a PNG, up to its end; false: one does not end within the bytes.
+template <typename Visit>
+bool visit_chunks(Data bytes, const Visit& visit) {
+  constexpr std::size_t kAround = 12;  // a length and a type before a chunk's bytes, a checksum after them
+  for (std::size_t at = kPngSignature; bytes.size() - at >= kAround;) {
+    const std::size_t length = big_endian(bytes, at, 4);
+    if (length > bytes.size() - at - kAround) return false;
+    const Data chunk = bytes.subspan(at, kAround + length);
+    const std::string_view type(reinterpret_cast<const char*>(chunk.data()) + 4, 4);
+    visit(type, chunk);
+    if (type == "IEND") return true;
+    at += chunk.size();
+  }
+  return false;
+}
+
 std::optional<ImageHeader> png_header(Data bytes) {
   constexpr std::size_t kWidth = 16, kHeight = 20, kHeaderEnd = 33;  // signature, then the IHDR chunk
   constexpr std::array<std::uint8_t, 4> kHeaderType = {'I', 'H', 'D', 'R'};
-  constexpr std::array<std::uint8_t, 4> kEndType = {'I', 'E', 'N', 'D'};
   if (bytes.size() < kHeaderEnd || !starts_with(bytes.subspan(12), kHeaderType)) return std::nullopt;
-  const Data tail = bytes.subspan(kHeaderEnd);
   return ImageHeader{ImageFormat::png, big_endian(bytes, kWidth, 4), big_endian(bytes, kHeight, 4),
-                     contains(tail, kEndType)};
+                     visit_chunks(bytes, [](std::string_view, Data) {})};
 }
 
 std::optional<ImageHeader> jpeg_header(Data bytes) {
@@ -63,6 +80,15 @@ std::optional<ImageHeader> read_image_header(Data bytes) {
   if (starts_with(bytes, kPng)) return png_header(bytes);
   if (starts_with(bytes, kJpeg)) return jpeg_header(bytes);
   return std::nullopt;
+}
+
+std::vector<std::uint8_t> bare_png(Data bytes) {
+  constexpr std::array<std::string_view, 6> kKept = {"IHDR", "PLTE", "tRNS", "tEXt", "IDAT", "IEND"};
+  std::vector<std::uint8_t> kept(bytes.begin(), bytes.begin() + kPngSignature);
+  visit_chunks(bytes, [&](std::string_view type, Data chunk) {
+    if (std::ranges::find(kKept, type) != kKept.end()) kept.insert(kept.end(), chunk.begin(), chunk.end());
+  });
+  return kept;
 }
 
 }  // namespace clpv

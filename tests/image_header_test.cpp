@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// What PNG and JPEG files say of themselves, and what is left of a PNG before a decoder sees it.
+#include "image/image_header.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "image/image_io.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/tiny_images.hpp"
+
+namespace clpv {
+namespace {
+
+std::span<const std::uint8_t> bytes_in(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::string bare(const std::string& png) {
+  const auto kept = bare_png(bytes_in(png));
+  return {kept.begin(), kept.end()};
+}
+
+/// A chunk whose checksum is 0, which decoders of the chunks that matter would refuse.
+std::string chunk(const std::string& type, const std::string& bytes) {
+  const auto length = static_cast<char>(bytes.size());
+  return std::string(3, '\0') + length + type + bytes + std::string(4, '\0');
+}
+
+constexpr std::size_t kHeaderEnd = 33;  // of the signature and IHDR
+
+TEST(ImageHeader, TellsSizes) {
+  const std::string png = test::decode_base64(test::kPngRgba2x2),
+                    jpeg = test::decode_base64(test::kJpegRed8x8);
+  const auto png_header = read_image_header(bytes_in(png)), jpeg_header = read_image_header(bytes_in(jpeg));
+  ASSERT_TRUE(png_header && jpeg_header);
+  EXPECT_EQ(png_header->format, ImageFormat::png);
+  EXPECT_EQ(png_header->width, 2u);
+  EXPECT_EQ(png_header->height, 2u);
+  EXPECT_EQ(jpeg_header->format, ImageFormat::jpeg);
+  EXPECT_EQ(jpeg_header->width, 8u);
+  EXPECT_EQ(jpeg_header->height, 8u);
+  EXPECT_TRUE(png_header->complete && jpeg_header->complete);
+  EXPECT_FALSE(read_image_header(bytes_in("no image")));
+}
+
+TEST(ImageHeader, APngThatIsCutIsNotComplete) {
+  const std::string png = test::decode_base64(test::kPngRgba2x2);
+  for (std::size_t length = kHeaderEnd; length < png.size(); ++length) {
+    const auto header = read_image_header(bytes_in(png.substr(0, length)));
+    ASSERT_TRUE(header) << length;
+    EXPECT_FALSE(header->complete) << length;
+  }
+  EXPECT_TRUE(read_image_header(bytes_in(png + "and more"))->complete);
+}
+
+TEST(ImageHeader, APngWithAChunkLongerThanItselfIsNotComplete) {
+  const std::string png = test::decode_base64(test::kPngRgba2x2);
+  for (const std::string length : {"\x7f\xff\xff\xff", "\xff\xff\xff\xff", "\xff\xff\xff\xf4"}) {
+    std::string bytes = png;
+    bytes.insert(kHeaderEnd, length + "tEXtdata....");
+    EXPECT_FALSE(read_image_header(bytes_in(bytes))->complete);
+  }
+}
+
+TEST(ImageHeader, APngIsLeftWithWhatItsPixelsNeedAndPlainTexts) {
+  const std::string png = test::decode_base64(test::kPngRgba2x2), text = chunk("tEXt", "clpv:basis sh2");
+  std::string more = png, kept = png;
+  more.insert(kHeaderEnd, chunk("zTXt", "packed") + text + chunk("iCCP", "packed") + chunk("iTXt", "") +
+                              chunk("eXIf", "?"));
+  kept.insert(kHeaderEnd, text);
+  EXPECT_EQ(bare(more), kept);
+  EXPECT_EQ(bare(png + "after its end"), png);
+  for (const std::string_view each : {test::kPngGrey, test::kPngGrey16, test::kPngPalette}) {
+    const std::string whole = test::decode_base64(each);
+    EXPECT_EQ(bare(whole), whole);
+  }
+}
+
+TEST(ImageHeader, APngIsReadWithoutItsPackedTexts) {
+  const test::TemporaryFolder folder;
+  std::string png = test::decode_base64(test::kPngRgba2x2);
+  const Image before = read_image(folder.write("a.png", png));
+  png.insert(kHeaderEnd, chunk("iCCP", "of no name"));
+  const Image after = read_image(folder.write("b.png", png));
+  EXPECT_EQ(before.pixels, after.pixels);
+}
+
+}  // namespace
+}  // namespace clpv
