@@ -115,7 +115,7 @@ CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, 
     blocked[i] = whole[i] = 0.0f;
     if (!wanted[i]) continue;
     const Receiver receiver = {step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
-                          r.per_depth};
+                               r.per_depth};
     blocked[i] = blocking(receiver, map + first[i], view.width, whole + i);
   }
   const float8 all = vload8(0, whole), one = (float8)(1.0f);

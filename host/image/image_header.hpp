@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The size an encoded image claims, read without decoding it.
+// The size an encoded image claims, read without decoding it; and what of a PNG a decoder is given.
 #pragma once
 
 #include <cstdint>
