@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
@@ -47,6 +48,17 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   bool running() const { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
+  /// Whether it is the program by now, and has asked for SIGINT: before, that would end it unheard.
+  bool listens() const {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    std::string word, name;
+    std::uint64_t caught = 0;
+    while (status >> word) {
+      if (word == "Name:") status >> name;
+      if (word == "SigCgt:") status >> std::hex >> caught;
+    }
+    return name == "clpv" && (caught >> (SIGINT - 1) & 1) != 0;
+  }
   /// The exit code, or 128 + the signal that ended it.
   int end(int signal) {
     ::kill(pid_, signal);
@@ -180,7 +192,8 @@ TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
   const fs::path image = folder_ / "truth.exr", said = folder_ / "said";
   Child child(
       program() + "reference " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " + image.string(), said);
-  std::this_thread::sleep_for(1500ms);
+  for (int i = 0; i < 600 && !child.listens(); ++i) std::this_thread::sleep_for(100ms);
+  std::this_thread::sleep_for(500ms);
   ASSERT_TRUE(child.running()) << read_file(said);
   EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
   EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; nothing was written"));
