@@ -221,6 +221,19 @@ TEST_F(ImageFiles, RefusesTilesFarLargerThanTheImage) {
   EXPECT_NE(message.find("tiles of 16 x 12255232"), std::string::npos) << message;
 }
 
+TEST_F(ImageFiles, RefusesChunksThatAreNotInTheFile) {
+  write_exr(folder_ / "small.exr", sample(4, 4, {"R"}));
+  const std::string exr = read_file(folder_ / "small.exr");
+  const std::size_t table =
+      exr.find("screenWindowWidth") + std::string("screenWindowWidth.float.size1234.").size();
+  for (const std::uint64_t place : {0xffffffffffffffffull, 0x8000000000000000ull, 0xffffffff00000000ull,
+                                    1ull << 40, static_cast<unsigned long long>(exr.size()) - 1}) {
+    std::string moved = exr;
+    std::memcpy(moved.data() + table, &place, sizeof place);
+    EXPECT_NE(refusal("moved.exr", moved).find("damaged or truncated"), std::string::npos) << place;
+  }
+}
+
 TEST_F(ImageFiles, UnwritablePlacesAreRunTimeErrors) {
   try {
     write_exr(folder_ / "none" / "a.exr", sample(2, 2, {"R"}));

@@ -12,6 +12,7 @@
 
 #include "image/exr_header.hpp"
 #include "image/image_header.hpp"
+#include "image/memory_reader.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
 
@@ -149,7 +150,7 @@ void check_before_decoding(const fs::path& path, const std::string& format, std:
 struct OpenImage {
   std::vector<unsigned char> bytes;
   std::string format;
-  std::optional<OIIO::Filesystem::IOMemReader> memory;
+  std::optional<MemoryReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
 
@@ -160,7 +161,7 @@ struct OpenImage {
     if (!input)
       refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
     check_before_decoding(path, format, bytes, limits);
-    memory.emplace(bytes.data(), bytes.size());
+    memory.emplace(bytes);
     input->set_ioproxy(&*memory);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/texture_image.hpp"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <atomic>
@@ -12,6 +11,7 @@
 #include <thread>
 
 #include "image/image_header.hpp"
+#include "image/memory_reader.hpp"
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
 
@@ -94,7 +94,7 @@ std::vector<std::uint8_t> decode(const GltfDocument& document, const Encoded& en
   const bool png = encoded.header.format == ImageFormat::png;
   const Bytes bare = png ? bare_png(encoded.bytes) : Bytes();
   const std::span<const std::uint8_t> bytes = png ? bare : encoded.bytes;
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  MemoryReader memory(bytes);
   const char* name = png ? "memory.png" : "memory.jpg";
   OIIO::ImageSpec wishes;
   wishes["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not times alpha
