@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -152,7 +153,7 @@ void check_value(const Cursor& file, std::string_view place, std::string_view ty
   }
 }
 
-/// Keeps what memory is taken by; the last of a name counts, as for OpenEXR.
+/// Keeps what memory is taken by.
 void keep_value(Part& part, const Cursor& file, std::string_view place, std::string_view name,
                 std::string_view type, std::span<const unsigned char> bytes) {
   if (name == "dataWindow" && type == "box2i") {
@@ -177,6 +178,7 @@ void keep_value(Part& part, const Cursor& file, std::string_view place, std::str
 /// One header: attributes, each a name, its type's name, a size and so many bytes, that an empty name ends.
 Part read_part(Cursor& file, std::size_t index) {
   Part part;
+  std::set<std::string> names;
   for (;; part.empty = false) {
     const std::string before = fmt::format("part {}", index);
     const std::string name = file.name(before);
@@ -184,6 +186,8 @@ Part read_part(Cursor& file, std::size_t index) {
     const std::string type = file.name(fmt::format("{}, attribute '{}'", before, name));
     const std::string place = fmt::format("{}, attribute '{}' ({})", before, name, type);
     const auto bytes = file.take(file.number(place), place);
+    // OpenEXR would add a second list of channels to the first.
+    if (!names.insert(name).second) refuse(file.file(), place, "a second of this name", "one of each name");
     check_value(file, place, type, bytes);
     keep_value(part, file, place, name, type, bytes);
   }
