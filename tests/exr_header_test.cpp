@@ -2,14 +2,11 @@
 // The walk through an EXR's headers, against files that OpenEXR wrote and against headers put together here, byte by byte.
 #include "image/exr_header.hpp"
 
-#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "image/image_io.hpp"
 #include "support/error.hpp"
@@ -86,28 +83,11 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
 }
 
 TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
-  const test::TemporaryFolder folder;
-  std::vector<OIIO::ImageSpec> specs = {OIIO::ImageSpec(5, 3, 1, OIIO::TypeFloat),
-                                        OIIO::ImageSpec(40, 70, 3, OIIO::TypeHalf)};
-  for (OIIO::ImageSpec& spec : specs)
-    spec.full_width = 40, spec.full_height = 70;  // one display window for all
-  specs[0].attribute("oiio:subimagename", "first");
-  specs[1].attribute("oiio:subimagename", "second");
-  const std::string path = (folder / "a.exr").string();
-  const auto output = OIIO::ImageOutput::create(path);
-  ASSERT_TRUE(output->open(path, 2, specs.data())) << output->geterror();
-  const std::vector<float> pixels(40 * 70 * 3, 0.5f);
-  ASSERT_TRUE(output->write_image(OIIO::TypeFloat, pixels.data()));
-  ASSERT_TRUE(output->open(path, specs[1], OIIO::ImageOutput::AppendSubimage));
-  ASSERT_TRUE(output->write_image(OIIO::TypeFloat, pixels.data()));
-  ASSERT_TRUE(output->close());
-
-  std::string bytes = test::read_file(path);
+  std::string bytes = test::read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/two_parts");
   const ImageExtent extent = walked(bytes);
   EXPECT_EQ(extent.width, 5);
-  EXPECT_EQ(extent.height, 3);
-  EXPECT_EQ(extent.channels, 1);
-  EXPECT_EQ(read_image(path).width, 5);
+  EXPECT_EQ(extent.height, 4);
+  EXPECT_EQ(extent.channels, 1) << "the second has three";
   const std::size_t second = bytes.rfind("compression\0compression\0"s);
   bytes.replace(second + 24, 4, number(1u << 30));
   EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
