@@ -17,6 +17,8 @@ namespace {
 constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;  // of the version
 constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
+constexpr std::size_t kMostParts = 1024,
+                      kMostAttributes = 1024;  // of one part: more are no image's, and take long
 constexpr std::int64_t kOffsetBytes = 8;
 
 struct FixedSize {
@@ -71,8 +73,7 @@ class Cursor {
 
   std::span<const unsigned char> take(std::size_t count, std::string_view place) {
     if (count > left_.size()) {
-      refuse(file_, place, fmt::format("{} bytes", count),
-             fmt::format("the {} left in the file", left_.size()));
+      refuse(file_, place, fmt::format("{} bytes", count), fmt::format("the {} left", left_.size()));
     }
     const auto taken = left_.first(count);
     left_ = left_.subspan(count);
@@ -186,6 +187,9 @@ Part read_part(Cursor& file, std::size_t index) {
     const std::string type = file.name(fmt::format("{}, attribute '{}'", before, name));
     const std::string place = fmt::format("{}, attribute '{}' ({})", before, name, type);
     const auto bytes = file.take(file.number(place), place);
+    if (names.size() == kMostAttributes) {
+      refuse(file.file(), before, fmt::format("over {} attributes", names.size()), "at most as many");
+    }
     // OpenEXR would add a second list of channels to the first.
     if (!names.insert(name).second) refuse(file.file(), place, "a second of this name", "one of each name");
     check_value(file, place, type, bytes);
@@ -235,6 +239,7 @@ ImageExtent read_exr_header(const std::filesystem::path& path, std::span<const u
     if (several && part.empty) break;  // which ends their list
     settle_chunks(part, flags);
     if (index == 0) first = part;
+    if (index == kMostParts) refuse(file.file(), {}, fmt::format("over {} parts", index), "at most as many");
     check_tables(fmt::format("part {}", index), least_chunks(part));
     chunks += least_chunks(part);
     if (!several) break;
