@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "basis/basis.hpp"
 #include "commands/choices.hpp"
 #include "commands/commands.hpp"
 #include "commands/frame_options.hpp"
+#include "pipeline/frame_volumes.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
@@ -62,9 +62,7 @@ void run(const Options& options, const Shared& shared) {
   const RenderOptions& settings = options.tune.suite.settings;
   if (settings.transport == TransportKind::sweep)
     throw Error(ExitCode::usage, "--transport sweep: it takes no steps to tune; allowed: all others");
-  if (settings.state == State::fluxes && !has_faces(settings.transport))
-    throw Error(ExitCode::usage, "--state fluxes: transport '{}' has no faces; allowed: coefficients",
-                name_of(settings.transport));
+  require_faces(settings);
   const auto cache = TuningCache::of_user();
   if (!cache) throw Error(ExitCode::run_time, "nowhere to keep it: neither XDG_CACHE_HOME nor HOME is set");
   Session session(choose_device(shared.device), ProgramCache::of_user());

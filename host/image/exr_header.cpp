@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "support/little_endian.hpp"
 #include "support/refuse.hpp"
 
 namespace clpv {
@@ -17,8 +18,8 @@ namespace {
 constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;  // of the version
 constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
-constexpr std::size_t kMostParts = 1024,
-                      kMostAttributes = 1024;  // of one part: more are no image's, and take long
+// More are no image's, and take long.
+constexpr std::size_t kMostParts = 1024, kMostAttributes = 1024;
 constexpr std::int64_t kOffsetBytes = 8;
 
 struct FixedSize {
@@ -57,10 +58,8 @@ constexpr std::array<FixedSize, 24> kFixedSizes = {{
 /// Rows of a chunk by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
 constexpr std::array<std::int64_t, 10> kChunkRows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-/// Of four bytes, the least first.
 std::int32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
-  return static_cast<std::int32_t>(bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 |
-                                   std::uint32_t{bytes[at + 3]} << 24);
+  return static_cast<std::int32_t>(little_endian_word(bytes, at));
 }
 
 /// The bytes from some place on; whoever takes more than there are is refused.
@@ -80,9 +79,7 @@ class Cursor {
     return taken;
   }
 
-  std::uint32_t number(std::string_view place) {
-    return static_cast<std::uint32_t>(number_at(take(4, place), 0));
-  }
+  std::uint32_t number(std::string_view place) { return little_endian_word(take(4, place), 0); }
 
   /// Text that ends with a NUL, which is taken too.
   std::string name(std::string_view place) {
@@ -102,7 +99,7 @@ class Cursor {
 };
 
 /// One part, while its header is read.
-struct Part : ImageExtent {
+struct Part : ImageClaim {
   std::int64_t rows = 1;                         ///< of a chunk, where it has no tiles
   std::int64_t tile_width = 0, tile_height = 0;  ///< 0: no such attribute
   std::int64_t chunks = 0;                       ///< that it says it has
@@ -161,8 +158,8 @@ void keep_value(Part& part, const Cursor& file, std::string_view place, std::str
     part.width = std::int64_t{number_at(bytes, 8)} - number_at(bytes, 0) + 1;
     part.height = std::int64_t{number_at(bytes, 12)} - number_at(bytes, 4) + 1;
   } else if (name == "tiles" && type == "tiledesc") {
-    part.tile_width = static_cast<std::uint32_t>(number_at(bytes, 0));
-    part.tile_height = static_cast<std::uint32_t>(number_at(bytes, 4));
+    part.tile_width = little_endian_word(bytes, 0);
+    part.tile_height = little_endian_word(bytes, 4);
   } else if (name == "compression" && type == "compression") {
     part.rows = kChunkRows[std::min<std::size_t>(bytes[0], kChunkRows.size() - 1)];
   } else if (name == "chunkCount" && type == "int") {
@@ -220,7 +217,7 @@ void settle_chunks(Part& part, std::uint32_t flags) {
 
 }  // namespace
 
-ImageExtent read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes) {
+ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes) {
   Cursor file(path.string(), bytes);
   file.take(kFlagsAt, "the header");
   const std::uint32_t flags = file.number("the header");
@@ -232,7 +229,7 @@ ImageExtent read_exr_header(const std::filesystem::path& path, std::span<const u
     refuse(file.file(), place, fmt::format("{} chunks", chunks),
            fmt::format("{}, as the rest of the file has places for", most));
   };
-  ImageExtent first;
+  ImageClaim first;
   std::int64_t chunks = 0;
   for (std::size_t index = 0;; ++index) {
     Part part = read_part(file, index);

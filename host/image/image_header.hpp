@@ -9,6 +9,16 @@
 
 namespace clpv {
 
+/// What an image file asks for, in its own words: they may be anything.
+struct ImageClaim {
+  std::int64_t width = 0, height = 0;  ///< [pixels]; of the data window
+  std::int64_t chunk_width = 0,
+               chunk_height = 0;  ///< [pixels]; of what is decoded at once: a tile, or some rows
+  std::int64_t channels = 0;      ///< at most: of those of one name, one counts
+  bool tiled = false;
+  bool deep = false;  ///< or a volume
+};
+
 enum class ImageFormat { png, jpeg };
 
 struct ImageHeader {

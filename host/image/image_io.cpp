@@ -85,7 +85,7 @@ std::string checked_format(const fs::path& path, const std::vector<unsigned char
 }
 
 /// Of an image and of what is decoded of it at once, as the file says and as OpenImageIO does.
-void check_size(const fs::path& path, const ImageExtent& found, const ImageLimits& limits) {
+void check_size(const fs::path& path, const ImageClaim& found, const ImageLimits& limits) {
   if (found.width < 1 || found.height < 1 || found.width > limits.side || found.height > limits.side) {
     refuse(path,
            fmt::format("{} x {} pixels; allowed are 1 to {} a side", found.width, found.height, limits.side));
@@ -109,7 +109,7 @@ void check_size(const fs::path& path, const ImageExtent& found, const ImageLimit
   check_bytes(found.tiled ? "tiles of " : "chunks of ", found.chunk_width, found.chunk_height);
 }
 
-ImageExtent extent_of(const OIIO::ImageSpec& spec) {
+ImageClaim claim_of(const OIIO::ImageSpec& spec) {
   const bool tiled = spec.tile_width > 0;
   return {.width = spec.width,
           .height = spec.height,
@@ -167,7 +167,7 @@ struct OpenImage {
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open(path.string(), spec, config))
       refuse(path, "cannot be read: " + first_line(input->geterror()));
-    check_size(path, extent_of(spec), limits);
+    check_size(path, claim_of(spec), limits);
   }
 };
 

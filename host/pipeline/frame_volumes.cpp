@@ -89,6 +89,12 @@ void require_compatible(const RenderOptions& options) {
     throw Error(ExitCode::usage, "bounces: found '{}' with transport '{}', allowed: 1 (or transport 'sweep')",
                 name_of(options.bounces), name_of(options.transport));
   }
+  require_faces(options);
+}
+
+}  // namespace
+
+void require_faces(const RenderOptions& options) {
   if (has_faces(options.transport)) return;
   if (options.state != State::coefficients) {
     throw Error(ExitCode::usage, "state: found '{}' with transport '{}', allowed: coefficients",
@@ -100,8 +106,6 @@ void require_compatible(const RenderOptions& options) {
                 name_of(options.lobe_time), name_of(options.transport));
   }
 }
-
-}  // namespace
 
 VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
   return {options.grid, basis.size(), 3};

@@ -12,6 +12,7 @@
 #include "scene/bounds.hpp"
 #include "scene/gltf_schema.hpp"
 #include "support/error.hpp"
+#include "support/little_endian.hpp"
 
 namespace clpv {
 namespace {
@@ -23,11 +24,6 @@ struct Container {
   std::optional<std::span<const std::uint8_t>> binary;  ///< a .glb's binary chunk
 };
 
-std::uint32_t word_at(const Bytes& bytes, std::size_t offset) {  // little endian, whatever the host is
-  return bytes[offset] | bytes[offset + 1] << 8 | bytes[offset + 2] << 16 |
-         static_cast<std::uint32_t>(bytes[offset + 3]) << 24;
-}
-
 constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
 Container open_glb(const Bytes& bytes, const std::string& file) {
@@ -35,17 +31,17 @@ Container open_glb(const Bytes& bytes, const std::string& file) {
   if (bytes.size() < kHeader + kChunkHeader) {
     refuse(file, {}, fmt::format("a .glb of {} bytes", bytes.size()), "at least 20: it is truncated");
   }
-  if (word_at(bytes, 4) != 2)
-    refuse(file, {}, fmt::format(".glb version {}", word_at(bytes, 4)), "version 2");
-  const std::size_t length = word_at(bytes, 8);
+  if (little_endian_word(bytes, 4) != 2)
+    refuse(file, {}, fmt::format(".glb version {}", little_endian_word(bytes, 4)), "version 2");
+  const std::size_t length = little_endian_word(bytes, 8);
   if (length > bytes.size() || length < kHeader + kChunkHeader) {
     refuse(file, {}, fmt::format("a .glb of {} bytes whose header says {}", bytes.size(), length),
            "the length in the header: it is truncated");
   }
   Container container;
   for (std::size_t offset = kHeader; offset + kChunkHeader <= length;) {
-    const std::size_t size = word_at(bytes, offset);
-    const std::uint32_t type = word_at(bytes, offset + 4);
+    const std::size_t size = little_endian_word(bytes, offset);
+    const std::uint32_t type = little_endian_word(bytes, offset + 4);
     const std::size_t start = offset + kChunkHeader;
     if (size > length - start) {
       refuse(file, {}, fmt::format("a .glb chunk of {} bytes at byte {}", size, offset),
@@ -69,7 +65,7 @@ Container open_glb(const Bytes& bytes, const std::string& file) {
 }
 
 Container open_container(const Bytes& bytes, const std::string& file) {
-  if (bytes.size() >= 4 && word_at(bytes, 0) == kGlbMagic) return open_glb(bytes, file);
+  if (bytes.size() >= 4 && little_endian_word(bytes, 0) == kGlbMagic) return open_glb(bytes, file);
   if (bytes.size() > bounds::kJsonBytes) {
     refuse(file, {}, fmt::format("{} bytes of JSON", bytes.size()),
            fmt::format("at most {}", bounds::kJsonBytes));
