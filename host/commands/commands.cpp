@@ -58,7 +58,18 @@ Team& Shared::team() {
   return *begun;
 }
 
-void add_commands(CLI::App& app, Shared& shared) {
+std::span<const Command> all_commands() {
+  static constexpr Command kCommands[] = {
+      {"devices", add_devices}, {"render", add_render},       {"sequence", add_sequence},
+      {"query", add_query},     {"propagate", add_propagate}, {"check", add_check},
+      {"compare", add_compare}, {"reference", add_reference}, {"quality", add_quality},
+      {"basis", add_basis},     {"bench", add_bench},         {"tune", add_tune},
+      {"report", add_report},
+  };
+  return kCommands;
+}
+
+void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
   app.name("clpv");
   app.set_version_flag("--version", "clpv " + version());
@@ -73,19 +84,7 @@ void add_commands(CLI::App& app, Shared& shared) {
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_talk(shared); });
-  add_devices(app, shared);
-  add_render(app, shared);
-  add_sequence(app, shared);
-  add_query(app, shared);
-  add_propagate(app, shared);
-  add_check(app, shared);
-  add_compare(app, shared);
-  add_reference(app, shared);
-  add_quality(app, shared);
-  add_basis(app, shared);
-  add_bench(app, shared);
-  add_tune(app, shared);
-  add_report(app, shared);
+  for (const Command& command : commands) command.add(app, shared);
   refuse_ranks_but_to(app, {"quality", "sequence", "reference", "bench"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "

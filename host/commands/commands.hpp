@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace clpv {
@@ -20,8 +21,16 @@ struct Shared {
   std::shared_ptr<Team> begun;  ///< none yet, until it is
 };
 
+struct Command {
+  const char* name;
+  void (*add)(CLI::App& app, Shared& shared);
+};
+
+/// All of them, in the order of --help.
+std::span<const Command> all_commands();
+
 /// The program's description, the options of all commands, and the commands.
-void add_commands(CLI::App& app, Shared& shared);
+void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands = all_commands());
 
 /// Parses, and runs the command. Throws CLI::Error, and Error(usage) that names the command meant by a misspelt one.
 void parse_command_line(CLI::App& app, int argc, char** argv);

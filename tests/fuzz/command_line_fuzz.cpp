@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A command line, an argument a line: parsed as the program parses it, commands not run; and each argument as a vector and
 // as a box.
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -22,10 +24,26 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
+/// Those that can be chosen, since adding all takes some twenty times as long as parsing. All where none is named, for the
+/// words about a misspelt one.
+std::vector<clpv::Command> commands_named_in(const std::vector<std::string>& arguments) {
+  const auto all = clpv::all_commands();
+  std::vector<clpv::Command> named;
+  std::ranges::copy_if(all, std::back_inserter(named), [&](const clpv::Command& command) {
+    return std::ranges::any_of(arguments.begin() + 1, arguments.end(), [&](const std::string& argument) {
+      return argument.find(command.name) != std::string::npos;
+    });
+  });
+  return named.empty() ? std::vector(all.begin(), all.end()) : named;
+}
+
 void parse(std::vector<std::string> arguments) {
   CLI::App app;
   clpv::Shared shared;
-  clpv::add_commands(app, shared);
+  const std::vector<clpv::Command> commands = commands_named_in(arguments);
+  clpv::add_commands(app, shared, commands);
+  for (const clpv::Command& command : commands)
+    app.get_subcommand(command.name);  // throws if it has another name
   // Before any command runs; their callbacks stay, since they hold what options are read into.
   app.parse_complete_callback([] { throw CLI::Success(); });
   std::vector<char*> pointers;
