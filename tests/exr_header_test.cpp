@@ -20,7 +20,7 @@ using namespace std::string_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-ImageExtent walked(const std::string& bytes) {
+ImageClaim walked(const std::string& bytes) {
   return read_exr_header("a.exr",
                          std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
@@ -71,7 +71,7 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
       continue;
     const test::TemporaryFolder folder;
     const Image image = read_image(folder.write("a.exr", bytes));
-    const ImageExtent extent = walked(bytes);
+    const ImageClaim extent = walked(bytes);
     EXPECT_EQ(extent.width, image.width) << entry.path();
     EXPECT_EQ(extent.height, image.height) << entry.path();
     EXPECT_EQ(extent.channels, static_cast<int>(image.channels.size())) << entry.path();
@@ -84,7 +84,7 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
 
 TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
   std::string bytes = test::read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/two_parts");
-  const ImageExtent extent = walked(bytes);
+  const ImageClaim extent = walked(bytes);
   EXPECT_EQ(extent.width, 5);
   EXPECT_EQ(extent.height, 4);
   EXPECT_EQ(extent.channels, 1) << "the second has three";
@@ -98,7 +98,7 @@ TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
                     tiles = attribute("tiles", "tiledesc", number(16) + number(8) + '\0');
   const std::string deep_type = attribute("type", "string", "deepscanline");
   EXPECT_FALSE(walked(one(size + tiles, 512)).tiled);
-  const ImageExtent extent = walked(file(tiled, size + tiles + '\0', 256));
+  const ImageClaim extent = walked(file(tiled, size + tiles + '\0', 256));
   EXPECT_TRUE(extent.tiled);
   EXPECT_EQ(extent.chunk_width, 16);
   EXPECT_EQ(extent.chunk_height, 8);

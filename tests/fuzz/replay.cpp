@@ -1,40 +1,63 @@
 // SPDX-License-Identifier: MIT
-// Stands in for libFuzzer's main: gives a target each file of the folders (or each file) named, once.
+// Stands in for libFuzzer's main: gives a target each file of a folder, then mutants of them for some seconds.
+//
+//   fuzz_NAME FOLDER SECONDS
+//
+// The mutants are the same in every run: a test that failed fails again. The input in hand lies in the working directory, in
+// fuzz_NAME.input, and stays there when it ends the program.
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutant.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
-std::vector<fs::path> files_in(const fs::path& place) {
-  if (!fs::is_directory(place)) return {place};
+std::vector<std::string> corpus_in(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(place)) files.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  return files;
+  std::vector<std::string> corpus;
+  for (const fs::path& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    corpus.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  }
+  return corpus;
+}
+
+void try_input(const std::string& bytes, const fs::path& in_hand) {
+  std::ofstream(in_hand, std::ios::binary) << bytes;
+  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::size_t count = 0;
-  for (int i = 1; i < argc; ++i) {
-    for (const fs::path& file : files_in(argv[i])) {
-      std::ifstream in(file, std::ios::binary);
-      const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-      std::printf("%s\n", file.filename().c_str());  // the last one named is the one that crashed
-      std::fflush(stdout);
-      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-      ++count;
-    }
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s FOLDER SECONDS\n", argv[0]);
+    return 2;
   }
-  std::printf("%zu inputs\n", count);
-  return count > 0 ? 0 : 1;  // an empty corpus replays nothing
+  const std::vector<std::string> corpus = corpus_in(argv[1]);
+  if (corpus.empty()) {
+    std::fprintf(stderr, "%s: no inputs\n", argv[1]);
+    return 1;
+  }
+  const fs::path in_hand = fs::path(argv[0]).filename() += ".input";
+  const auto end = Clock::now() + std::chrono::duration<double>(std::stod(argv[2]));
+  for (const std::string& input : corpus) try_input(input, in_hand);
+  std::mt19937_64 random;  // of the usual seed
+  std::size_t mutants = 0;
+  for (; Clock::now() < end; ++mutants) try_input(clpv::fuzz::mutant(corpus, random), in_hand);
+  fs::remove(in_hand);
+  std::printf("%zu inputs, %zu mutants\n", corpus.size(), mutants);
+  return 0;
 }
