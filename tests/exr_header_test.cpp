@@ -51,6 +51,10 @@ std::string channel(const std::string& name) {
   return name + '\0' + test::bytes_of<std::uint32_t>({2, 0, 1, 1});
 }
 
+std::string part_type(const std::string& value) {
+  return attribute("type", "string", value);
+}
+
 enum Flags : std::uint32_t { scan_lines = 0, tiled = 0x200, deep = 0x800, several = 0x1000 };
 
 /// Headers, each with the NUL that ends it, and room for what follows them.
@@ -71,12 +75,12 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
       continue;
     const test::TemporaryFolder folder;
     const Image image = read_image(folder.write("a.exr", bytes));
-    const ImageClaim extent = walked(bytes);
-    EXPECT_EQ(extent.width, image.width) << entry.path();
-    EXPECT_EQ(extent.height, image.height) << entry.path();
-    EXPECT_EQ(extent.channels, static_cast<int>(image.channels.size())) << entry.path();
-    EXPECT_EQ(extent.tiled, entry.path().string().ends_with("_tile")) << entry.path();
-    EXPECT_FALSE(extent.deep);
+    const ImageClaim claim = walked(bytes);
+    EXPECT_EQ(claim.width, image.width) << entry.path();
+    EXPECT_EQ(claim.height, image.height) << entry.path();
+    EXPECT_EQ(claim.channels, static_cast<int>(image.channels.size())) << entry.path();
+    EXPECT_EQ(claim.tiled, entry.path().string().ends_with("_tile")) << entry.path();
+    EXPECT_FALSE(claim.deep);
     ++images;
   }
   EXPECT_GE(images, 10);
@@ -84,10 +88,10 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
 
 TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
   std::string bytes = test::read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/two_parts");
-  const ImageClaim extent = walked(bytes);
-  EXPECT_EQ(extent.width, 5);
-  EXPECT_EQ(extent.height, 4);
-  EXPECT_EQ(extent.channels, 1) << "the second has three";
+  const ImageClaim claim = walked(bytes);
+  EXPECT_EQ(claim.width, 5);
+  EXPECT_EQ(claim.height, 4);
+  EXPECT_EQ(claim.channels, 1) << "the second has three";
   const std::size_t second = bytes.rfind("compression\0compression\0"s);
   bytes.replace(second + 24, 4, number(1u << 30));
   EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
@@ -96,16 +100,26 @@ TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
 TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
   const std::string size = window(64, 64),
                     tiles = attribute("tiles", "tiledesc", number(16) + number(8) + '\0');
-  const std::string deep_type = attribute("type", "string", "deepscanline");
+  const std::string deep_type = part_type("deepscanline");
   EXPECT_FALSE(walked(one(size + tiles, 512)).tiled);
-  const ImageClaim extent = walked(file(tiled, size + tiles + '\0', 256));
-  EXPECT_TRUE(extent.tiled);
-  EXPECT_EQ(extent.chunk_width, 16);
-  EXPECT_EQ(extent.chunk_height, 8);
+  const ImageClaim claim = walked(file(tiled, size + tiles + '\0', 256));
+  EXPECT_TRUE(claim.tiled);
+  EXPECT_EQ(claim.chunk_width, 16);
+  EXPECT_EQ(claim.chunk_height, 8);
   EXPECT_TRUE(walked(file(deep, size + deep_type + '\0', 512)).deep);
   EXPECT_FALSE(walked(one(size + deep_type, 512)).deep);
-  const std::string tiled_type = attribute("type", "string", "tiledimage");
-  EXPECT_TRUE(walked(file(several, size + tiles + tiled_type + '\0' + '\0', 256)).tiled);
+  EXPECT_TRUE(walked(file(several, size + tiles + part_type("tiledimage") + '\0' + '\0', 256)).tiled);
+}
+
+TEST(ExrHeader, PartsAreOfTypesThatOpenExrChecks) {
+  for (const Flags flags : {deep, several}) {
+    EXPECT_THAT(
+        refusal(file(flags, part_type("scanlin") + '\0' + '\0')),
+        HasSubstr(
+            "part 0: found type 'scanlin'; allowed: scanlineimage, tiledimage, deepscanline, deeptile"));
+    EXPECT_THAT(refusal(file(flags, window(4, 4) + '\0' + '\0')), HasSubstr("found type ''"));
+  }
+  EXPECT_EQ(refusal(one(part_type("scanlin"))), "not refused") << "OpenEXR goes by the flags";
 }
 
 TEST(ExrHeader, TextsAndUnknownTypesAreNoLongerThanTheFile) {
@@ -181,7 +195,7 @@ TEST(ExrHeader, ChannelsAreCountedAndEndWhereTheySay) {
 TEST(ExrHeader, NamesAreThereOnce) {
   EXPECT_THAT(refusal(one(window(4, 4) + window(4, 4), 64)),
               HasSubstr("attribute 'dataWindow' (box2i): found a second of this name"));
-  const std::string part = window(4, 4) + '\0';
+  const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';
   EXPECT_EQ(refusal(file(several, part + part + '\0', 64)), "not refused");
 }
 
@@ -189,13 +203,13 @@ TEST(ExrHeader, PartsAndAttributesAreBounded) {
   std::string attributes, parts;
   for (int i = 0; i < 1024; ++i) {
     attributes += attribute(fmt::format("a{}", i), "int", "1234");
-    parts += attribute("a", "int", "1234") + '\0';
+    parts += part_type("scanlineimage") + '\0';
   }
   EXPECT_EQ(refusal(one(attributes)), "not refused");
   EXPECT_THAT(refusal(one(attributes + attribute("b", "int", "1234"))),
               HasSubstr("part 0: found over 1024 attributes"));
   EXPECT_EQ(refusal(file(several, parts + '\0')), "not refused");
-  EXPECT_THAT(refusal(file(several, parts + attribute("a", "int", "1234") + '\0' + '\0')),
+  EXPECT_THAT(refusal(file(several, parts + part_type("scanlineimage") + '\0' + '\0')),
               HasSubstr("over 1024 parts"));
 }
 
@@ -217,7 +231,7 @@ TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
   EXPECT_EQ(refusal(file(tiled, tiles(16384, 8192) + '\0', 16)), "not refused");
   EXPECT_EQ(refusal(file(tiled, tiles(0, 0) + '\0', 0)), "not refused");  // which OpenEXR does
   EXPECT_THAT(refusal(one(attribute("chunkCount", "int", number(1u << 30)))), HasSubstr("1073741824 chunks"));
-  const std::string part = window(4, 4) + '\0';  // 4 chunks, and as many
+  const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';  // 4 chunks, and as many
   EXPECT_EQ(refusal(file(several, part + part + '\0', 64)), "not refused");
   EXPECT_THAT(refusal(file(several, part + part + '\0', 8)), HasSubstr("part 1: found 4 chunks"));
   EXPECT_THAT(refusal(file(several, part + part + '\0', 40)),

@@ -86,6 +86,9 @@ TEST(HostileFiles, Images) {
                 {"'pixelAspectRatio' (float)"}),
           image("a compression of no name",
                 exr_with(std::string("compression\0compression\0", 24), 4, "\x7f"), {"cannot be read"}),
+          image("a part of no type that there is",
+                read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/hostile_part_of_no_type"),
+                {"part 0: found type 'scanlin", "scanlineimage, tiledimage"}),
           image("a version of the future",
                 [&] {
                   std::string bytes = sound;

@@ -2,6 +2,7 @@
 #include "image/exr_header.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -21,6 +22,8 @@ constexpr std::size_t kNameBytes = 255;
 // More are no image's, and take long.
 constexpr std::size_t kMostParts = 1024, kMostAttributes = 1024;
 constexpr std::int64_t kOffsetBytes = 8;
+constexpr std::array<std::string_view, 4> kPartTypes = {
+    {"scanlineimage", "tiledimage", "deepscanline", "deeptile"}};
 
 struct FixedSize {
   std::string_view type;
@@ -206,11 +209,18 @@ std::int64_t least_chunks(const Part& part) {
   return std::max(part.chunks, std::min(rows, kMany) * std::min(columns, kMany));
 }
 
-/// What of a part is decoded at once. A file of several parts, or deep ones, tells by their types what they are.
-void settle_chunks(Part& part, std::uint32_t flags) {
-  const bool typed = (flags & (kDeepFlag | kMultiPartFlag)) != 0;
+/// A file of several parts, or deep ones, tells by their types what they are. OpenEXR asks nothing of parts of other types, so
+/// that OpenImageIO 2.4 ends the program at what their headers hold.
+void check_type(const Cursor& file, const std::string& place, const Part& part) {
+  if (std::ranges::count(kPartTypes, part.type) > 0) return;
+  refuse(file.file(), place, fmt::format("type '{}'", part.type),
+         fmt::format("{}", fmt::join(kPartTypes, ", ")));
+}
+
+/// What of a part is decoded at once.
+void settle_chunks(Part& part, std::uint32_t flags, bool typed) {
   part.deep = typed && part.type.starts_with("deep");
-  part.tiled = typed ? part.type.ends_with("tile") || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
+  part.tiled = typed ? part.type == "deeptile" || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
   part.chunk_width = part.tiled ? part.tile_width : part.width;
   part.chunk_height = part.tiled ? part.tile_height : part.rows;
 }
@@ -221,7 +231,7 @@ ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const un
   Cursor file(path.string(), bytes);
   file.take(kFlagsAt, "the header");
   const std::uint32_t flags = file.number("the header");
-  const bool several = (flags & kMultiPartFlag) != 0;
+  const bool several = (flags & kMultiPartFlag) != 0, typed = several || (flags & kDeepFlag) != 0;
   // A table has 8 bytes a chunk; those of all parts come after the last header.
   const auto check_tables = [&](const std::string& place, std::int64_t chunks) {
     const std::int64_t most = static_cast<std::int64_t>(file.left()) / kOffsetBytes;
@@ -234,7 +244,8 @@ ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const un
   for (std::size_t index = 0;; ++index) {
     Part part = read_part(file, index);
     if (several && part.empty) break;  // which ends their list
-    settle_chunks(part, flags);
+    if (typed) check_type(file, fmt::format("part {}", index), part);
+    settle_chunks(part, flags, typed);
     if (index == 0) first = part;
     if (index == kMostParts) refuse(file.file(), {}, fmt::format("over {} parts", index), "at most as many");
     check_tables(fmt::format("part {}", index), least_chunks(part));

@@ -3,8 +3,8 @@
 //
 //   fuzz_NAME FOLDER SECONDS
 //
-// The mutants are the same in every run: a test that failed fails again. The input in hand lies in the working directory, in
-// fuzz_NAME.input, and stays there when it ends the program.
+// The mutants are the same in every run: a test that failed fails again. The input in hand lies in a file, which stays when it
+// ends the program.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -22,6 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kInHand = "in_hand";
+
 std::vector<std::string> corpus_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
@@ -34,8 +36,8 @@ std::vector<std::string> corpus_in(const fs::path& folder) {
   return corpus;
 }
 
-void try_input(const std::string& bytes, const fs::path& in_hand) {
-  std::ofstream(in_hand, std::ios::binary) << bytes;
+void try_input(const std::string& bytes) {
+  clpv::fuzz::folder().write(kInHand, bytes);
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
@@ -51,13 +53,13 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: no inputs\n", argv[1]);
     return 1;
   }
-  const fs::path in_hand = fs::path(argv[0]).filename() += ".input";
+  std::printf("the input in hand: %s\n", clpv::fuzz::folder().write(kInHand, "").c_str());
+  std::fflush(stdout);
   const auto end = Clock::now() + std::chrono::duration<double>(std::stod(argv[2]));
-  for (const std::string& input : corpus) try_input(input, in_hand);
+  for (const std::string& input : corpus) try_input(input);
   std::mt19937_64 random;  // of the usual seed
   std::size_t mutants = 0;
-  for (; Clock::now() < end; ++mutants) try_input(clpv::fuzz::mutant(corpus, random), in_hand);
-  fs::remove(in_hand);
+  for (; Clock::now() < end; ++mutants) try_input(clpv::fuzz::mutant(corpus, random));
   std::printf("%zu inputs, %zu mutants\n", corpus.size(), mutants);
   return 0;
 }
