@@ -28,11 +28,11 @@ std::string_view span_of(std::string_view text, Random& random) {
 }
 
 /// In place of as many bytes, or of those of a number in digits, or of none.
-void put(std::string& text, std::string_view put, Random& random) {
+void put(std::string& text, std::string_view piece, Random& random) {
   const std::size_t start = below(text.size() + 1, random);
   const std::size_t digits = std::min(text.find_first_not_of("0123456789", start), text.size()) - start;
-  const std::array<std::size_t, 3> lengths = {put.size(), digits, 0};
-  text.replace(start, lengths[below(lengths.size(), random)], put);
+  const std::array<std::size_t, 3> lengths = {piece.size(), digits, 0};
+  text.replace(start, lengths[below(lengths.size(), random)], piece);
 }
 
 void change(std::string& text, std::span<const std::string> inputs, Random& random) {
