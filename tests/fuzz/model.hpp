@@ -2,10 +2,14 @@
 // Scenes out of bytes, for the targets of models and scene files.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "scene/load.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/support/base64.hpp"
+#include "tests/support/tiny_images.hpp"
 
 namespace clpv::fuzz {
 
@@ -17,13 +21,16 @@ inline constexpr std::string_view kSound =
 "model.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126,
 "count": 3, "type": "VEC3"}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]})";
 
-/// As much, and image.png on it, with a scene of it under sky.hdr.
-inline constexpr std::string_view kTextured =
-    R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri":
-"model.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126,
-"count": 3, "type": "VEC3"}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}], "nodes":
-[{"mesh": 0}], "images": [{"uri": "image.png"}], "textures": [{"source": 0}], "materials": [{"pbrMetallicRoughness":
-{"baseColorTexture": {"index": 0}}}]})";
+/// The same with image.png on it, and a scene of that under sky.hdr.
+inline std::string textured() {
+  nlohmann::json model = nlohmann::json::parse(kSound);
+  model["images"][0]["uri"] = "image.png";
+  model["textures"][0]["source"] = 0;
+  model["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+  model["meshes"][0]["primitives"][0]["material"] = 0;
+  return model.dump();
+}
+
 inline constexpr std::string_view kUnderSky = R"({"model": "textured.gltf", "sky": {"map": "sky.hdr"}})";
 
 /// The files that URIs may name. An input that names one must not end there: they are read here, and must not be refused.
@@ -33,16 +40,10 @@ inline void write_neighbours() {
   bytes.resize(1024, '\0');
   folder().write("model.bin", bytes);
   folder().write("sound.gltf", kSound);
-  const unsigned char grey[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0,    0,    0, 0x0d,
-                                0x49, 0x48, 0x44, 0x52, 0,    0,    0,    1,    0,    0,    0, 1,
-                                8,    0,    0,    0,    0,    0x3a, 0x7e, 0x9b, 0x55, 0,    0, 0,
-                                0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf0, 0x05, 0, 0,
-                                0x4f, 0,    0x4e, 0x69, 0x8b, 0x01, 0x6c, 0,    0,    0,    0, 0x49,
-                                0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};  // one pixel of 77
-  folder().write("image.png", {reinterpret_cast<const char*>(grey), sizeof grey});
+  folder().write("image.png", test::decode_base64(test::kPngGrey));
   folder().write("sky.hdr", std::string_view("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
                                              "\x40\x80\x20\x80\x80\x40\x20\x81"));  // two texels
-  folder().write("textured.gltf", kTextured);
+  folder().write("textured.gltf", textured());
   MovingScene(folder().write("under_sky.json", kUnderSky));
 }
 

@@ -7,15 +7,15 @@
 // ends the program.
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutant.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace {
 
@@ -29,10 +29,7 @@ std::vector<std::string> corpus_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<std::string> corpus;
-  for (const fs::path& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    corpus.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-  }
+  for (const fs::path& file : files) corpus.push_back(clpv::test::read_file(file));
   return corpus;
 }
 

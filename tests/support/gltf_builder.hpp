@@ -14,39 +14,12 @@
 
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "tests/support/base64.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test {
 
 using nlohmann::json;
-
-inline std::string encode_base64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      word = word << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      out += i + k > bytes.size() ? '=' : kDigits[word >> (18 - 6 * k) & 63];
-    }
-  }
-  return out;
-}
-
-inline std::string decode_base64(std::string_view text) {
-  std::string out;
-  std::uint32_t word = 0;
-  int bits = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    word = word << 6 | static_cast<std::uint32_t>(digits.find(c));
-    if ((bits += 6) >= 8) out += static_cast<char>(word >> (bits -= 8) & 255);
-  }
-  return out;
-}
 
 /// Raw bytes of values in a row.
 template <typename T>
