@@ -25,3 +25,20 @@ endfunction()
 function(clpv_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
+
+# Files of a folder compile as one unit, which takes a third of the time. Names in a folder must then differ, those in
+# anonymous namespaces too.
+option(CLPV_UNITY "Compile files of a folder together" ON)
+
+# clpv_group(target folder...): each of these folders becomes a unit.
+function(clpv_group target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET folder FILENAME folder)
+    if(folder IN_LIST ARGN)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CLPV_UNITY} UNITY_BUILD_MODE GROUP)
+endfunction()

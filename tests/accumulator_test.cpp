@@ -8,7 +8,7 @@
 
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::accumulator_test {
 namespace {
 
 using test::test_session;
@@ -98,4 +98,4 @@ TEST(Accumulator, TakesTheMemoryItSays) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::accumulator_test

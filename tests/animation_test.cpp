@@ -6,7 +6,7 @@
 #include "tests/support/animation_fixture.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv::test {
+namespace clpv::test::animation_test {
 namespace {
 
 using ::testing::Contains;
@@ -187,4 +187,4 @@ TEST_F(AnimationTest, WhatIsNotReadGetsANote) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::animation_test

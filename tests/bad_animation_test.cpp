@@ -2,7 +2,7 @@
 // Hostile and broken glTF animations, one a test: each is refused before anything of the size it asks for is allocated.
 #include "tests/support/animation_fixture.hpp"
 
-namespace clpv::test {
+namespace clpv::test::bad_animation_test {
 namespace {
 
 using ::testing::AllOf;
@@ -126,4 +126,4 @@ TEST_F(BadAnimationTest, WaysOutOfTheWorld) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::bad_animation_test

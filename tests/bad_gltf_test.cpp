@@ -3,7 +3,7 @@
 // before anything of the size it asks for is allocated.
 #include "tests/support/bad_input.hpp"
 
-namespace clpv::test {
+namespace clpv::test::bad_gltf_test {
 namespace {
 
 using ::testing::AllOf;
@@ -274,4 +274,4 @@ TEST_F(BadGltfTest, CamerasAndLightsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::bad_gltf_test

@@ -2,7 +2,7 @@
 // Hostile and broken images of a model, one a test.
 #include "tests/support/bad_input.hpp"
 
-namespace clpv::test {
+namespace clpv::test::bad_image_test {
 namespace {
 
 using ::testing::AllOf;
@@ -86,4 +86,4 @@ TEST_F(BadImageTest, ATextureWithoutASource) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::bad_image_test

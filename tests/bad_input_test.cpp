@@ -3,7 +3,7 @@
 // allowed, as exit code 3 (bad_input).
 #include "tests/support/bad_input.hpp"
 
-namespace clpv::test {
+namespace clpv::test::bad_input_test {
 namespace {
 
 using ::testing::AllOf;
@@ -243,4 +243,4 @@ TEST_F(BadSceneFileTest, AModelThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::bad_input_test

@@ -15,7 +15,7 @@
 #include "reference/sweep.hpp"
 #include "support/error.hpp"
 
-namespace clpv::bench {
+namespace clpv::bench::baseline_test {
 namespace {
 
 /// Light in some cells, blockers at some corners, both at random.
@@ -98,4 +98,4 @@ TEST(Baseline, OfTheSweepRefusesWhatItIsNotMadeFor) {
 }
 
 }  // namespace
-}  // namespace clpv::bench
+}  // namespace clpv::bench::baseline_test

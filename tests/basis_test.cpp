@@ -13,7 +13,7 @@
 #include "tests/support/every_basis.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
-namespace clpv {
+namespace clpv::basis_test {
 namespace {
 
 using test::EveryBasis;
@@ -206,4 +206,4 @@ TEST(Refused, TwoEqualCentres) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::basis_test

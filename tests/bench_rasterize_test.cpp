@@ -10,7 +10,7 @@
 #include "pipeline/view.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv::bench {
+namespace clpv::bench::bench_rasterize_test {
 namespace {
 
 std::vector<Row> rows_of_a_hall() {
@@ -59,4 +59,4 @@ TEST(BenchRasterize, ThePeerIsThere) {
 }
 
 }  // namespace
-}  // namespace clpv::bench
+}  // namespace clpv::bench::bench_rasterize_test

@@ -19,7 +19,7 @@
 #include "support/json_schema.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv::bench {
+namespace clpv::bench::bench_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -371,4 +371,4 @@ TEST(BenchProgram, RegressionTellsBuildsAsRowsAndSpeaksToActions) {
 }
 
 }  // namespace
-}  // namespace clpv::bench
+}  // namespace clpv::bench::bench_test

@@ -13,7 +13,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::block_test {
 namespace {
 
 using namespace test;
@@ -137,4 +137,4 @@ TEST(Block, KernelsAgreeWithTheirTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::block_test

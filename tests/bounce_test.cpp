@@ -24,7 +24,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::bounce_test {
 namespace {
 
 using namespace test;
@@ -211,4 +211,4 @@ TEST(Bounce, KernelsAgreeWithTheirTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::bounce_test

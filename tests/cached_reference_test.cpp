@@ -10,7 +10,7 @@
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace clpv {
+namespace clpv::cached_reference_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST_F(CachedReference, AFolderThatCannotBeIsToldBeforeTracing) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::cached_reference_test

@@ -12,7 +12,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::cascade_test {
 namespace {
 
 TEST(Cascade, EachIsTwiceTheOneBeforeAndHoldsIt) {
@@ -119,4 +119,4 @@ TEST_F(WideModel, CascadesThatDoNotReachItAreWarnedOf) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::cascade_test

@@ -16,7 +16,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
-namespace clpv {
+namespace clpv::centre_search_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -248,4 +248,4 @@ TEST(LobeAims, OfFilesAreRefusedWithThePlace) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::centre_search_test

@@ -10,7 +10,7 @@
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::centres_test {
 namespace {
 
 class CentresFile : public ::testing::Test {
@@ -89,4 +89,4 @@ TEST_F(CentresFile, IsDescribedByTheProgram) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::centres_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::command_line_test {
 namespace {
 
 using ::testing::AllOf;
@@ -55,4 +55,4 @@ TEST(CommandLine, TimesAreFiniteSeconds) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::command_line_test

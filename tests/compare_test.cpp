@@ -13,7 +13,7 @@
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::compare_test {
 namespace {
 
 /// Every pixel (r, g, b, 1).
@@ -220,4 +220,4 @@ TEST_F(CompareCommand, ExitCodes) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::compare_test

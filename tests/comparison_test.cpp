@@ -11,7 +11,7 @@
 #include "basis/basis.hpp"
 #include "reference/inject.hpp"
 
-namespace clpv::reference {
+namespace clpv::reference::comparison_test {
 namespace {
 
 TEST(Comparison, TellsTheWorstAndItsPlace) {
@@ -60,4 +60,4 @@ TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
 }
 
 }  // namespace
-}  // namespace clpv::reference
+}  // namespace clpv::reference::comparison_test

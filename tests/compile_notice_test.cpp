@@ -9,7 +9,7 @@
 
 #include "support/log.hpp"
 
-namespace clpv {
+namespace clpv::compile_notice_test {
 namespace {
 
 /// The log, in place of stderr, while this lives.
@@ -51,4 +51,4 @@ TEST(CompileNotice, AfterALongWaitKeepingIsTold) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::compile_notice_test

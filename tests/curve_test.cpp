@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-namespace clpv {
+namespace clpv::curve_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -122,4 +122,4 @@ TEST(Curve, DirectionsFollowTheGreatCircle) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::curve_test

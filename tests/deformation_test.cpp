@@ -5,7 +5,7 @@
 
 #include "tests/support/animation_fixture.hpp"
 
-namespace clpv::test {
+namespace clpv::test::deformation_test {
 namespace {
 
 using ::testing::AllOf;
@@ -222,4 +222,4 @@ TEST_F(MorphTest, MoreTargetsThanMemory) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::deformation_test

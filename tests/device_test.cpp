@@ -11,7 +11,7 @@
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::device_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -157,4 +157,4 @@ TEST(ClError, NamesCodeCallAndAdvice) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::device_test

@@ -8,7 +8,7 @@
 #include "clpv/renderer.hpp"
 #include "tests/support/moving_scene.hpp"
 
-namespace clpv {
+namespace clpv::door_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(Door, ListsTheDeviceThatTestsRunOn) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::door_test

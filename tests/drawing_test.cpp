@@ -9,7 +9,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::drawing_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -105,4 +105,4 @@ TEST_F(Drawing, AReportRefusesWithItsOwnExitCode) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::drawing_test

@@ -18,7 +18,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/traced_scenes.hpp"
 
-namespace clpv {
+namespace clpv::emit_test {
 namespace {
 
 using namespace test;
@@ -259,4 +259,4 @@ TEST(EmissiveFrame, AtRestItsPointsDoNotDependOnWhatElseMoves) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::emit_test

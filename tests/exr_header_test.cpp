@@ -13,7 +13,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::exr_header_test {
 namespace {
 
 using namespace std::string_literals;
@@ -255,4 +255,4 @@ TEST(ExrHeader, AFileMayEndAnywhere) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::exr_header_test

@@ -6,7 +6,7 @@
 
 #include <set>
 
-namespace clpv {
+namespace clpv::fingerprint_test {
 namespace {
 
 std::string of(const std::vector<std::string>& pieces) {
@@ -39,4 +39,4 @@ TEST(Fingerprint, OfTheProgramIsStable) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::fingerprint_test

@@ -14,7 +14,7 @@
 #include "scene/load.hpp"
 #include "tests/support/moving_scene.hpp"
 
-namespace clpv {
+namespace clpv::frame_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -228,4 +228,4 @@ TEST(Frame, OfSomethingThatMovedIsAsIfMadeForThatInstant) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::frame_test

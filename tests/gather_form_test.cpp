@@ -13,7 +13,7 @@
 
 #include "basis/sweep.hpp"
 
-namespace clpv {
+namespace clpv::gather_form_test {
 namespace {
 
 using std::numbers::pi;
@@ -173,4 +173,4 @@ TEST(GatherForm, SweptLightNeedsNoWindow) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::gather_form_test

@@ -18,7 +18,7 @@
 #include "tests/support/gather_fields.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::gather_test {
 namespace {
 
 using std::numbers::pi;
@@ -308,4 +308,4 @@ TEST(Gather, KernelsOfOtherFormatsAgreeWithTheTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::gather_test

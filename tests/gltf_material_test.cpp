@@ -4,7 +4,7 @@
 
 #include "tests/support/gltf_fixture.hpp"
 
-namespace clpv::test {
+namespace clpv::test::gltf_material_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -145,4 +145,4 @@ TEST_F(GltfMaterialTest, EmissiveTextures) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::gltf_material_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/gltf_fixture.hpp"
 
-namespace clpv::test {
+namespace clpv::test::gltf_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -335,4 +335,4 @@ TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::gltf_test

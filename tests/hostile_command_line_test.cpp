@@ -2,7 +2,7 @@
 // Command lines that ask for what cannot be: each is told before a scene is read or a device is asked.
 #include "tests/support/hostile.hpp"
 
-namespace clpv::test {
+namespace clpv::test::hostile_command_line_test {
 namespace {
 
 const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
@@ -161,4 +161,4 @@ TEST(HostileCommandLines, OfDevices) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::hostile_command_line_test

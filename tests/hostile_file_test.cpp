@@ -5,7 +5,7 @@
 #include "tests/support/hostile.hpp"
 #include "tests/support/tiny_images.hpp"
 
-namespace clpv::test {
+namespace clpv::test::hostile_file_test {
 namespace {
 
 const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
@@ -213,4 +213,4 @@ TEST(HostileFiles, PointsWeightsAndReports) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::hostile_file_test

@@ -4,7 +4,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/hostile.hpp"
 
-namespace clpv::test {
+namespace clpv::test::hostile_scene_test {
 namespace {
 
 /// A sound model with one thing changed: the value at that JSON pointer.
@@ -202,4 +202,4 @@ TEST(HostileScenes, SceneFiles) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::hostile_scene_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/hostile.hpp"
 
-namespace clpv::test {
+namespace clpv::test::hostile_surroundings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -257,4 +257,4 @@ TEST(HostileSurroundings, CachesDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::hostile_surroundings_test

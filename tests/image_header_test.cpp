@@ -11,7 +11,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/tiny_images.hpp"
 
-namespace clpv {
+namespace clpv::image_header_test {
 namespace {
 
 std::span<const std::uint8_t> bytes_in(const std::string& text) {
@@ -89,4 +89,4 @@ TEST(ImageHeader, APngIsReadWithoutItsPackedTexts) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::image_header_test

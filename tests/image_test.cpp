@@ -12,7 +12,7 @@
 #include "support/output_file.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::image_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TEST_F(ImageFiles, UnwritablePlacesAreRunTimeErrors) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::image_test

@@ -14,7 +14,7 @@
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::inject_test {
 namespace {
 
 using test::expect_passed;
@@ -390,4 +390,4 @@ TEST(Inject, KernelsOfOtherFormatsAgreeWithTheTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::inject_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::junit_test {
 namespace {
 
 using ::testing::AllOf;
@@ -61,4 +61,4 @@ TEST(Pages, TheCompletionCompletes) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::junit_test

@@ -10,7 +10,7 @@
 #include "support/named_enum.hpp"
 #include "tests/support/moving_scene.hpp"
 
-namespace clpv {
+namespace clpv::kept_frame_test {
 namespace {
 
 using Passes = std::set<Pass>;
@@ -221,4 +221,4 @@ TEST_F(KeptPublishedFrame, MakesWhatChanged) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::kept_frame_test

@@ -17,7 +17,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv::test {
+namespace clpv::test::killed_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -227,4 +227,4 @@ TEST_F(Killed, AFolderThatGoesAwayIsTold) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::killed_test

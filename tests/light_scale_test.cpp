@@ -9,7 +9,7 @@
 
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::light_scale_test {
 namespace {
 
 constexpr VolumeFormat kHalf{Layout::soa, Storage::float16};
@@ -50,4 +50,4 @@ TEST(LightScale, ScalesEveryColour) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::light_scale_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/sphere_quadrature.hpp"
 
-namespace clpv {
+namespace clpv::lobe_quality_test {
 namespace {
 
 const glm::dvec3 kOblique = glm::normalize(glm::dvec3(-2, 1, -3));
@@ -73,4 +73,4 @@ TEST(EnergyAfter, IsAsTabled) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::lobe_quality_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::lookup_table_test {
 namespace {
 
 using test::test_session;
@@ -66,4 +66,4 @@ TEST(LookupTable, NoneWhereNothingIsLookedUp) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::lookup_table_test

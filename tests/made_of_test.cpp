@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-namespace clpv {
+namespace clpv::made_of_test {
 namespace {
 
 TEST(MadeOf, IsEqualWhereTheSameWasAdded) {
@@ -56,4 +56,4 @@ TEST(Kept, WhoseMakingFailsIsOfNothing) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::made_of_test

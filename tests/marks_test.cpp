@@ -15,7 +15,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::marks_test {
 namespace {
 
 using namespace test;
@@ -179,4 +179,4 @@ TEST(TriangleRuns, BoundTheirTrianglesAndTellWhatMoved) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::marks_test

@@ -20,7 +20,7 @@
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 
-namespace clpv {
+namespace clpv::options_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -187,4 +187,4 @@ TYPED_TEST(EachNamedEnum, RefusesOthersAndListsThem) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::options_test

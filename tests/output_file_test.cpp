@@ -15,7 +15,7 @@
 #include "support/vti.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::output_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +223,4 @@ TEST(ProgressLine, NothingIsDrawnWhereStderrIsNoTerminal) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::output_file_test

@@ -11,7 +11,7 @@
 #include "support/error.hpp"
 #include "tests/support/traced_scenes.hpp"
 
-namespace clpv {
+namespace clpv::path_tracer_test {
 namespace {
 
 using std::numbers::pi;
@@ -322,4 +322,4 @@ TEST(PathTracer, RefusesWhatItCannotTrace) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::path_tracer_test

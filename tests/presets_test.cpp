@@ -12,7 +12,7 @@
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::presets_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -130,4 +130,4 @@ TEST(Presets, HelpStatesThem) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::presets_test

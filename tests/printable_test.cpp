@@ -7,7 +7,7 @@
 #include "support/error.hpp"
 #include "support/xml.hpp"
 
-namespace clpv {
+namespace clpv::printable_test {
 namespace {
 
 TEST(Printable, TextStaysAsItIs) {
@@ -29,4 +29,4 @@ TEST(Printable, ErrorsAndXmlAre) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::printable_test

@@ -7,7 +7,7 @@
 
 #include <string_view>
 
-namespace clpv {
+namespace clpv::process_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST(Process, OneThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::process_test

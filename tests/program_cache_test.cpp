@@ -15,7 +15,7 @@
 #include "device/session.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::program_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -200,4 +200,4 @@ TEST_F(CachedSession, GoesOnWithoutAFolder) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::program_cache_test

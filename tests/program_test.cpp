@@ -14,7 +14,7 @@
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::program_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -134,4 +134,4 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::program_test

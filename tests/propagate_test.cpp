@@ -10,7 +10,7 @@
 #include "reference/propagate.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::propagate_test {
 namespace {
 
 using test::expect_passed;
@@ -178,4 +178,4 @@ TEST(Propagate, AnAlteredLiteralIsCaught) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::propagate_test

@@ -12,7 +12,7 @@
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::quality_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,4 +239,4 @@ TEST_F(QualityCommand, RefusesWithItsOwnExitCode) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::quality_test

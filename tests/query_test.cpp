@@ -14,7 +14,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv::test {
+namespace clpv::test::query_test {
 namespace {
 
 using ::testing::AllOf;
@@ -161,4 +161,4 @@ TEST_F(PointsFile, QueryAddsLightToEachPoint) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::query_test

@@ -14,7 +14,7 @@
 #include "tests/support/moving_scene.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv::test {
+namespace clpv::test::ranks_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,4 +220,4 @@ TEST_F(Ranks, OneRankIsThePlainProgram) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::ranks_test

@@ -14,7 +14,7 @@
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::rasterize_sponza_test {
 namespace {
 
 using test::test_session;
@@ -116,4 +116,4 @@ TEST_F(SponzaRasterizeTest, SunSeesTheRoofAndTheFloor) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::rasterize_sponza_test

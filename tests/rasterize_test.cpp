@@ -15,7 +15,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::rasterize_test {
 namespace {
 
 using test::add_material;
@@ -372,4 +372,4 @@ TEST(Rasterize, MatchesItsTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::rasterize_test

@@ -12,7 +12,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/traced_scenes.hpp"
 
-namespace clpv {
+namespace clpv::ray_scene_test {
 namespace {
 
 using namespace test;
@@ -155,4 +155,4 @@ TEST(RayScene, SeesWhatTheRasteriserSees) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::ray_scene_test

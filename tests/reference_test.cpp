@@ -10,7 +10,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::reference_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ TEST_F(ReferenceCommand, RefusesASceneWithoutLightOrSurface) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::reference_test

@@ -14,7 +14,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::reflect_test {
 namespace {
 
 using namespace test;
@@ -166,4 +166,4 @@ TEST(Reflect, KernelsAgreeWithTheirTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::reflect_test

@@ -13,7 +13,7 @@
 #include "support/error.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
-namespace clpv {
+namespace clpv::rotated_lobe_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -235,4 +235,4 @@ TEST(DirectionBins, ShareWhatLiesBetweenThem) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::rotated_lobe_test

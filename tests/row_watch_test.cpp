@@ -7,7 +7,7 @@
 #include <atomic>
 #include <future>
 
-namespace clpv::bench {
+namespace clpv::bench::row_watch_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -36,4 +36,4 @@ TEST(RowWatch, WithoutALimitThereIsNoThread) {
 }
 
 }  // namespace
-}  // namespace clpv::bench
+}  // namespace clpv::bench::row_watch_test

@@ -16,7 +16,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::run_time_lobes_test {
 namespace {
 
 using test::test_session;
@@ -192,4 +192,4 @@ TEST(RunTimeLobes, AreThereForUsers) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::run_time_lobes_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/bad_input.hpp"
 
-namespace clpv::test {
+namespace clpv::test::scene_keys_test {
 namespace {
 
 using ::testing::AllOf;
@@ -165,4 +165,4 @@ TEST_F(SceneKeysTest, InstantsAtWhichAWayLeavesWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::scene_keys_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/gltf_builder.hpp"
 
-namespace clpv::test {
+namespace clpv::test::scene_test {
 namespace {
 
 using ::testing::Contains;
@@ -219,4 +219,4 @@ TEST(SponzaTest, StoredNormalsAgreeWithTheFaces) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::scene_test

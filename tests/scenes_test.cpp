@@ -12,7 +12,7 @@
 #include "scene/load.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -272,4 +272,4 @@ TEST(AtriumLiving, TheCurtainLetsTheSunIntoTheAisle) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::scenes_test

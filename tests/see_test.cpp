@@ -12,7 +12,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::see_test {
 namespace {
 
 using namespace test;
@@ -128,4 +128,4 @@ TEST(See, TheKernelAgreesWithItsTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::see_test

@@ -8,7 +8,7 @@
 #include "tests/support/moving_scene.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv::test {
+namespace clpv::test::sequence_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -200,4 +200,4 @@ TEST_F(SequenceTest, AStillSceneIsToldOf) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::sequence_test

@@ -10,7 +10,7 @@
 #include "device/kernel.hpp"
 #include "support/error.hpp"
 
-namespace clpv {
+namespace clpv::session_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -163,4 +163,4 @@ TEST(Sizes, HostAndDeviceAgreeOnTheSharedStructs) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::session_test

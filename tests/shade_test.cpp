@@ -7,7 +7,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/shade_scenes.hpp"
 
-namespace clpv {
+namespace clpv::shade_test {
 namespace {
 
 using namespace shade_scenes;
@@ -137,4 +137,4 @@ TEST(Shade, KernelsAgreeWithTheirTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::shade_test

@@ -2,7 +2,7 @@
 // Shadows of known outline, and surfaces that must not shadow themselves (kernels/shade.cl).
 #include "tests/support/shade_scenes.hpp"
 
-namespace clpv {
+namespace clpv::shadow_test {
 namespace {
 
 using namespace shade_scenes;
@@ -177,4 +177,4 @@ TEST(Shadow, TwoRunsAreIdentical) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::shadow_test

@@ -25,7 +25,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/traced_scenes.hpp"
 
-namespace clpv {
+namespace clpv::sky_test {
 namespace {
 
 using namespace test;
@@ -337,4 +337,4 @@ TEST_F(SkyFile, RefusesWhatCannotShine) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::sky_test

@@ -12,7 +12,7 @@
 #include "scene/load.hpp"
 #include "tests/support/run_program.hpp"
 
-namespace clpv {
+namespace clpv::soak_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ TEST(ManyAtOnce, ShareAnEmptyQualityCache) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::soak_test

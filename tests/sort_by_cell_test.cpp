@@ -14,7 +14,7 @@
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::sort_by_cell_test {
 namespace {
 
 using test::test_session;
@@ -108,4 +108,4 @@ TEST(SortByCell, RefusesMoreTexelsThanRunsCanName) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::sort_by_cell_test

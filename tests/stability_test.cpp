@@ -14,7 +14,7 @@
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::stability_test {
 namespace {
 
 using test::test_session;
@@ -164,4 +164,4 @@ TEST_F(SteadyFrame, LightChangesLittleAsTheEyeMovesAndAsMuchAsTheLight) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::stability_test

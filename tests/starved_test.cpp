@@ -12,7 +12,7 @@
 
 #include "tests/support/run_program.hpp"
 
-namespace clpv::test {
+namespace clpv::test::starved_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ TEST_F(Starved, OfASmallDisk) {
 }
 
 }  // namespace
-}  // namespace clpv::test
+}  // namespace clpv::test::starved_test

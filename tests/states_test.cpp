@@ -12,7 +12,7 @@
 #include "tests/support/every_basis.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::states_test {
 namespace {
 
 using test::EveryBasis;
@@ -130,4 +130,4 @@ TEST(Sh4, GivesTheImageOfSh3) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::states_test

@@ -19,7 +19,7 @@
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::sweep_test {
 namespace {
 
 using namespace test;
@@ -344,4 +344,4 @@ TEST(Sweep, KernelsAgreeWithTheirTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::sweep_test

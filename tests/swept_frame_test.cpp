@@ -12,7 +12,7 @@
 #include "support/named_enum.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::swept_frame_test {
 namespace {
 
 using namespace test;
@@ -105,4 +105,4 @@ TEST(SweptFrame, RefusesWhatDoesNotApply) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::swept_frame_test

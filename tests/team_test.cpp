@@ -14,7 +14,7 @@
 #include "parallel/schedule.hpp"
 #include "tests/support/thread_messages.hpp"
 
-namespace clpv {
+namespace clpv::team_test {
 namespace {
 
 using ::testing::AllOf;
@@ -169,4 +169,4 @@ TEST(ScheduleTest, RunsOfNeighboursGetShorter) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::team_test

@@ -9,7 +9,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::texture_test {
 namespace {
 
 using test::add_material;
@@ -188,4 +188,4 @@ TEST(Texture, EmissionIsSeen) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::texture_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace clpv {
+namespace clpv::tone_map_test {
 namespace {
 
 TEST(Srgb, PublishedValues) {
@@ -78,4 +78,4 @@ TEST(DisplayImage, ExposureDoublesAndBackgroundStaysClear) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::tone_map_test

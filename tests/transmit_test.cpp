@@ -14,7 +14,7 @@
 #include "support/named_enum.hpp"
 #include "tests/support/on_device.hpp"
 
-namespace clpv {
+namespace clpv::transmit_test {
 namespace {
 
 using test::test_session;
@@ -202,4 +202,4 @@ TEST_P(EachTransport, KernelsAgreeWithTheTwin) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::transmit_test

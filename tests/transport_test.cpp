@@ -11,7 +11,7 @@
 #include "tests/support/every_basis.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
-namespace clpv {
+namespace clpv::transport_test {
 namespace {
 
 using test::EveryBasis;
@@ -262,4 +262,4 @@ TEST(Octahedral, OperatorsArePermutationsOfOne) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::transport_test

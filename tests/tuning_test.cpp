@@ -13,7 +13,7 @@
 #include "tests/support/run_program.hpp"
 #include "volume/volume_format.hpp"
 
-namespace clpv {
+namespace clpv::tuning_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -117,4 +117,4 @@ TEST(TuneProgram, RefusesBadUsage) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::tuning_test

@@ -12,7 +12,7 @@
 #include "support/error.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv {
+namespace clpv::view_test {
 namespace {
 
 using reference::project;
@@ -216,4 +216,4 @@ TEST(View, ShadowViewOfADirectionalLightHoldsTheScene) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::view_test

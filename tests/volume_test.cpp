@@ -14,7 +14,7 @@
 #include "tests/support/on_device.hpp"
 #include "volume/accumulator.hpp"
 
-namespace clpv {
+namespace clpv::volume_test {
 namespace {
 
 using test::test_session;
@@ -228,4 +228,4 @@ TEST(VolumeLayouts, ImagesAddUpOverAnyNumberOfSteps) {
 }
 
 }  // namespace
-}  // namespace clpv
+}  // namespace clpv::volume_test

@@ -15,7 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kNegligible =
+constexpr double kNegligibleWeight =
     1e-12;  // quadrature's noise in a matrix whose entry is 0; the others are near 1
 
 /// CLPV_EACH_PAIR: of an odd number of them the last is paired with zero. `member`: how one lane of a member is written.
@@ -57,7 +57,7 @@ std::string gather_weights(const GatherForm& form, bool packed, bool from_table)
     std::string sum;
     for (int i = 0; i < count; ++i) {
       const double weight = form.matrix()(i, j);
-      if (std::abs(weight) < kNegligible) continue;
+      if (std::abs(weight) < kNegligibleWeight) continue;
       const std::string literal = float_literal(weight);
       sum = sum.empty() ? fmt::format("{} * a.c{}", literal, i)
                         : fmt::format("fma({}, a.c{}, {})", literal, i, sum);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCorners = 8;
 
-struct Generated {
+struct TransmitCode {
   LinearCode code;
   std::string assignments;  // to ways.c0, ways.c1, ...
 };
@@ -55,7 +55,7 @@ std::vector<std::string> blockers_towards(LinearCode& code, const glm::ivec3& no
 
 /// Gives ways.c<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker the mean over the corners
 /// towards `normal`, looked up by a row of `weights` each.
-void add_ways(Generated& out, const std::optional<Mirrors>& mirrors, const glm::ivec3& normal,
+void add_ways(TransmitCode& out, const std::optional<Mirrors>& mirrors, const glm::ivec3& normal,
               const std::vector<std::vector<double>>& weights, const std::vector<int>& ways) {
   LinearCode& code = out.code;
   const auto corners = static_cast<double>(corners_towards(normal).size());
@@ -76,7 +76,7 @@ void add_ways(Generated& out, const std::optional<Mirrors>& mirrors, const glm::
 }
 
 /// The 30 ways to faces: five lead to each face, whose corners they share.
-int add_faces(Generated& out, const std::optional<Mirrors>& mirrors, const FaceTransport& scheme) {
+int add_faces(TransmitCode& out, const std::optional<Mirrors>& mirrors, const FaceTransport& scheme) {
   for (const glm::ivec3& normal : kAxes) {
     std::vector<std::vector<double>> weights;
     std::vector<int> ways;
@@ -91,7 +91,8 @@ int add_faces(Generated& out, const std::optional<Mirrors>& mirrors, const FaceT
 }
 
 /// One way a neighbour, through the face, edge or corner that the two cells share.
-int add_neighbours(Generated& out, const std::optional<Mirrors>& mirrors, const OperatorTransport& scheme) {
+int add_neighbours(TransmitCode& out, const std::optional<Mirrors>& mirrors,
+                   const OperatorTransport& scheme) {
   int way = 0;
   for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
     if (neighbour.offset == glm::ivec3(0)) continue;
@@ -103,7 +104,7 @@ int add_neighbours(Generated& out, const std::optional<Mirrors>& mirrors, const 
 }  // namespace
 
 TransmitSource transmit_source(const Basis& basis, const Transport& transport) {
-  Generated out;
+  TransmitCode out;
   TransmitSource result;
   // Of three areas each way looks up one or two: nothing for mirrors to share.
   std::optional<Mirrors> mirrors;

@@ -102,7 +102,7 @@ class Cursor {
 };
 
 /// One part, while its header is read.
-struct Part : ImageClaim {
+struct ExrPart : ImageClaim {
   std::int64_t rows = 1;                         ///< of a chunk, where it has no tiles
   std::int64_t tile_width = 0, tile_height = 0;  ///< 0: no such attribute
   std::int64_t chunks = 0;                       ///< that it says it has
@@ -155,7 +155,7 @@ void check_value(const Cursor& file, std::string_view place, std::string_view ty
 }
 
 /// Keeps what memory is taken by.
-void keep_value(Part& part, const Cursor& file, std::string_view place, std::string_view name,
+void keep_value(ExrPart& part, const Cursor& file, std::string_view place, std::string_view name,
                 std::string_view type, std::span<const unsigned char> bytes) {
   if (name == "dataWindow" && type == "box2i") {
     part.width = std::int64_t{number_at(bytes, 8)} - number_at(bytes, 0) + 1;
@@ -177,8 +177,8 @@ void keep_value(Part& part, const Cursor& file, std::string_view place, std::str
 }
 
 /// One header: attributes, each a name, its type's name, a size and so many bytes, that an empty name ends.
-Part read_part(Cursor& file, std::size_t index) {
-  Part part;
+ExrPart read_part(Cursor& file, std::size_t index) {
+  ExrPart part;
   std::set<std::string> names;
   for (;; part.empty = false) {
     const std::string before = fmt::format("part {}", index);
@@ -198,7 +198,7 @@ Part read_part(Cursor& file, std::size_t index) {
 }
 
 /// The least number of chunks that it has: finer levels of tiles come on top.
-std::int64_t least_chunks(const Part& part) {
+std::int64_t least_chunks(const ExrPart& part) {
   const auto quotient_up = [](std::int64_t count, std::int64_t by) {
     return by > 0 && count > 0 ? (count + by - 1) / by : 0;
   };
@@ -211,14 +211,14 @@ std::int64_t least_chunks(const Part& part) {
 
 /// A file of several parts, or deep ones, tells by their types what they are. OpenEXR asks nothing of parts of other types, so
 /// that OpenImageIO 2.4 ends the program at what their headers hold.
-void check_type(const Cursor& file, const std::string& place, const Part& part) {
+void check_type(const Cursor& file, const std::string& place, const ExrPart& part) {
   if (std::ranges::count(kPartTypes, part.type) > 0) return;
   refuse(file.file(), place, fmt::format("type '{}'", part.type),
          fmt::format("{}", fmt::join(kPartTypes, ", ")));
 }
 
 /// What of a part is decoded at once.
-void settle_chunks(Part& part, std::uint32_t flags, bool typed) {
+void settle_chunks(ExrPart& part, std::uint32_t flags, bool typed) {
   part.deep = typed && part.type.starts_with("deep");
   part.tiled = typed ? part.type == "deeptile" || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
   part.chunk_width = part.tiled ? part.tile_width : part.width;
@@ -242,7 +242,7 @@ ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const un
   ImageClaim first;
   std::int64_t chunks = 0;
   for (std::size_t index = 0;; ++index) {
-    Part part = read_part(file, index);
+    ExrPart part = read_part(file, index);
     if (several && part.empty) break;  // which ends their list
     if (typed) check_type(file, fmt::format("part {}", index), part);
     settle_chunks(part, flags, typed);

@@ -7,7 +7,6 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kGroup = 64;
 constexpr unsigned kMostTriangles = 1u << 20;  // a launch
 
 MarksShape shape_of(int grid, int cascades) {
@@ -46,7 +45,7 @@ void SceneBlocker::block(std::size_t cascade, const ClpvGrid& grid, Volume& geom
                masks_.slot(cascade));
   shares_.set(masks_.buffer(), masks_.slot(cascade), geometry.memory());
   const auto corners = static_cast<std::size_t>(grid_) + 1;
-  shares_.launch(cl::NDRange(corners, corners, corners), cl::NDRange(kGroup, 1, 1));
+  shares_.launch(cl::NDRange(corners, corners, corners), cl::NDRange(kMarkGroup, 1, 1));
 }
 
 }  // namespace clpv

@@ -6,8 +6,8 @@
 namespace clpv {
 namespace {
 
-constexpr cl_uint kRow = 256;  // points of a row, where injection takes surfaces of rows
-const cl::NDRange kGroup(16);  // work-items are long where there are textures
+constexpr cl_uint kRow = 256;      // points of a row, where injection takes surfaces of rows
+const cl::NDRange kEmitGroup(16);  // work-items are long where there are textures
 
 ProgramSource emit_program(const SceneBuffers& scene) {
   ProgramSource source{"emit.cl", {}, {}};
@@ -34,7 +34,7 @@ void Emitter::emit(const EmissionPlan& plan, float scale) {
       .set(parts_, static_cast<cl_uint>(plan.parts.size()), cl_uint{plan.points}, places, scale,
            scene_.vertices, scene_.triangles, scene_.materials, cl_uint{scene_.white}, scene_.textures,
            scene_.texels, points_.position, points_.normal, points_.colour)
-      .launch(cl::NDRange(places), kGroup);
+      .launch(cl::NDRange(places), kEmitGroup);
 }
 
 }  // namespace clpv

@@ -16,6 +16,8 @@
 
 namespace clpv {
 
+inline constexpr std::size_t kMarkGroup = 64;  // work-items a group
+
 static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
 
 /// Marks of a cascade: 32-bit words, so many a cell, cells along x first.

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
-constexpr std::size_t kGroup = 64;
+constexpr std::size_t kRasterGroup = 64;
 constexpr std::size_t kItemsARun = CLPV_RUN / 8;  // a work-item sets eight triangles up
 constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
@@ -53,8 +53,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
   session_.reserve(runs_, scene.runs->bounds().size() * sizeof(cl_uint), "runs of triangles in sight");
-  reserve_list(scene.triangle_count / 2 + kGroup);
-  reserve_entries(scene.triangle_count + kGroup);
+  reserve_list(scene.triangle_count / 2 + kRasterGroup);
+  reserve_entries(scene.triangle_count + kRasterGroup);
 }
 
 void Rasterizer::reserve_list(std::size_t count) {
@@ -129,22 +129,22 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   kernels.triangles
       .set(pass.view, runs_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
            scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, places_, to_clip_)
-      .launch(count * kItemsARun, kGroup);
+      .launch(count * kItemsARun, kRasterGroup);
   kernels.clipped
       .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, places_, to_clip_)
-      .launch(kClippers, kGroup);
+      .launch(kClippers, kRasterGroup);
 }
 
 /// Sorts what set_up() entered by tile.
 void Rasterizer::bin(const ClpvView& view) {
   const unsigned slices = slice_count(view);
   const std::size_t chunks = (slices + CLPV_SLICE_CHUNK - 1) / CLPV_SLICE_CHUNK;
-  sum_places_.set(slices, places_, totals_).launch(chunks, kGroup);
-  start_places_.set(slices, places_, totals_).launch(chunks, kGroup);
+  sum_places_.set(slices, places_, totals_).launch(chunks, kRasterGroup);
+  start_places_.set(slices, places_, totals_).launch(chunks, kRasterGroup);
   const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
   bin_entries_.set(counts_, list_room(), entry_room(), entries_, places_, binned_)
-      .launch(groups * kGroup, kGroup);
+      .launch(groups * kRasterGroup, kRasterGroup);
 }
 
 /// Lists the triangles of a range of runs by tile, growing the lists where they are too short; false where they would

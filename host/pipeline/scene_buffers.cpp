@@ -115,7 +115,7 @@ std::vector<Material> with_textures(std::vector<Material> materials, unsigned wh
   return materials;
 }
 
-Bounds bounds_of(const std::vector<Vertex>& vertices) {
+Bounds bounds_of_all(const std::vector<Vertex>& vertices) {
   if (vertices.empty()) return {};
   glm::vec3 lower(std::numeric_limits<float>::max()), upper(std::numeric_limits<float>::lowest());
   for (const Vertex& v : vertices) {
@@ -144,7 +144,7 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.coloured = is_coloured(scene.vertices);
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
   buffers.masked = std::any_of(scene.materials.begin(), scene.materials.end(), is_masked);
-  buffers.bounds = bounds_of(scene.vertices);
+  buffers.bounds = bounds_of_all(scene.vertices);
   buffers.runs = std::make_shared<TriangleRuns>(scene);
   return buffers;
 }
@@ -156,7 +156,7 @@ void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) 
     session.write(buffers.triangles, std::span(scene.triangles).subspan(part.first_triangle, part.triangles),
                   part.first_triangle);
   }
-  buffers.bounds = bounds_of(scene.vertices);
+  buffers.bounds = bounds_of_all(scene.vertices);
 }
 
 }  // namespace clpv

@@ -4,8 +4,8 @@
 namespace clpv {
 namespace {
 
-constexpr unsigned kMostTriangles = 1u << 20;  // a launch
-constexpr std::size_t kPoints = 64;            // of a cube between centres, a byte each
+constexpr unsigned kMostHiders = 1u << 20;  // a launch
+constexpr std::size_t kPoints = 64;         // of a cube between centres, a byte each
 
 ProgramSource program_of(int grid) {
   ProgramSource source{"see.cl", {}, {}};
@@ -14,22 +14,22 @@ ProgramSource program_of(int grid) {
 }
 
 /// A cube between centres for each cell but the last ones.
-MarksShape shape_of(int grid, int cascades) {
+MarksShape hidden_shape(int grid, int cascades) {
   return {grid, grid - 1, kPoints / sizeof(cl_uint), static_cast<std::size_t>(cascades)};
 }
 
 }  // namespace
 
 std::size_t SceneSight::bytes(int grid) {
-  return shape_of(grid, 1).bytes();
+  return hidden_shape(grid, 1).bytes();
 }
 
 std::size_t SceneSight::bytes(int grid, int cascades) {
-  return marks_bytes(shape_of(grid, cascades));
+  return marks_bytes(hidden_shape(grid, cascades));
 }
 
 SceneSight::SceneSight(Session& session, const SceneBuffers& scene, int grid, int cascades)
-    : hidden_(session, scene, shape_of(grid, cascades), kMostTriangles, "cells hidden by triangles"),
+    : hidden_(session, scene, hidden_shape(grid, cascades), kMostHiders, "cells hidden by triangles"),
       triangles_(session, program_of(grid), "see_triangles") {}
 
 void SceneSight::see(std::size_t cascade, const ClpvGrid& grid) {

@@ -9,10 +9,10 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kLocal = 64;  // pixels a group shades
+constexpr std::size_t kShadeGroup = 64;  // pixels a group shades
 constexpr unsigned kLeastShadowTexels = CLPV_SHADOW_TAPS;
 
-const ProgramSource kSource{"shade.cl", {}, {}};
+const ProgramSource kShadeSource{"shade.cl", {}, {}};
 
 std::size_t pixels_of(const Surface& surface) {
   return static_cast<std::size_t>(surface.view.width) * surface.view.height;
@@ -34,7 +34,9 @@ void require_fit(const ShadowedLight& shadowed) {
 }  // namespace
 
 Shader::Shader(Session& session)
-    : session_(session), light_(session, kSource, "light_surfaces"), shade_(session, kSource, "shade") {}
+    : session_(session),
+      light_(session, kShadeSource, "light_surfaces"),
+      shade_(session, kShadeSource, "shade") {}
 
 void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& lights) {
   if (camera.format != RsmFormat::float32)
@@ -70,7 +72,7 @@ void Shader::show(Show what, const Surface& camera, const Buffer& irradiance, Bu
   shade_
       .set(static_cast<cl_uint>(what), static_cast<cl_uint>(pixels_), camera.depth, camera.normal,
            camera.colour, camera.emissive, direct_, irradiance, image)
-      .launch(cl::NDRange(pixels_), cl::NDRange(kLocal));
+      .launch(cl::NDRange(pixels_), cl::NDRange(kShadeGroup));
 }
 
 }  // namespace clpv

@@ -6,14 +6,14 @@
 namespace clpv {
 namespace {
 
-glm::dvec3 vector(const float (&v)[3]) {
+glm::dvec3 triple(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
 
 }  // namespace
 
 void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) {
-  const glm::dvec3 forward = vector(view.forward), right = vector(view.right), up = vector(view.up);
+  const glm::dvec3 forward = triple(view.forward), right = triple(view.right), up = triple(view.up);
   for (unsigned y = 0; y < view.height; ++y) {
     for (unsigned x = 0; x < view.width; ++x) {
       float* pixel = &image[std::size_t{4} * (std::size_t{y} * view.width + x)];

@@ -20,7 +20,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kWidestGroup = 4096;  // work-items along an axis; devices refuse more than they have anyway
+constexpr double kWidestTuned = 4096;  // work-items along an axis; devices refuse more than they have anyway
 
 /// Everything a tuning depends on, this version of the kernels included.
 std::string key_of(const Device& device, const TuningSubject& s) {
@@ -37,7 +37,7 @@ void require_sound(const nlohmann::json& entry, const std::string& file) {
                                    rule::text("/layout", names_of<Layout>()).must(),
                                    rule::choice("/lanes", {1, 8}).must(),
                                    rule::list("/local", 2, 2).must(),
-                                   rule::integer("/local/*", 1, kWidestGroup)};
+                                   rule::integer("/local/*", 1, kWidestTuned)};
   check_rules(entry, rules, file);
 }
 

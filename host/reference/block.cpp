@@ -10,15 +10,12 @@
 
 #include "reference/materials.hpp"
 #include "reference/triangle.hpp"
+#include "reference/view.hpp"
 
 namespace clpv::reference {
 namespace {
 
-constexpr int kSamples = 8;          // of a cell's square along each axis
-constexpr double kSeam = 1.0 / 256;  // [samples] outside an edge that still count
-constexpr double kHair = 2e-3;       // [samples], [cells / 8]: what float32 may decide either way
-constexpr double kAlphaHair =
-    0.03;  // a texture's step from texel to texel magnifies what rounding moves a sample by
+constexpr double kHair = 2e-3;  // [samples], [cells / 8]: what float32 may decide either way
 
 using Mask = std::bitset<kSamples * kSamples>;
 
@@ -48,10 +45,6 @@ Seen seen_along(int axis, const std::array<glm::dvec3, 3>& corners, const ClpvGr
     seen.depth[i] = cells[axis];
   }
   return seen;
-}
-
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
 }
 
 /// How far inside the triangle a sample is [samples]: the least over its edges, their seams included.

@@ -11,8 +11,6 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kAlphaHair = 0.03;  // as in block.cpp
-
 /// A triangle cut out of another, alike or turned round: its first corner and its edges, by that one's weights.
 struct Piece {
   glm::dvec2 corner{0};

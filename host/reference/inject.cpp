@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastCosine = 0.1;  // of a surfel seen edge-on
 constexpr double kTie = 2e-3;         // of the energy: four times what halves round a coefficient by
 
-glm::dvec3 vector(const glm::vec4& v) {
+glm::dvec3 xyz(const glm::vec4& v) {
   return {v.x, v.y, v.z};
 }
 
@@ -59,9 +59,9 @@ glm::dvec3 ray(const ClpvView& view, std::size_t pixel) {
 }
 
 bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
-  const glm::dvec3 normal = vector(surface.normal[pixel]);
+  const glm::dvec3 normal = xyz(surface.normal[pixel]);
   if (!finite(normal) || glm::dot(normal, normal) == 0) return false;
-  if (!surface.position.empty()) return finite(vector(surface.position[pixel]));
+  if (!surface.position.empty()) return finite(xyz(surface.position[pixel]));
   return surface.depth[pixel] > 0 && std::isfinite(surface.depth[pixel]);
 }
 
@@ -75,7 +75,7 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
     const bool taken =
         pixel % surface.view.width % every == every / 2 && pixel / surface.view.width % every == every / 2;
     if (!taken || !has_surface(surface, pixel)) continue;
-    const glm::dvec3 normal = vector(surface.normal[pixel]);
+    const glm::dvec3 normal = xyz(surface.normal[pixel]);
     const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
     const double share =
         stride * stride * footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
@@ -103,17 +103,17 @@ glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const Clpv
   const auto px = static_cast<double>(pixel % surface.view.width);
   const auto py = static_cast<double>(pixel / surface.view.width);
   const glm::dvec3 p = surface.position.empty() ? surface_position(surface.view, px, py, surface.depth[pixel])
-                                                : vector(surface.position[pixel]);
-  return (p - origin) / static_cast<double>(grid.cell) + (light ? 0.5 : 0.0) * vector(surface.normal[pixel]);
+                                                : xyz(surface.position[pixel]);
+  return (p - origin) / static_cast<double>(grid.cell) + (light ? 0.5 : 0.0) * xyz(surface.normal[pixel]);
 }
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
                   const InjectOptions& options, Volume& light) {
   const Lobes lobes(basis, options.lobes);
   for (std::size_t pixel = 0; pixel < rsm.normal.size(); ++pixel) {
-    const glm::dvec3 flux = vector(rsm.colour[pixel]);
+    const glm::dvec3 flux = xyz(rsm.colour[pixel]);
     if (!has_surface(rsm, pixel) || !finite(flux)) continue;
-    const std::vector<double> c = lobe(basis, lobes, vector(rsm.normal[pixel]), options.unit_flux_lobes);
+    const std::vector<double> c = lobe(basis, lobes, xyz(rsm.normal[pixel]), options.unit_flux_lobes);
     const glm::dvec3 point = grid_point(rsm, pixel, grid, true);
     for (int channel = 0; channel < 3; ++channel) {
       const double intensity = flux[channel] / std::numbers::pi;

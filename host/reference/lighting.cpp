@@ -3,16 +3,11 @@
 
 #include <algorithm>
 
+#include "reference/view.hpp"
 #include "scene/light_kind.hpp"
 
 namespace clpv::reference {
-namespace {
-
-glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
   const glm::dvec3 direction = vector(light.direction), intensity = vector(light.intensity);

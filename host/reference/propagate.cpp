@@ -28,15 +28,6 @@ int column_of(const glm::ivec3& normal) {
   return static_cast<int>(std::find(kAxes.begin(), kAxes.end(), normal) - kAxes.begin());
 }
 
-template <typename Visit>
-void for_each_cell(int n, Visit visit) {
-  for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y) {
-      for (int x = 0; x < n; ++x) visit(glm::ivec3(x, y, z));
-    }
-  }
-}
-
 /// One number a cell, in the order of Volume::values.
 using Plane = std::vector<double>;
 

@@ -19,10 +19,6 @@ constexpr double kDepthDoubt = 1e-5;     // of the depth
 constexpr double kAlphaDoubt = 1e-3;
 constexpr double kEdgeOnDoubt = 1e-4;  // cosine between ray and plane
 
-glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
-
 /// Along a pixel's ray, one metre deeper.
 glm::dvec3 along(const ClpvView& view, unsigned px, unsigned py) {
   return surface_position(view, px, py, 1) - surface_position(view, px, py, 0);

@@ -30,10 +30,6 @@ std::vector<glm::dvec3> clipped(const ClpvView& view, const std::array<glm::dvec
   return kept;
 }
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
 glm::dvec2 centre(unsigned px, unsigned py) {
   return (glm::dvec2(px, py) + 0.5) * static_cast<double>(CLPV_SUBPIXELS);
 }

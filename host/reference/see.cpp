@@ -11,9 +11,9 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kPoints = 4;      // of a cube along each axis
-constexpr double kSeam = 1e-3;  // [cells] outside an edge that still count
-constexpr double kHair = 4e-4;  // [cells]: what float32 may decide either way
+constexpr int kCubePoints = 4;     // of a cube along each axis
+constexpr double kSeeSeam = 1e-3;  // [cells] outside an edge that still count
+constexpr double kSeeHair = 4e-4;  // [cells]: what float32 may decide either way
 
 using Corners = std::array<glm::dvec3, 3>;  // [cells] from the first cell's centre
 
@@ -31,24 +31,25 @@ double crossing(const Corners& t, const glm::dvec3& from, const glm::dvec3& to) 
     const double inside =
         glm::dot(glm::cross(edge, cut - a), normal) / (size * size);  // a barycentric coordinate
     const double breadth = std::abs(edge.x) + std::abs(edge.y) + std::abs(edge.z);
-    least = std::min(least, inside * std::abs(along) / breadth + kSeam);
+    least = std::min(least, inside * std::abs(along) / breadth + kSeeSeam);
   }
   // A plane through the very start hides nothing, and rounding tells which side it is on.
-  return std::abs(distance) / size < kHair ? std::min(least, 0.0) : least;
+  return std::abs(distance) / size < kSeeHair ? std::min(least, 0.0) : least;
 }
 
 void add(Hidden& hidden, int n, const Corners& t, const glm::ivec3& cube) {
-  const auto first =
-      static_cast<std::size_t>(((cube.z * n + cube.y) * n + cube.x) * kPoints * kPoints * kPoints);
-  for (int point = 0; point < kPoints * kPoints * kPoints; ++point) {
-    const glm::dvec3 at(point % kPoints, point / kPoints % kPoints, point / kPoints / kPoints);
-    const glm::dvec3 to = glm::dvec3(cube) + (at + 0.5) / double{kPoints};
+  const auto first = static_cast<std::size_t>(((cube.z * n + cube.y) * n + cube.x) * kCubePoints *
+                                              kCubePoints * kCubePoints);
+  for (int point = 0; point < kCubePoints * kCubePoints * kCubePoints; ++point) {
+    const glm::dvec3 at(point % kCubePoints, point / kCubePoints % kCubePoints,
+                        point / kCubePoints / kCubePoints);
+    const glm::dvec3 to = glm::dvec3(cube) + (at + 0.5) / double{kCubePoints};
     for (int corner = 0; corner < 8; ++corner) {
       const double sure =
           crossing(t, glm::dvec3(cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), to);
       const auto bit = static_cast<std::uint8_t>(1u << corner);
-      if (sure > kHair) hidden.least[first + static_cast<std::size_t>(point)] |= bit;
-      if (sure >= -kHair) hidden.most[first + static_cast<std::size_t>(point)] |= bit;
+      if (sure > kSeeHair) hidden.least[first + static_cast<std::size_t>(point)] |= bit;
+      if (sure >= -kSeeHair) hidden.most[first + static_cast<std::size_t>(point)] |= bit;
     }
   }
 }
@@ -57,7 +58,7 @@ void add(Hidden& hidden, int n, const Corners& t, const glm::ivec3& cube) {
 
 Hidden see(const Scene& scene, const ClpvGrid& grid) {
   const int n = static_cast<int>(grid.n);
-  const auto bytes = static_cast<std::size_t>(n) * n * n * kPoints * kPoints * kPoints;
+  const auto bytes = static_cast<std::size_t>(n) * n * n * kCubePoints * kCubePoints * kCubePoints;
   Hidden hidden{std::vector<std::uint8_t>(bytes), std::vector<std::uint8_t>(bytes)};
   for (const Triangle& triangle : scene.triangles) {
     if ((scene.materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) continue;
@@ -68,8 +69,8 @@ Hidden see(const Scene& scene, const ClpvGrid& grid) {
       t[i] = (at - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell} - 0.5;
       low = glm::min(low, t[i]), high = glm::max(high, t[i]);
     }
-    const glm::ivec3 first(glm::clamp(glm::floor(low - kHair), 0.0, n - 1.0)),
-        last(glm::clamp(glm::floor(high + kHair), -1.0, n - 2.0));
+    const glm::ivec3 first(glm::clamp(glm::floor(low - kSeeHair), 0.0, n - 1.0)),
+        last(glm::clamp(glm::floor(high + kSeeHair), -1.0, n - 2.0));
     for (int z = first.z; z <= last.z; ++z) {
       for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) add(hidden, n, t, {x, y, z});

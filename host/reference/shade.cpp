@@ -12,10 +12,6 @@
 namespace clpv::reference {
 namespace {
 
-glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
-
 /// Depth at which a pixel's ray meets the plane through `point`; infinite where the ray runs away from it.
 double plane_depth(const ClpvView& view, const glm::dvec2& pixel, const glm::dvec3& point,
                    const glm::dvec3& normal) {

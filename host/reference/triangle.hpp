@@ -8,6 +8,11 @@
 
 namespace clpv::reference {
 
+inline constexpr int kSamples = 8;          // of a cell's face along each axis, where triangles are sampled
+inline constexpr double kSeam = 1.0 / 256;  // [samples] outside an edge that still count
+/// Alpha within this of the cut-off is undecided: a texture's step between texels magnifies a sample's rounding.
+inline constexpr double kAlphaHair = 0.03;
+
 inline glm::vec3 position(const Vertex& v) {
   return {v.position[0], v.position[1], v.position[2]};
 }

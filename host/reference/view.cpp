@@ -4,13 +4,7 @@
 #include <cmath>
 
 namespace clpv::reference {
-namespace {
-
-glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 glm::dvec3 surface_position(const ClpvView& view, double px, double py, double depth) {
   const double scale = view.orthographic != 0 ? 1.0 : depth;

@@ -8,6 +8,13 @@
 
 namespace clpv::reference {
 
+inline glm::dvec3 vector(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
+inline double cross(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
 /// The surface point [m] at depth [m] behind pixel (px, py); pixel centres at whole numbers.
 glm::dvec3 surface_position(const ClpvView& view, double px, double py, double depth);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/glm.hpp>
 #include <vector>
 
 namespace clpv::reference {
@@ -29,5 +30,15 @@ struct Volume {
     return inside(x, y, z) ? values[index(channel, i, x, y, z)] : 0.0;
   }
 };
+
+/// visit(cell) for each of n^3 cells, x fastest.
+template <typename Visit>
+void for_each_cell(int n, Visit visit) {
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) visit(glm::ivec3(x, y, z));
+    }
+  }
+}
 
 }  // namespace clpv::reference

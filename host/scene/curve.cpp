@@ -8,13 +8,13 @@ namespace clpv {
 namespace {
 
 /// Where an instant lies among a curve's keys.
-struct Place {
+struct CurvePlace {
   std::size_t key;   ///< the last one not after it; the first one before that
   double share = 0;  ///< of the way to the next key, below 1; 0 where there is none
   double span = 0;   ///< from that key to the next [s]
 };
 
-Place place_of(const Curve& curve, double seconds) {
+CurvePlace place_of(const Curve& curve, double seconds) {
   const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), seconds);
   if (after == curve.times.begin()) return {0};
   const auto key = static_cast<std::size_t>(after - curve.times.begin()) - 1;
@@ -29,7 +29,7 @@ const double* key_of(const Curve& curve, std::size_t key, std::size_t part = 1) 
   return &curve.values[(cubic ? 3 * key + part : key) * curve.components];
 }
 
-void hermite(const Curve& curve, const Place& at, std::span<double> out) {
+void hermite(const Curve& curve, const CurvePlace& at, std::span<double> out) {
   const double t = at.share, t2 = t * t, t3 = t2 * t;
   const double* from = key_of(curve, at.key);
   const double* leaving = key_of(curve, at.key, 2);
@@ -52,7 +52,7 @@ glm::dquat rotation_of(const double* v) {
 }  // namespace
 
 void evaluate(const Curve& curve, double seconds, std::span<double> out) {
-  const Place at = place_of(curve, seconds);
+  const CurvePlace at = place_of(curve, seconds);
   const double* from = key_of(curve, at.key);
   if (at.share == 0 || curve.interpolation == Interpolation::step) {
     std::copy_n(from, out.size(), out.begin());
@@ -71,7 +71,7 @@ glm::dvec3 vector_at(const Curve& curve, double seconds) {
 }
 
 glm::dvec3 direction_at(const Curve& curve, double seconds) {
-  const Place at = place_of(curve, seconds);
+  const CurvePlace at = place_of(curve, seconds);
   const glm::dvec3 from = vector_of(key_of(curve, at.key));
   if (at.share == 0 || curve.interpolation == Interpolation::step) return from;
   const glm::dvec3 to = vector_of(key_of(curve, at.key + 1));
@@ -81,7 +81,7 @@ glm::dvec3 direction_at(const Curve& curve, double seconds) {
 }
 
 glm::dquat rotation_at(const Curve& curve, double seconds) {
-  const Place at = place_of(curve, seconds);
+  const CurvePlace at = place_of(curve, seconds);
   if (at.share > 0 && curve.interpolation == Interpolation::linear) {
     const glm::dquat from = rotation_of(key_of(curve, at.key)), to = rotation_of(key_of(curve, at.key + 1));
     return glm::normalize(glm::slerp(from, to, at.share));

@@ -4,7 +4,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kShortest = 1e-6;  // a shorter normal is none: the stored one stays
+constexpr double kShortestNormal = 1e-6;  // a shorter normal is none: the stored one stays
 
 void add_target(const MorphTarget& target, double weight, std::vector<LocalVertex>& vertices) {
   if (weight == 0) return;
@@ -29,7 +29,7 @@ std::vector<LocalVertex> morphed(const LocalPrimitive& primitive, std::span<cons
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     glm::dvec3& normal = vertices[i].normal;
-    normal = glm::length(normal) < kShortest ? primitive.vertices[i].normal : glm::normalize(normal);
+    normal = glm::length(normal) < kShortestNormal ? primitive.vertices[i].normal : glm::normalize(normal);
   }
   return vertices;
 }

@@ -11,8 +11,8 @@
 namespace clpv {
 namespace {
 
-constexpr glm::dvec3 kUp{0, 1, 0};  // the normal of vertices that only degenerate triangles use
-constexpr double kShortest = 1e-6;  // a shorter stored normal is none
+constexpr glm::dvec3 kUp{0, 1, 0};        // the normal of vertices that only degenerate triangles use
+constexpr double kShortestStored = 1e-6;  // a shorter stored normal is none
 
 /// A primitive's attributes, checked against each other.
 struct Attributes {
@@ -198,7 +198,7 @@ void normalize_stored(LocalPrimitive& primitive) {
   std::vector<bool> missing(primitive.vertices.size(), false);
   for (std::size_t i = 0; i < missing.size(); ++i) {
     glm::dvec3& normal = primitive.vertices[i].normal;
-    missing[i] = glm::length(normal) < kShortest;
+    missing[i] = glm::length(normal) < kShortestStored;
     normal = missing[i] ? glm::dvec3(0) : glm::normalize(normal);
   }
   if (std::find(missing.begin(), missing.end(), true) == missing.end()) return;
@@ -210,7 +210,7 @@ void normalize_stored(LocalPrimitive& primitive) {
   }
   for (std::size_t i = 0; i < missing.size(); ++i) {
     glm::dvec3& normal = primitive.vertices[i].normal;
-    if (missing[i]) normal = glm::length(normal) < kShortest ? kUp : glm::normalize(normal);
+    if (missing[i]) normal = glm::length(normal) < kShortestStored ? kUp : glm::normalize(normal);
   }
 }
 

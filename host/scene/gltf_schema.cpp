@@ -26,7 +26,7 @@ namespace {
 constexpr double kAny = 1e30;           // finite, and its products with coordinates fit a double
 constexpr double kMany = 4294967295;    // counts and offsets: more than any bounded buffer holds
 constexpr std::size_t kTargets = 1024;  // of a primitive
-constexpr double kTiny = 1e-9;          // stands for "greater than 0"
+constexpr double kAboveZero = 1e-9;     // stands for "greater than 0"
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
 
 /// Extensions that are read. Whatever else a file requires is refused by name.
@@ -171,21 +171,21 @@ Rules view_rules() {
   return {text("/cameras/*/name"),
           text("/cameras/*/type", {"perspective", "orthographic"}).must(),
           object("/cameras/*/perspective"),
-          number("/cameras/*/perspective/yfov", kTiny, std::numbers::pi - kTiny).must(),
-          number("/cameras/*/perspective/znear", kTiny, kAny).must(),
+          number("/cameras/*/perspective/yfov", kAboveZero, std::numbers::pi - kAboveZero).must(),
+          number("/cameras/*/perspective/znear", kAboveZero, kAny).must(),
           object("/cameras/*/orthographic"),
           number("/cameras/*/orthographic/xmag", -kAny, kAny).must(),
           number("/cameras/*/orthographic/ymag", -kAny, kAny).must(),
-          number("/cameras/*/orthographic/zfar", kTiny, kAny).must(),
+          number("/cameras/*/orthographic/zfar", kAboveZero, kAny).must(),
           number("/cameras/*/orthographic/znear", 0, kAny).must(),
           text(light + "/name"),
           text(light + "/type", names_of<LightKind>()).must(),
           vector(light + "/color", 3, 0, kAny),
           number(light + "/intensity", 0, kAny),
-          number(light + "/range", kTiny, kAny),
+          number(light + "/range", kAboveZero, kAny),
           object(light + "/spot"),
           number(light + "/spot/innerConeAngle", 0, std::numbers::pi / 2),
-          number(light + "/spot/outerConeAngle", kTiny, std::numbers::pi / 2 + kTiny)};
+          number(light + "/spot/outerConeAngle", kAboveZero, std::numbers::pi / 2 + kAboveZero)};
 }
 
 Rules animation_rules() {

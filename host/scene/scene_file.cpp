@@ -52,7 +52,7 @@ const KeyedList& keyed_lights() {
 }
 
 /// What cameras and lights are at an instant.
-std::vector<Rule> view_rules() {
+std::vector<Rule> camera_and_light_rules() {
   using namespace rule;
   std::vector<Rule> rules = {
       list("/cameras", 0, bounds::kCameras),
@@ -94,7 +94,7 @@ const std::vector<Rule>& rules() {
         number("/sky/rotation_degrees", -360, 360),
     };
     for (const std::vector<Rule>& more :
-         {view_rules(), key_rules(keyed_cameras()), key_rules(keyed_lights())})
+         {camera_and_light_rules(), key_rules(keyed_cameras()), key_rules(keyed_lights())})
       all.insert(all.end(), more.begin(), more.end());
     return all;
   }();
@@ -309,7 +309,7 @@ DescribedViews views_at(const SceneDescription& description, double seconds) {
   json posed = json::object();
   if (description.cameras) posed["cameras"] = entries_at(*description.cameras, seconds);
   if (description.lights) posed["lights"] = entries_at(*description.lights, seconds);
-  if (moves) check_rules(posed, view_rules(), file);  // a spline may swing beyond its keys
+  if (moves) check_rules(posed, camera_and_light_rules(), file);  // a spline may swing beyond its keys
   const double scale = description.metres_per_unit;
   DescribedViews made;
   if (description.cameras) made.cameras = read_list(posed["cameras"], read_camera, scale, file, "/cameras");

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kTiny = 1e-6;  // a shorter direction is none
+constexpr double kShortestDirection = 1e-6;  // a shorter direction is none
 
 std::string quantity_of(const Rule& rule) {
   return rule.place.substr(rule.place.rfind('/') + 1);
@@ -79,11 +79,11 @@ std::vector<double> with_tangents(const Curve& linear) {
 
 /// Makes the value a unit vector that may follow the one before.
 void add_direction(Curve& curve, const glm::dvec3& value, const std::string& file, const std::string& place) {
-  if (glm::length(value) < kTiny) refuse(file, place, "a vector of no length", "a direction");
+  if (glm::length(value) < kShortestDirection) refuse(file, place, "a vector of no length", "a direction");
   const glm::dvec3 unit = glm::normalize(value);
   if (!curve.values.empty()) {
     const double* last = &curve.values[curve.values.size() - 3];
-    if (glm::length(glm::dvec3(last[0], last[1], last[2]) + unit) < kTiny) {
+    if (glm::length(glm::dvec3(last[0], last[1], last[2]) + unit) < kShortestDirection) {
       refuse(file, place, "the opposite of the key before", "a turn by less than half a circle");
     }
   }

@@ -19,11 +19,11 @@ using std::numbers::pi;
 
 constexpr int kPartedRows = 512;  // so that the horizon is seen as sharp as it is
 
-struct Place {
+struct MapPlace {
   double x, y;  ///< [texels], from the left edge and from the top
 };
 
-Place place_of(const Sky& sky, const glm::dvec3& direction) {
+MapPlace place_of(const Sky& sky, const glm::dvec3& direction) {
   const double turn = std::atan2(direction.x, -direction.z) - sky.rotation;  // from -z towards +x
   const double across = turn / (2 * pi) + 0.5, down = std::acos(std::clamp(direction.y, -1.0, 1.0)) / pi;
   return {(across - std::floor(across)) * sky.width, down * sky.height};
@@ -43,13 +43,13 @@ std::size_t channel_of(const Image& image, const char* name, const std::filesyst
 }  // namespace
 
 std::size_t Sky::texel_at(const glm::dvec3& direction) const {
-  const Place place = place_of(*this, direction);
+  const MapPlace place = place_of(*this, direction);
   return index_of(*this, std::clamp(static_cast<int>(place.x), 0, width - 1),
                   std::clamp(static_cast<int>(place.y), 0, height - 1));
 }
 
 glm::vec3 Sky::seen(const glm::dvec3& direction) const {
-  const Place place = place_of(*this, direction);
+  const MapPlace place = place_of(*this, direction);
   const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
   const auto across = static_cast<float>(place.x - 0.5 - left),
              down = static_cast<float>(place.y - 0.5 - top);

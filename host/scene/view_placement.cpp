@@ -15,7 +15,7 @@ namespace clpv {
 namespace {
 
 /// A node's transform, and what to call it.
-struct Place {
+struct NodePlace {
   const glm::dmat4& to_world;
   const std::string& file;
   std::string node;
@@ -25,7 +25,7 @@ void store(float (&to)[3], const glm::vec3& from) {
   std::copy_n(glm::value_ptr(from), 3, to);
 }
 
-glm::vec3 position(const Place& place) {
+glm::vec3 position(const NodePlace& place) {
   const glm::dvec3 p(place.to_world[3]);
   if (glm::any(glm::greaterThan(glm::abs(p), glm::dvec3(bounds::kCoordinate)))) {
     refuse(place.file, place.node, fmt::format("({}, {}, {}) m", p.x, p.y, p.z),
@@ -34,7 +34,7 @@ glm::vec3 position(const Place& place) {
   return glm::vec3(p);
 }
 
-glm::vec3 axis(const Place& place, const glm::dvec3& local, const char* what) {
+glm::vec3 axis(const NodePlace& place, const glm::dvec3& local, const char* what) {
   const glm::dvec3 direction = glm::dmat3(place.to_world) * local;
   const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length)) {
@@ -46,7 +46,7 @@ glm::vec3 axis(const Place& place, const glm::dvec3& local, const char* what) {
 }  // namespace
 
 void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string& file, int node) {
-  const Place place{to_world, file, fmt::format("/nodes/{}", node)};
+  const NodePlace place{to_world, file, fmt::format("/nodes/{}", node)};
   camera.eye = position(place);
   camera.forward = axis(place, {0, 0, -1}, "/camera");
   const glm::dvec3 up(axis(place, {0, 1, 0}, "/camera")), forward(camera.forward);
@@ -57,7 +57,7 @@ void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string&
 }
 
 void place_light(ClpvLight& light, const glm::dmat4& to_world, const std::string& file, int node) {
-  const Place place{to_world, file, fmt::format("/nodes/{}", node)};
+  const NodePlace place{to_world, file, fmt::format("/nodes/{}", node)};
   store(light.position, position(place));
   if (kind_of(light) != LightKind::point)
     store(light.direction, axis(place, {0, 0, -1}, "/extensions/KHR_lights_punctual"));

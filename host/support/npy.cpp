@@ -22,7 +22,7 @@ constexpr std::size_t kPreamble = kMagic.size() + 2;  // then the header's lengt
 constexpr std::uintmax_t kMostArrayBytes = std::uintmax_t{1} << 32;
 constexpr std::size_t kAlignment = 64;  // of the data, asked by the format
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void refuse_npy(const std::filesystem::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
 }
 
@@ -32,7 +32,7 @@ std::size_t element_count(const std::filesystem::path& path, std::span<const std
   std::size_t count = 1;
   for (const std::size_t extent : shape) {
     if (extent != 0 && count > bytes / sizeof(float) / extent)
-      refuse(path, "the shape asks for more than the file holds");
+      refuse_npy(path, "the shape asks for more than the file holds");
     count *= extent;
   }
   return count;
@@ -66,7 +66,7 @@ std::vector<std::size_t> parse_shape(const std::filesystem::path& path, const st
     text.remove_suffix(kAfter.size());
     if (auto shape = parse_tuple(text)) return *shape;
   }
-  refuse(path, fmt::format("header {}; allowed is float32 ('<f4') in C order", header.substr(0, 80)));
+  refuse_npy(path, fmt::format("header {}; allowed is float32 ('<f4') in C order", header.substr(0, 80)));
 }
 
 }  // namespace
@@ -91,20 +91,20 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
 
 NpyArray read_npy(const std::filesystem::path& path) {
   const auto bytes_read = file_bytes(path, kMostArrayBytes);
-  if (!bytes_read) refuse(path, "cannot be read");
+  if (!bytes_read) refuse_npy(path, "cannot be read");
   const std::string& file = *bytes_read;
   // The last byte of the magic is the minor version.
   if (file.size() < kPreamble || file.compare(0, kMagic.size() - 1, kMagic, 0, kMagic.size() - 1) != 0) {
-    refuse(path, "not a .npy file of version 1");
+    refuse_npy(path, "not a .npy file of version 1");
   }
   const std::size_t length = static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]);
-  if (file.size() < kPreamble + length) refuse(path, "truncated header");
+  if (file.size() < kPreamble + length) refuse_npy(path, "truncated header");
   NpyArray array;
   array.shape = parse_shape(path, file.substr(kPreamble, length));
   const std::size_t bytes = file.size() - kPreamble - length;
   const std::size_t count = element_count(path, array.shape, bytes);
   if (bytes != count * sizeof(float)) {
-    refuse(path, fmt::format("{} bytes of data; the shape asks for {}", bytes, count * sizeof(float)));
+    refuse_npy(path, fmt::format("{} bytes of data; the shape asks for {}", bytes, count * sizeof(float)));
   }
   array.values.resize(count);
   if (bytes > 0) std::memcpy(array.values.data(), file.data() + kPreamble + length, bytes);
