@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bench/suites.hpp"
 #include "checks/comparison.hpp"
 #include "device/kernel.hpp"
 #include "support/error.hpp"
@@ -148,6 +149,15 @@ std::vector<Case> ceiling_cases(Session& session) {
   }
   cases.push_back(ceiling_case("launch", [&session] { return launch_job(session); }));
   return cases;
+}
+
+Suite ceilings_suite() {
+  return {"ceilings",
+          "multiply-adds, bandwidth and launches of this device at most",
+          [](Session& session, const SuiteOptions&) {
+            return std::vector<Group>{{[&session] { return ceiling_cases(session); }}};
+          },
+          {}};
 }
 
 double Ceilings::gbps(double bytes) const {

@@ -16,13 +16,6 @@ struct PublishedTimes {
   bool shadows;  ///< indirect ones
   std::array<double, 3> injection, propagation;
   double light_buffer;
-
-  constexpr double sum() const {
-    double sum = light_buffer;
-    for (std::size_t cascade = 0; cascade < injection.size(); ++cascade)
-      sum += injection[cascade] + propagation[cascade];
-    return sum;
-  }
 };
 
 inline constexpr std::array<PublishedTimes, 6> kPublishedTimes{{
@@ -36,7 +29,16 @@ inline constexpr std::array<PublishedTimes, 6> kPublishedTimes{{
 
 /// The cell of a stage: of inject_light and propagate one a cascade, of gather one in all. None of what is not in the
 /// table, the geometry volume's injection among it.
-std::optional<double> published_ms(Pass pass, std::string_view basis, bool shadows,
-                                   std::optional<int> cascade);
+constexpr std::optional<double> published_ms(Pass pass, std::string_view basis, bool shadows,
+                                             std::optional<int> cascade) {
+  for (const PublishedTimes& times : kPublishedTimes) {
+    if (times.basis != basis || times.shadows != shadows) continue;
+    if (pass == Pass::gather && !cascade) return times.light_buffer;
+    const bool one = cascade && *cascade >= 0 && *cascade < static_cast<int>(times.injection.size());
+    if (one && pass == Pass::inject_light) return times.injection[static_cast<std::size_t>(*cascade)];
+    if (one && pass == Pass::propagate) return times.propagation[static_cast<std::size_t>(*cascade)];
+  }
+  return std::nullopt;
+}
 
 }  // namespace clpv::bench

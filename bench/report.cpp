@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "bench/report.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
+
+#include "bench/git_describe.h"
+#include "bench/suites.hpp"
+#include "clpv/version.hpp"
+#include "device/kernel_files.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -23,7 +36,56 @@ std::string or_dash(bool there, const std::string& text) {
   return there ? text : "-";
 }
 
+/// As the system names it; "unknown" where it does not.
+std::string host_cpu() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("model name")) continue;
+    const auto at = line.find(": ");
+    if (at != std::string::npos) return line.substr(at + 2);
+  }
+  return "unknown";
+}
+
+/// Of the kernels' text in use, files of CLPV_KERNEL_DIR before embedded ones.
+std::string kernel_hash() {
+  Fingerprint fingerprint;
+  for (const auto& [name, text] : detail::embedded_kernel_files())
+    fingerprint.add(name).add(kernel_file(name));
+  return fingerprint.hex();
+}
+
+std::string now() {
+  return fmt::format("{:%FT%TZ}",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+}
+
 }  // namespace
+
+nlohmann::json context_json(const Session& session) {
+  const Device& device = session.device();
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  std::array<double, 3> load{};
+  ::getloadavg(load.data(), static_cast<int>(load.size()));
+  return {{"schema", 1},
+          {"date", now()},
+          {"host_name", host.data()},
+          {"executable", "clpv"},
+          {"num_cpus", std::thread::hardware_concurrency()},
+          {"load_avg", load},
+          {"library_build_type", "release"},
+          {"clpv_version", version()},
+          {"git_describe", CLPV_GIT_DESCRIBE},
+          {"host_cpu", host_cpu()},
+          {"platform", device.platform},
+          {"platform_version", device.platform_version},
+          {"device", device.name},
+          {"driver", device.driver},
+          {"compute_units", device.compute_units},
+          {"build_options", ProgramSource{}.options},
+          {"kernel_hash", kernel_hash()}};
+}
 
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
                            const std::vector<Row>& rows) {
@@ -66,26 +128,18 @@ std::string report_github_action(const std::vector<Row>& rows) {
 }
 
 std::string report_table(const std::vector<Row>& rows) {
-  std::size_t width = 4;
-  for (const Row& row : rows) width = std::max(width, row.name.size());
-  std::string text = fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width,
-                                 "median ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
-  for (const Row& row : rows) {
-    if (row.status == Status::unsupported || row.status == Status::timed_out) {
-      text += fmt::format("{:<{}} {}: {}\n", row.name, width, name_of(row.status), row.reason);
-      continue;
-    }
-    text += fmt::format(
-        "{:<{}} {:>10.4f} {:>8.4f} {:>10.4f} {:>9} {:>8} {:>16} {:>9}", row.name, width, row.times.median,
-        row.times.mad, row.wall_ms, or_dash(row.cost.flops > 0, fmt::format("{:.1f}", row.gflops())),
-        or_dash(row.cost.bytes > 0, fmt::format("{:.1f}", row.gbps())),
-        or_dash(!row.ceiling.empty(), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling)),
-        or_dash(row.max_rel_error.has_value(), fmt::format("{:.1e}", row.max_rel_error.value_or(0))));
-    if (row.status == Status::wrong)
-      text += fmt::format("  WRONG, {:.0e} allowed: {}", row.tolerance, row.reason);
-    text += "\n";
-  }
-  return text;
+  const std::size_t width = name_width(rows);
+  const std::string head =
+      fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width, "median ms", "mad",
+                  "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
+  return head + row_lines(rows, width, [](const Row& row) {
+           return fmt::format(
+               "{:>10.4f} {:>8.4f} {:>10.4f} {:>9} {:>8} {:>16} {:>9}", row.times.median, row.times.mad,
+               row.wall_ms, or_dash(row.cost.flops > 0, fmt::format("{:.1f}", row.gflops())),
+               or_dash(row.cost.bytes > 0, fmt::format("{:.1f}", row.gbps())),
+               or_dash(!row.ceiling.empty(), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling)),
+               or_dash(row.max_rel_error.has_value(), fmt::format("{:.1e}", row.max_rel_error.value_or(0))));
+         });
 }
 
 }  // namespace clpv::bench

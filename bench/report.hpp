@@ -8,8 +8,13 @@
 
 #include "bench/ceilings.hpp"
 #include "bench/row.hpp"
+#include "device/session.hpp"
 
 namespace clpv::bench {
+
+/// What a benchmark ran on and what it was made of: Google Benchmark's context keys (date, host_name, num_cpus, load_avg ...) and
+/// clpv's: schema, clpv_version, git_describe, host_cpu, platform, device, driver, compute_units, build_options, kernel_hash.
+nlohmann::json context_json(const Session& session);
 
 /// {"context": ..., "benchmarks": [row, ...]}; the context with the ceilings: gflops, bandwidths[], launch_ms.
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace clpv::bench {
@@ -40,7 +42,24 @@ nlohmann::json no_variant_json() {
   return json;
 }
 
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, sorted.size() - 1);
+  return std::lerp(sorted[low], sorted[high], at - static_cast<double>(low));
+}
+
 }  // namespace
+
+Statistics statistics_of(std::vector<double> samples) {
+  if (samples.empty()) return {};
+  std::sort(samples.begin(), samples.end());
+  Statistics result{samples.front(), quantile(samples, 0.5), quantile(samples, 0.95), samples.back()};
+  for (double& sample : samples) sample = std::abs(sample - result.median);
+  std::sort(samples.begin(), samples.end());
+  result.mad = quantile(samples, 0.5);
+  return result;
+}
 
 RenderOptions timed_options() {
   RenderOptions options;
@@ -67,8 +86,6 @@ const char* name_of(Status status) {
       return "unsupported";
     case Status::wrong:
       return "wrong";
-    case Status::timed_out:
-      return "timed out";
   }
   return "";
 }

@@ -7,10 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "bench/statistics.hpp"
 #include "options/render_options.hpp"
 
 namespace clpv::bench {
+
+/// Of one series, in its unit. All 0 where it is empty.
+struct Statistics {
+  double min = 0, median = 0, p95 = 0, max = 0;
+  double mad = 0;  ///< median absolute deviation from the median: a spread that a few outliers do not move
+};
+
+/// Quantiles interpolate linearly between the sorted samples, the first at 0 and the last at 1.
+Statistics statistics_of(std::vector<double> samples);
 
 /// What stages are timed with where a suite says nothing else: transport, lobes and blocking as published, volumes as
 /// planes of floats, and nothing in the way.
@@ -36,7 +44,7 @@ struct Cost {
   double triangles = 0, pixels = 0;  ///< of rasterising: those of all views
 };
 
-enum class Status { ok, unsupported, wrong, timed_out };
+enum class Status { ok, unsupported, wrong };
 const char* name_of(Status status);
 
 struct Row {

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "bench/runner.hpp"
 
-#include <benchmark/benchmark.h>
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
-#include <map>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
 #include "support/error.hpp"
@@ -17,6 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kKept = "the rows that were done are in the log, if one was asked for";
+
 double since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -27,30 +35,6 @@ struct Running {
   Job job;
   std::vector<double> wall_ms;
 };
-
-/// Takes Google Benchmark's results in place of printing them.
-class Collector : public benchmark::BenchmarkReporter {
- public:
-  bool ReportContext(const Context&) override { return true; }
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration) continue;
-      if (run.error_occurred && interrupted()) continue;  // run_cases tells
-      if (run.error_occurred)
-        throw Error(ExitCode::run_time, "{}: {}", run.run_name.str(), run.error_message);
-      cpu_ms[run.run_name.function_name].push_back(run.GetAdjustedCPUTime());
-    }
-  }
-  std::map<std::string, std::vector<double>> cpu_ms;
-};
-
-/// Google Benchmark is set by flags alone.
-void set_up_library() {
-  static std::string program = "clpv", interleave = "--benchmark_enable_random_interleaving=true";
-  static char* arguments[] = {program.data(), interleave.data(), nullptr};
-  int count = 2;
-  benchmark::Initialize(&count, arguments);
-}
 
 /// The work once: its time [ms], on the device's clock where that is to be trusted.
 double run_once(Session& session, Running& running) {
@@ -79,12 +63,6 @@ double run_once(Session& session, Running& running) {
   return ms;
 }
 
-/// Work of a row, under its watch where there is one.
-template <typename Work>
-auto watched(const RunnerOptions& options, const std::string& row, const Work& work) {
-  return options.watch != nullptr ? options.watch->watched(row, work) : work();
-}
-
 /// The most memory that the process had so far [bytes].
 std::size_t most_host_bytes() {
   rusage usage{};
@@ -92,8 +70,8 @@ std::size_t most_host_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Sets a case up and warms it up; false where the device lacks something.
-bool prepare(Session& session, const Case& described, Running& running) {
+/// Sets a case up and warms it up; unsupported where the device lacks something.
+void prepare(Session& session, const Case& described, Running& running) {
   running.row = described.row;
   const double built = session.build_ms();
   try {
@@ -108,7 +86,6 @@ bool prepare(Session& session, const Case& described, Running& running) {
   }
   running.row.build_ms = session.build_ms() - built;
   running.wall_ms.clear();
-  return running.row.status == Status::ok;
 }
 
 void verify(Running& running) {
@@ -121,59 +98,79 @@ void verify(Running& running) {
   running.row.reason = deviation.place;
 }
 
-void conclude(Running& running, const std::vector<double>& cpu_ms, const RunnerOptions& options) {
+void conclude(Running& running, const RunnerOptions& options) {
   Row& row = running.row;
   row.times = statistics_of(row.samples_ms);
   row.wall_ms = statistics_of(running.wall_ms).median;
-  for (const double ms : cpu_ms) row.cpu_ms += ms / static_cast<double>(cpu_ms.size());
+  row.cpu_ms /= static_cast<double>(row.samples_ms.size());
   row.cost = running.job.cost;
   row.host_bytes = most_host_bytes();
   if (options.ceilings != nullptr) bind(*options.ceilings, row);
   verify(running);
 }
 
-void register_case(Session& session, Running& running, const RunnerOptions& options) {
-  benchmark::RegisterBenchmark(running.row.name.c_str(),
-                               [&session, &running, &options](benchmark::State& state) {
-                                 for ([[maybe_unused]] const auto step : state) {
-                                   if (interrupted()) {
-                                     state.SkipWithError("interrupted");
-                                     break;
-                                   }
-                                   const double ms = watched(options, running.row.name,
-                                                             [&] { return run_once(session, running); });
-                                   running.row.samples_ms.push_back(ms);
-                                   state.SetIterationTime(ms * 1e-3);
-                                 }
-                                 if (options.progress != nullptr) options.progress->advance();
-                               })
-      ->UseManualTime()
-      ->MeasureProcessCPUTime()
-      ->Iterations(1)
-      ->Repetitions(options.repetitions)
-      ->Unit(benchmark::kMillisecond);
+/// Every repetition of all that can be run, in an order that is random but always the same.
+void repeat(Session& session, std::vector<Running>& running, const RunnerOptions& options) {
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 0; i < running.size(); ++i) {
+    if (running[i].row.status == Status::ok)
+      turns.insert(turns.end(), static_cast<std::size_t>(options.repetitions), i);
+  }
+  std::shuffle(turns.begin(), turns.end(), std::mt19937(1));
+  for (const std::size_t turn : turns) {
+    stop_if_interrupted(kKept);
+    Row& row = running[turn].row;
+    const std::clock_t before = std::clock();  // of all threads
+    row.samples_ms.push_back(run_once(session, running[turn]));
+    row.cpu_ms += 1e3 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    if (options.progress != nullptr) options.progress->advance();
+  }
+}
+
+std::vector<Case> filtered(std::vector<Case> cases, const std::optional<std::regex>& filter) {
+  if (filter) std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, *filter); });
+  return cases;
 }
 
 }  // namespace
 
+RowLog::RowLog(const std::filesystem::path& file) : file_(file) {
+  if (file_.empty()) return;
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0)
+    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+}
+
+RowLog::~RowLog() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void RowLog::begun(const std::string& name) {
+  write(nlohmann::json{{"begun", name}}.dump());
+}
+
+void RowLog::done(const Row& row) {
+  write(nlohmann::json{{"row", to_json(row, 0)}}.dump());
+}
+
+void RowLog::write(const std::string& line) {
+  if (descriptor_ < 0) return;
+  const std::string whole =
+      line + "\n";  // one write a line: the kernel has it, whatever becomes of the process
+  if (::write(descriptor_, whole.data(), whole.size()) != static_cast<ssize_t>(whole.size()))
+    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+}
+
 std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, const RunnerOptions& options) {
-  set_up_library();
-  std::vector<Running> running(cases.size());  // stays in place: registered functions refer to it
-  bool any = false;
+  std::vector<Running> running(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     spdlog::debug("{}", cases[i].row.name);
-    stop_if_interrupted("the rows that were done are in the log, if one was asked for");
+    stop_if_interrupted(kKept);
     if (options.log != nullptr) options.log->begun(cases[i].row.name);
-    if (watched(options, cases[i].row.name, [&] { return prepare(session, cases[i], running[i]); })) {
-      register_case(session, running[i], options);
-      any = true;
-    }
+    prepare(session, cases[i], running[i]);
     if (options.progress != nullptr) options.progress->advance();
   }
-  Collector collector;
-  if (any) benchmark::RunSpecifiedBenchmarks(&collector, std::string("all"));
-  benchmark::ClearRegisteredBenchmarks();
-  stop_if_interrupted("the rows that were done are in the log, if one was asked for");
+  repeat(session, running, options);
   std::vector<Row> rows;
   const auto keep = [&](const Row& row) {
     rows.push_back(row);
@@ -181,12 +178,39 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
   };
   for (Running& done : running) {
     done.row.device_bytes = session.most_device_bytes();
-    if (done.row.status == Status::ok) conclude(done, collector.cpu_ms[done.row.name], options);
+    if (done.row.status == Status::ok) conclude(done, options);
     keep(done.row);
     if (done.row.status != Status::ok || !done.job.more_rows) continue;
     for (const Row& row : done.job.more_rows(done.row)) keep(row);
   }
   return rows;
+}
+
+Results run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
+  std::vector<std::vector<Case>> wanted;
+  std::size_t count = 0;
+  for (const Group& group : suite.groups(session, options.suite)) {
+    wanted.push_back(filtered(group.cases(), options.filter));
+    count += wanted.back().size();
+  }
+  if (count == 0) throw Error(ExitCode::usage, "filter: no row of suite {} matches", suite.name);
+  const bool ceilings_asked = suite.name == "ceilings";
+  const std::vector<Case> ceilings = ceilings_asked ? std::vector<Case>{} : ceiling_cases(session);
+  Progress progress("bench " + suite.name,
+                    (count + ceilings.size()) * static_cast<std::size_t>(options.repetitions + 1));
+  Results results;
+  RowLog log(options.log);
+  RunnerOptions runner{options.repetitions, nullptr, &progress, &log};
+  if (!ceilings_asked) {
+    results.ceilings = ceilings_of(run_cases(session, ceilings, runner));
+    runner.ceilings = &results.ceilings;
+  }
+  for (std::vector<Case>& cases : wanted) {
+    std::ranges::move(run_cases(session, cases, runner), std::back_inserter(results.rows));
+    cases.clear();
+  }
+  if (ceilings_asked) results.ceilings = ceilings_of(results.rows);
+  return results;
 }
 
 }  // namespace clpv::bench

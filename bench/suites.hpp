@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/ranks.hpp"
-#include "bench/runner.hpp"
+#include "bench/ceilings.hpp"
 #include "bench/stage_jobs.hpp"
 #include "scene/scene.hpp"
 
@@ -20,7 +19,6 @@ struct SuiteOptions {
   std::string camera;
   std::vector<std::string> bases;            ///< named by the user; empty: the suite's own
   RenderOptions settings = timed_options();  ///< of every row, but for what the suite varies
-  std::shared_ptr<RankWork> ranks = {};      ///< of several ranks; none: alone
 };
 
 /// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.
@@ -39,7 +37,7 @@ struct Suite {
 
 const std::vector<Suite>& suites();
 
-// Each in suites/NAME.cpp.
+// Each in suites/NAME.cpp, that of the ceilings in ceilings.cpp.
 Suite table1_suite();
 Suite layouts_suite();
 Suite bases_suite();

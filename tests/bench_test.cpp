@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Benchmarks: statistics, reports, comparison of runs, and what
-// `clpv bench` does as a user meets them.
+// Benchmarks: statistics, reports, comparison of runs, suites, and `clpv bench` as a user meets it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
-#include "bench/baseline/avx2.hpp"
-#include "bench/ceilings.hpp"
+#include "bench/baseline/propagate_avx2.hpp"
+#include "bench/baseline/rasterize_gl.hpp"
 #include "bench/compare_runs.hpp"
 #include "bench/published.hpp"
 #include "bench/report.hpp"
-#include "bench/statistics.hpp"
+#include "bench/runner.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
+#include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::bench::bench_test {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -35,39 +37,6 @@ TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
   EXPECT_EQ(s.mad, 2);                     // of 3 2 0 1 99
   EXPECT_NEAR(s.p95, 5 + 0.8 * 98, 1e-9);  // between the 4th and the 5th, at 3.8
   EXPECT_EQ(statistics_of({}).median, 0);
-}
-
-TEST(BenchStatistics, ExponentOfAPower) {
-  EXPECT_NEAR(growth_exponent({16, 32, 64}, {3 * 16.0 * 16 * 16, 3 * 32.0 * 32 * 32, 3 * 64.0 * 64 * 64}), 3,
-              1e-9);
-}
-
-/// A row of the suite whose work is held against another's.
-TEST(BenchProgram, BaselineTellsTheSweepOverTheSameByHand) {
-  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
-  const auto out = test::run(kProgram + " bench baseline --repetitions 1 --filter 'bins24.*occlusion'");
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_THAT(out.out, HasSubstr("over C++"));
-  EXPECT_THAT(out.out, ::testing::ContainsRegex(
-                           "sweep/bins24/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
-  EXPECT_THAT(out.out, HasSubstr("native/bins24/soa/float/sweep/occlusion"));
-}
-
-TEST(BenchProgram, TheSweepIsRightInFloatsAndHalves) {
-  const auto out = test::run(
-      kProgram + " bench regression --basis bins24 --repetitions 1 --filter '^sweep' --format json");
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  const nlohmann::json document = nlohmann::json::parse(out.out);
-  std::vector<std::string> names;
-  for (const auto& row : document["benchmarks"]) {
-    names.push_back(row["name"]);
-    EXPECT_EQ(row["status"], "ok") << row["name"];
-    if (row["stage"] != "sweep") continue;  // its build
-    EXPECT_EQ(row["transport"], "sweep");
-    EXPECT_LE(row["max_rel_error"], row["tolerance"]) << row["name"];
-  }
-  EXPECT_THAT(names, ::testing::IsSupersetOf({"sweep/bins24/soa/float", "sweep/bins24/soa/float/occlusion",
-                                              "sweep/bins24/soa/half"}));
 }
 
 TEST(BenchCeilings, TheLongestOfTheLeastTimesBinds) {
@@ -167,28 +136,6 @@ TEST(BenchPublished, HoldsAllCellsOfTheTable) {
   EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
 }
 
-TEST(BenchPublished, SumsAndRatiosAreThoseOfTheTable) {
-  const auto ratio = [](bool shadows) {
-    double sh2 = 0, srbf = 0;
-    for (const PublishedTimes& times : kPublishedTimes) {
-      if (times.shadows != shadows) continue;
-      if (times.basis == "sh2") sh2 = times.sum();
-      if (times.basis == "srbf8v2") srbf = times.sum();
-    }
-    return srbf / sh2;
-  };
-  EXPECT_NEAR(ratio(true), 2.95, .005);
-  EXPECT_NEAR(ratio(false), 2.61, .005);
-  const double cascades[2][3] = {{3.80, 3.67, 3.53}, {4.31, 4.13, 4.13}};
-  for (const bool shadows : {false, true}) {
-    for (int cascade = 0; cascade < 3; ++cascade) {
-      EXPECT_NEAR(*published_ms(Pass::propagate, "srbf8v2", shadows, cascade) /
-                      *published_ms(Pass::propagate, "sh2", shadows, cascade),
-                  cascades[shadows][cascade], .005);
-    }
-  }
-}
-
 /// Every key of docs/benchmarks.md, in its range.
 std::vector<Rule> row_schema() {
   std::vector<Rule> rules = {rule::object(""),
@@ -205,7 +152,7 @@ std::vector<Rule> row_schema() {
        {"name", "run_name", "suite", "stage", "basis", "layout", "storage", "state", "lobe", "transport"})
     rules.push_back(rule::text(row + key).must());
   rules.push_back(rule::text(row + "run_type", {"iteration"}).must());
-  rules.push_back(rule::text(row + "status", {"ok", "unsupported", "wrong", "timed out"}).must());
+  rules.push_back(rule::text(row + "status", {"ok", "unsupported", "wrong"}).must());
   rules.push_back(rule::text(row + "time_unit", {"ms"}).must());
   rules.push_back(rule::text(row + "ceiling", {"fma", "bandwidth", "launch"}).must());
   rules.push_back(rule::flag(row + "occlusion").must());
@@ -238,66 +185,148 @@ std::vector<Rule> row_schema() {
   return rules;
 }
 
+/// Small enough for a kernel's compiling to be what takes the time.
+SuiteOptions small() {
+  SuiteOptions options;
+  options.settings.grid = 16, options.settings.rsm_size = 64, options.settings.shadow_size = 128;
+  options.settings.width = 96, options.settings.height = 54;
+  return options;
+}
+
+/// Rows of a suite in whose names `filter` is found, timed once on the tests' device.
+std::vector<Row> rows_of(const Suite& suite, const std::string& filter,
+                         const SuiteOptions& options = small()) {
+  std::vector<Row> rows;
+  for (const Group& group : suite.groups(test::test_session(), options)) {
+    std::vector<Case> cases = group.cases();
+    std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, std::regex(filter)); });
+    std::ranges::move(run_cases(test::test_session(), cases, {.repetitions = 1}), std::back_inserter(rows));
+  }
+  return rows;
+}
+
+std::vector<std::string> names_of(const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) names.push_back(row.name);
+  return names;
+}
+
+void expect_right(const std::vector<Row>& rows) {
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
+    if (row.max_rel_error) EXPECT_LE(*row.max_rel_error, row.tolerance) << row.name;
+  }
+}
+
+TEST(BenchSuites, BaselineTellsARowOverTheSameByHand) {
+  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+  const auto sh2 = make_basis("sh2");
+  EXPECT_THROW(PropagateBaseline(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
+  const std::vector<Row> rows = rows_of(baseline_suite(), "occlusion");
+  expect_right(rows);
+  EXPECT_THAT(names_of(rows),
+              ElementsAre("propagate/sh2/soa/float/occlusion", "propagate/sh2/soa/float/fluxes/occlusion",
+                          "native/sh2/soa/float/occlusion"));
+  EXPECT_THAT(
+      baseline_suite().table(rows),
+      ::testing::ContainsRegex("propagate/sh2/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
+}
+
+TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
+  SuiteOptions options = small();
+  options.bases = {"bins24"};
+  const std::vector<Row> rows = rows_of(regression_suite(), "^sweep", options);
+  expect_right(rows);
+  EXPECT_THAT(names_of(rows),
+              ElementsAre("sweep/bins24/soa/float", "build/sweep/bins24/soa/float",
+                          "sweep/bins24/soa/float/occlusion", "build/sweep/bins24/soa/float/occlusion",
+                          "sweep/bins24/soa/half", "build/sweep/bins24/soa/half"));
+  EXPECT_EQ(to_json(rows[0], 0)["transport"], "sweep");
+  const nlohmann::json actions = nlohmann::json::parse(report_github_action(rows));
+  ASSERT_EQ(actions.size(), rows.size());
+  EXPECT_EQ(actions[1]["name"], "build/sweep/bins24/soa/float");
+  EXPECT_EQ(actions[1]["unit"], "ms");
+  EXPECT_GT(actions[1]["value"], 0);
+}
+
+TEST(BenchSuites, RowsOfScalingSayWhatTheyArePointsOf) {
+  const std::vector<Row> rows = rows_of(scaling_suite(), "iterations:[48]$");
+  expect_right(rows);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].axis, "iterations");
+  EXPECT_EQ(rows[0].value, 4);
+  EXPECT_THAT(scaling_suite().table(rows),
+              ::testing::ContainsRegex("iterations +propagate/sh2 +-?[0-9.]+\n"));
+}
+
+TEST(BenchSuites, Table1StandsBesideThePublishedTimes) {
+  const std::vector<Row> rows =
+      rows_of(table1_suite(), "(inject-|gather).*/sh2/.*(cascade:0|gather/.*soa.*)$|gather/sh2/soa");
+  expect_right(rows);
+  const std::vector<std::string> names = names_of(rows);
+  ASSERT_THAT(names,
+              ::testing::IsSupersetOf({"inject-light/sh2/image/half/rotate-kernel/occlusion/cascade:0",
+                                       "inject-geometry/sh2/image/half/rotate-kernel/occlusion/cascade:0",
+                                       "gather/sh2/soa/float"}));
+  EXPECT_EQ(rows[0].published_ms, 2.028);
+  EXPECT_FALSE(rows[1].published_ms);
+  const std::string table = table1_suite().table(rows);
+  EXPECT_THAT(table, ::testing::ContainsRegex("injection, small +2\\.028 +[0-9.]+"));
+  EXPECT_THAT(table, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
+}
+
+TEST(BenchSuites, FramesAreTheSameTwice) {
+  SuiteOptions options = small();
+  options.bases = {"sh2"};
+  options.settings.cascades = 1;
+  const std::vector<Row> rows = rows_of(frame_suite(), "best/anew:light", options);
+  expect_right(rows);
+  EXPECT_THAT(names_of(rows), ::testing::Contains("gather/sh2/soa/half/sweep/occlusion/best/anew:light"));
+}
+
+TEST(BenchSuites, EveryPassOfRasterizingIsRightAndThePeerDrawsTheSame) {
+  const std::vector<Row> rows = rows_of(rasterize_suite(), "");
+  ASSERT_EQ(rows.size(), 6u);
+  const std::string missing = gl_missing();
+  for (const Row& row : rows) {
+    const bool peer = row.name.ends_with("/opengl"), there = !peer || missing.empty();
+    EXPECT_EQ(row.status, there ? Status::ok : Status::unsupported) << row.name << ": " << row.reason;
+    if (!there) {
+      EXPECT_EQ(row.reason, missing);
+      continue;
+    }
+    EXPECT_GT(row.wall_ms, 0) << row.name;
+    const bool shadow = row.stage == name_of(Pass::rasterize_shadow),
+               rsm = row.stage == name_of(Pass::rasterize_rsm);
+    EXPECT_EQ(row.max_rel_error.has_value(), !peer || !shadow) << row.name;
+    EXPECT_EQ(row.cost.pixels, shadow ? 128 * 128 : rsm ? 3 * 64 * 64 : 96 * 54);
+    EXPECT_GT(row.cost.triangles, rsm ? 30000 : 10000);
+  }
+  const std::string table = rasterize_suite().table(rows);
+  EXPECT_THAT(table, HasSubstr("ns/triangle"));
+  EXPECT_THAT(table, Not(HasSubstr("WRONG")));
+}
+
 const std::string kOneRow = " bench bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";
 
-TEST(BenchProgram, JsonHasEveryKeyAndComparesWithItself) {
+TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
   const test::TemporaryFolder folder;
-  const std::string old = (folder.path() / "old.json").string();
-  const auto out = test::run(kProgram + kOneRow + " --format json --out " + old);
+  const std::string old = folder.write("old.json", report({{"propagate/sh2/soa/float", 1e-6, 0}}).dump())
+                              .string(),
+                    now = (folder / "new.json").string();
+  const auto out = test::run(kProgram + kOneRow + " --format json --out " + now + " --compare " + old +
+                             " --plot " + (folder / "plots").string());
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_EQ(out.out, "");
-  nlohmann::json document = nlohmann::json::parse(test::read_file(old));
-  EXPECT_NO_THROW(check_rules(document, row_schema(), old));
+  EXPECT_THAT(out.out, ::testing::ContainsRegex("propagate/sh2/soa/float .* SLOWER"));
+  const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
+  EXPECT_NO_THROW(check_rules(document, row_schema(), now));
   const nlohmann::json& row = document["benchmarks"][0];
   EXPECT_EQ(row["name"], "propagate/sh2/soa/float");
   EXPECT_EQ(row["status"], "ok");
   EXPECT_LE(row["max_rel_error"], row["tolerance"]);
   EXPECT_GT(row["flops"], 32.0 * 32 * 32 * 3 * 8 * 36);  // at least the multiply-adds of docs/method.md
-
-  document["benchmarks"][0]["median"] = 1e-3 * row["median"].get<double>();
-  std::ofstream(old) << document.dump();
-  const auto compared = test::run(kProgram + kOneRow + " --compare " + old);
-  EXPECT_EQ(compared.exit_code, 0) << compared.err;
-  // A thousand times as long; on a busy machine that may be within the spread.
-  EXPECT_THAT(compared.out, ::testing::ContainsRegex("[0-9]{2,}[.][0-9]{3} (SLOWER|within the spread)"));
-}
-
-TEST(BenchProgram, RowsOfScalingSayWhatTheyArePointsOf) {
-  const auto out =
-      test::run(kProgram + " bench scaling --filter 'iterations:4$' --repetitions 1 --format json");
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  const nlohmann::json row = nlohmann::json::parse(out.out)["benchmarks"][0];
-  EXPECT_EQ(row["axis"], "iterations");
-  EXPECT_EQ(row["value"], 4);
-}
-
-TEST(BenchProgram, GatheringIsTimedAndRight) {
-  const auto out = test::run("cd " CLPV_SOURCE_DIR " && " + kProgram +
-                             " bench table1 --repetitions 1 --filter 'gather/sh2/soa' --format json");
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  const auto document = nlohmann::json::parse(out.out);
-  ASSERT_FALSE(document["benchmarks"].empty());
-  for (const auto& row : document["benchmarks"]) EXPECT_EQ(row["status"], "ok") << row["name"];
-}
-
-TEST(BenchProgram, Table1StandsBesideThePublishedTimes) {
-  const std::string command = "cd " CLPV_SOURCE_DIR " && " + kProgram +
-                              " bench table1 --repetitions 1 --filter 'inject-.*/sh2/image.*/cascade:0'";
-  const auto table = test::run(command);
-  ASSERT_EQ(table.exit_code, 0) << table.err;
-  EXPECT_THAT(table.out, HasSubstr("scene: atrium, camera nave"));
-  EXPECT_THAT(table.out, ::testing::ContainsRegex("injection, small +2\\.028 +[0-9.]+"));
-  EXPECT_THAT(table.out, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
-  const auto json = test::run(command + " --format json");
-  ASSERT_EQ(json.exit_code, 0) << json.err;
-  const auto document = nlohmann::json::parse(json.out);
-  EXPECT_EQ(document["context"]["scene"], "atrium, camera nave");
-  const auto& rows = document["benchmarks"];
-  ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0]["name"], "inject-light/sh2/image/half/rotate-kernel/occlusion/cascade:0");
-  EXPECT_EQ(rows[0]["published_ms"], 2.028);
-  EXPECT_TRUE(rows[1]["published_ms"].is_null());
-  EXPECT_EQ(rows[2]["published_ms"], 2.025);
+  EXPECT_THAT(test::read_file(folder / "plots/roofline.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(test::read_file(folder / "plots/roofline.png"), HasSubstr("PNG"));
 }
 
 TEST(BenchProgram, AnAlteredLiteralIsCaught) {
@@ -329,45 +358,6 @@ TEST(BenchProgram, RefusesBadUsage) {
   EXPECT_EQ(code("ceilings --format json --compare old.json"), 2);
   EXPECT_EQ(code("ceilings --compare /nowhere/old.json"), 3);
   EXPECT_EQ(code("ceilings --out /nowhere/new.json"), 1);
-}
-
-TEST(BenchProgram, PlotDrawsTheRoofline) {
-  const test::TemporaryFolder folder;
-  const auto out = test::run(kProgram + kOneRow + " --plot " + folder.path().string());
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_THAT(test::read_file(folder.path() / "roofline.svg"), HasSubstr("<svg"));
-  EXPECT_THAT(test::read_file(folder.path() / "roofline.png"), HasSubstr("PNG"));
-}
-
-/// A device whose every kernel hangs, after so many that do not.
-TEST(BenchProgram, ARowThatHangsIsTimedOutAndTheRestIsTold) {
-  const test::TemporaryFolder folder;
-  const std::string log = (folder / "rows.jsonl").string();
-  const auto out =
-      test::run("CLPV_SHIM=clFinish:40:hang LD_PRELOAD=" CLPV_OPENCL_SHIM " timeout 120 " + kProgram +
-                " bench ceilings --repetitions 20 --filter launch --row-limit 20 --format json --log " + log);
-  EXPECT_EQ(out.exit_code, 1) << out.err;
-  EXPECT_THAT(out.err, HasSubstr("the run ends with it"));
-  const nlohmann::json rows = nlohmann::json::parse(out.out)["benchmarks"];
-  EXPECT_EQ(rows.back()["status"], "timed out");
-  EXPECT_THAT(rows.back()["name"].get<std::string>(), HasSubstr("launch"));
-  EXPECT_THAT(test::read_file(log), HasSubstr("\"status\":\"timed out\""));
-}
-
-TEST(BenchProgram, RegressionTellsBuildsAsRowsAndSpeaksToActions) {
-  const auto out = test::run(kProgram +
-                             " bench regression --basis sh2 --repetitions 2"
-                             " --filter 'propagate/sh2/soa/float$' --format github-action");
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  const nlohmann::json rows = nlohmann::json::parse(out.out);
-  ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0]["name"], "propagate/sh2/soa/float");
-  EXPECT_EQ(rows[1]["name"], "build/propagate/sh2/soa/float");
-  for (const auto& row : rows) {
-    EXPECT_EQ(row["unit"], "ms");
-    EXPECT_GT(row["value"], 0);
-  }
-  EXPECT_GT(rows[1]["value"], rows[0]["value"]) << "a build takes longer than a launch";
 }
 
 }  // namespace

@@ -3,14 +3,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <new>
 
 #include "support/error.hpp"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#define CLPV_HAS_AVX2 1
+// By function and not by file: templates shared with other files must run on every processor.
+#define CLPV_AVX2 __attribute__((target("avx2,fma")))
+#else
+#define CLPV_HAS_AVX2 0
+#endif
+
 namespace clpv::bench {
+
+bool baseline_supported() {
+#if CLPV_HAS_AVX2
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+  return false;
+#endif
+}
 
 #if CLPV_HAS_AVX2
 
 namespace {
+
+constexpr int kLane = 8;  ///< floats in a vector
+
+/// Floats on 64-byte boundaries, 0 at first.
+class Plane {
+ public:
+  explicit Plane(std::size_t count)
+      : count_(count), values_(static_cast<float*>(std::aligned_alloc(64, bytes()))) {
+    if (!values_) throw std::bad_alloc();
+    clear();
+  }
+  float* data() const { return values_.get(); }
+  void clear() { std::memset(data(), 0, bytes()); }
+  std::size_t bytes() const { return (count_ * sizeof(float) + 63) / 64 * 64; }
+
+ private:
+  struct Free {
+    void operator()(float* p) const { std::free(p); }
+  };
+  std::size_t count_;
+  std::unique_ptr<float, Free> values_;
+};
 
 constexpr int kN = 4, kChannels = 3, kWays = 30, kCorners = 8;
 constexpr double kSame = 1e-9;  // of constants that are equal but for rounding in double

@@ -7,9 +7,11 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "bench/baseline/avx2.hpp"
 
 namespace clpv::bench {
+
+/// Whether it was built for this architecture and this processor has AVX2 and FMA.
+bool baseline_supported();
 
 /// Eight cells at a time, rows of a slice after each other, slices over all threads. Not clpv's generated code: the same
 /// constants, written by hand.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-#ifdef CLPV_BENCH_GL
-
 #include "bench/baseline/rasterize_gl.hpp"
+
+#include "support/error.hpp"
+
+#ifdef CLPV_BENCH_GL
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -12,8 +14,6 @@
 #include <array>
 #include <cstddef>
 #include <map>
-
-#include "support/error.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -355,6 +355,27 @@ std::vector<std::vector<float>> GlRasterizer::depths() {
   impl_->make_current();
   for (std::size_t v = 0; v < impl_->views.size(); ++v) all.push_back(impl_->depth_of(v));
   return all;
+}
+
+}  // namespace clpv::bench
+
+#else  // EGL or OpenGL ES was not there to build it with
+
+namespace clpv::bench {
+
+struct GlRasterizer::Impl {};
+
+std::string gl_missing() {
+  return "built without EGL and OpenGL ES (CLPV_BENCH_GL; Debian: libegl-dev libgles-dev libgl1-mesa-dri)";
+}
+
+GlRasterizer::GlRasterizer(const Scene&, Pass, std::vector<ClpvView>, const ClpvLight&) {
+  throw Error(ExitCode::device, "{}", gl_missing());
+}
+GlRasterizer::~GlRasterizer() = default;
+void GlRasterizer::draw() {}
+std::vector<std::vector<float>> GlRasterizer::depths() {
+  return {};
 }
 
 }  // namespace clpv::bench

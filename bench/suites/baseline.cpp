@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "basis/basis.hpp"
-#include "bench/baseline/own_cores.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/suites.hpp"
 #include "checks/check.hpp"
@@ -30,7 +29,6 @@ struct Native {
 
 Job native_job(Bench& bench, const Variant& variant) {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
-  give_threads_own_cores();
   const RenderOptions& o = variant.options;
   const auto p = std::make_shared<Native>(o);
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);

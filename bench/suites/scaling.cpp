@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `scaling`: how times grow with the grid, the coefficients, the steps, the RSM, the triangles, the compute units and
-// the ranks.
+// Suite `scaling`: how times grow with the grid, the coefficients, the steps, the RSM, the triangles and the compute units.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,13 +8,10 @@
 
 #include "basis/basis.hpp"
 #include "bench/hall.hpp"
-#include "bench/statistics.hpp"
 #include "bench/suites.hpp"
 
 namespace clpv::bench {
 namespace {
-
-constexpr int kFramesEach = 8;  // enough for handing them out to take no part of their time
 
 /// What a row is a point of; its name ends with it as well: "/grid:64".
 void place(Row& row, const std::string& axis, int value) {
@@ -137,39 +133,21 @@ Case units_case(Session& session, const SuiteOptions& options, const std::string
   return result;
 }
 
-/// 1, 2, 4 and so on, and all.
-std::vector<int> rank_counts(int most) {
-  std::vector<int> counts;
-  for (int count = 1; count < most; count *= 2) counts.push_back(count);
-  counts.push_back(most);
-  return counts;
-}
-
-/// So many frames by one rank or more, together (strong) or each (weak).
-std::vector<Case> rank_cases(const SuiteOptions& options, const std::string& basis) {
-  std::vector<Case> cases;
-  const int together = kFramesEach * options.ranks->most_ranks();
-  for (const int ranks : rank_counts(options.ranks->most_ranks())) {
-    for (const bool strong : {true, false}) {
-      Case made;
-      made.row = make_row("scaling", strong ? "frames-strong" : "frames-weak", plain_variant(options, basis));
-      place(made.row, "ranks", ranks);
-      made.make = [work = options.ranks, ranks, frames = strong ? together : kFramesEach * ranks] {
-        work->render(ranks, ranks);  // each has its own to compile
-        Job job;
-        job.run = [work, ranks, frames] { work->render(ranks, frames); };
-        job.own_stages = true;
-        return job;
-      };
-      cases.push_back(std::move(made));
-    }
+/// Least-squares slope of log y over log x: y grows as x to this power. At least two different x, all positive.
+double growth_exponent(const std::vector<double>& x, const std::vector<double>& y) {
+  double mean_x = 0, mean_y = 0, above = 0, below = 0;
+  const auto count = static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mean_x += std::log(x[i]) / count;
+    mean_y += std::log(y[i]) / count;
   }
-  return cases;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = std::log(x[i]) - mean_x;
+    above += dx * (std::log(y[i]) - mean_y);
+    below += dx * dx;
+  }
+  return above / below;
 }
-
-struct Point {
-  double x, ms;
-};
 
 /// Of a propagation [ns].
 std::string a_cell_step(const Row& row) {
@@ -179,7 +157,7 @@ std::string a_cell_step(const Row& row) {
 }
 
 std::string table(const std::vector<Row>& rows) {
-  std::map<std::pair<std::string, std::string>, std::vector<Point>> all;
+  std::map<std::pair<std::string, std::string>, std::pair<std::vector<double>, std::vector<double>>> all;
   constexpr std::size_t kWidth = 44;
   std::string text = fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>14}\n", "row", kWidth, "median ms", "mad",
                                  "ns a cell step", "of ceiling");
@@ -190,13 +168,12 @@ std::string table(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     if (row.status == Status::unsupported) continue;
     const bool one_basis = row.axis != "n" && row.variant;
-    all[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}].push_back(
-        {row.value, row.times.median});
+    auto& [x, y] = all[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}];
+    x.push_back(row.value), y.push_back(row.times.median);
   }
   text += "\ntime grows as the value to the power\n";
   for (const auto& [key, points] : all) {
-    std::vector<double> x, y;
-    for (const Point& point : points) x.push_back(point.x), y.push_back(point.ms);
+    const auto& [x, y] = points;
     if (std::set<double>(x.begin(), x.end()).size() < 2) continue;
     text += fmt::format("  {:<12} {:<28} {:>6.2f}\n", key.first, key.second, growth_exponent(x, y));
   }
@@ -206,24 +183,19 @@ std::string table(const std::vector<Row>& rows) {
 }  // namespace
 
 Suite scaling_suite() {
-  return {"scaling",
-          "growth with grid, coefficients, steps, RSM, triangles, compute units, under mpirun ranks; the "
-          "exponents",
+  return {"scaling", "growth with grid, coefficients, steps, RSM, triangles and compute units; the exponents",
           [](Session& session, const SuiteOptions& options) {
             const std::string basis = options.bases.empty() ? "sh2" : options.bases.front();
             const auto bench = make_bench(session, options, options.settings);
-            std::vector<Group> groups = {
-                {[&session, options, basis] { return grids(session, options, basis); }},
-                {[bench, options] { return coefficients(bench, options); }},
-                {[bench, options, basis] { return steps(bench, options, basis); }},
-                {[&session, options, basis] { return rsms(session, options, basis); }},
-                {[&session, options] { return triangles(session, options); }},
-                {[&session, options, basis] {
-                  return std::vector<Case>{units_case(session, options, basis, 1),
-                                           units_case(session, options, basis, 2)};
-                }}};
-            if (options.ranks) groups.push_back({[options, basis] { return rank_cases(options, basis); }});
-            return groups;
+            return std::vector<Group>{{[&session, options, basis] { return grids(session, options, basis); }},
+                                      {[bench, options] { return coefficients(bench, options); }},
+                                      {[bench, options, basis] { return steps(bench, options, basis); }},
+                                      {[&session, options, basis] { return rsms(session, options, basis); }},
+                                      {[&session, options] { return triangles(session, options); }},
+                                      {[&session, options, basis] {
+                                        return std::vector<Case>{units_case(session, options, basis, 1),
+                                                                 units_case(session, options, basis, 2)};
+                                      }}};
           },
           table};
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // clpv bench: how long stages take on this device, in all their variants.
-#include "bench/bench.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,12 +9,10 @@
 
 #include "basis/basis.hpp"
 #include "bench/compare_runs.hpp"
-#include "bench/context.hpp"
 #include "bench/report.hpp"
+#include "bench/runner.hpp"
 #include "commands/commands.hpp"
 #include "commands/drawing.hpp"
-#include "parallel/rank_device.hpp"
-#include "parallel/team.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
@@ -25,8 +21,6 @@
 
 namespace clpv {
 namespace {
-
-constexpr double kLongestRow = 86400;  // [s]; a day
 
 struct Options {
   std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
@@ -136,24 +130,7 @@ void write(const Options& options, const std::string& text) {
   std::fflush(stdout);
 }
 
-/// Frames of the suite's scene, for ranks to render. None for one rank.
-std::shared_ptr<bench::RankWork> rank_work(Team& team, Session& session, const bench::SuiteOptions& options) {
-  if (team.alone()) return nullptr;
-  const auto scene = bench::scene_of(options);
-  RenderOptions small = options.settings;  // as many as a matrix has, in seconds
-  small.width = 240, small.height = 135;
-  return std::make_shared<bench::RankWork>(team, session, scene, scene->camera(options.camera), small);
-}
-
-void check_ranks(const Team& team, const Options& options) {
-  if (team.alone() || options.suite == "scaling") return;
-  throw Error(ExitCode::usage, "{}: found {} processes; allowed for several: scaling", options.suite,
-              team.size());
-}
-
-void run(Options options, Shared& shared) {
-  Team& team = shared.team();
-  team.agree([&] { check_ranks(team, options); });
+void run(Options options, const Shared& shared) {
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
@@ -165,19 +142,11 @@ void run(Options options, Shared& shared) {
   const bench::Suite& suite = suite_named(options.suite);
   take_scene(options, suite);
   // Of programs out of a cache no build can be told.
-  Session session(device_of_rank(team, shared.device),
+  Session session(choose_device(shared.device),
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
-  tell_devices(team, session.device());
-  options.bench.suite.ranks = rank_work(team, session, options.bench.suite);
-  if (!team.leads()) return options.bench.suite.ranks->serve();
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
-  options.bench.hung = [&](const bench::Results& so_far) {
-    write(options, as_text(options, suite, session, so_far));
-    spdlog::error("{}: {}", so_far.rows.back().name, so_far.rows.back().reason);
-  };
   const bench::Results results = bench::run_suite(session, suite, options.bench);
-  if (options.bench.suite.ranks) options.bench.suite.ranks->end();
   write(options, as_text(options, suite, session, results));
   if (!before.is_null()) {
     fmt::print("{}{}", options.out.empty() ? "\n" : "",
@@ -225,15 +194,8 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
   command
       ->add_option(
-          "--row-limit", options->bench.row_limit,
-          "seconds that a row may take to be made ready, or to be run once; one that takes longer ends the "
-          "run, which tells what there is; 0: none")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, kLongestRow))
-      ->type_name("SECONDS");
-  command
-      ->add_option("--log", options->log,
-                   "rows as they begin and end, a line of JSON each: what a crash leaves")
+          "--log", options->log,
+          "rows as they begin and end, a line of JSON each: what a crash, or a kernel that hangs, leaves")
       ->type_name("FILE.jsonl");
   command->add_option("-o,--out", options->out, "file to write in place of stdout")->type_name("FILE");
   command

@@ -84,7 +84,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.fallthrough();
   app.parse_complete_callback([&] { set_talk(shared); });
   for (const Command& command : commands) command.add(app, shared);
-  refuse_ranks_but_to(app, {"quality", "sequence", "reference", "bench"});
+  refuse_ranks_but_to(app, {"quality", "sequence", "reference"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"
