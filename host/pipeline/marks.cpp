@@ -99,10 +99,6 @@ cl_uint TriangleMarks::slot(std::size_t cascade) const {
   return static_cast<cl_uint>(std::min(cascade, states_.size() - 1));
 }
 
-void TriangleMarks::forget() {
-  for (std::optional<State>& state : states_) state.reset();
-}
-
 /// Makes room for what is to be marked: none where all is as it was.
 std::optional<ClpvRegion> TriangleMarks::prepare(std::size_t cascade, const ClpvGrid& grid) {
   std::optional<State>& state = states_[slot(cascade)];
