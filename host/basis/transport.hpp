@@ -5,13 +5,13 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -56,19 +56,8 @@ constexpr bool has_faces(TransportKind kind) {
   return kind == TransportKind::sampled || kind == TransportKind::exact;
 }
 
-constexpr std::string_view name_of(TransportKind kind) {
-  switch (kind) {
-    case TransportKind::sampled:
-      return "sampled";
-    case TransportKind::exact:
-      return "exact";
-    case TransportKind::upwind:
-      return "upwind";
-    case TransportKind::sweep:
-      return "sweep";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<TransportKind> = name_list("sampled", "exact", "upwind", "sweep");
 
 struct Transport {
   TransportKind kind = TransportKind::sampled;
