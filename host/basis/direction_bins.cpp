@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "basis/transport.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

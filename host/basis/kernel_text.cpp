@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "basis/kernel_text.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

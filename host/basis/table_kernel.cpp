@@ -5,7 +5,7 @@
 
 #include "basis/kernel_text.hpp"
 #include "basis/rotated_lobe.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

@@ -10,7 +10,7 @@
 #include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
 #include "codegen/mirrors.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

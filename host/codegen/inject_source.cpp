@@ -9,7 +9,7 @@
 
 #include "basis/table_kernel.hpp"
 #include "codegen/cell_macros.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/error.hpp"
 #include "support/little_endian.hpp"
-#include "support/refuse.hpp"
 
 namespace clpv {
 namespace {

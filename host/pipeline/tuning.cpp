@@ -7,7 +7,6 @@
 
 #include "clpv/version.hpp"
 #include "options/render_options.hpp"
-#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"

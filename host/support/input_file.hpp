@@ -17,4 +17,7 @@ inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{1}
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       std::uintmax_t most = kMostFileBytes);
 
+/// $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv; nothing where neither variable is set. Not created.
+std::optional<std::filesystem::path> user_cache_folder();
+
 }  // namespace clpv

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "support/error.hpp"
-#include "support/refuse.hpp"
 
 namespace clpv {
 

@@ -3,8 +3,7 @@
 
 #include <array>
 
-#include "support/npy.hpp"
-#include "support/vti.hpp"
+#include "support/array_files.hpp"
 
 namespace clpv {
 
