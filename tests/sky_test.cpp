@@ -12,7 +12,7 @@
 #include <numbers>
 
 #include "basis/sweep.hpp"
-#include "codegen/sky_light.hpp"
+#include "basis/sky_light.hpp"
 #include "image/image.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/sky_sampler.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "basis/sweep.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -179,6 +180,33 @@ OperatorTransport sweep_ways() {
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     if (offset != glm::ivec3(0)) ways.neighbours.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
+  }
+  return ways;
+}
+
+namespace {
+
+int way_number(const glm::ivec3& offset) {
+  const int place = (offset.x + 1) + 3 * (offset.y + 1) + 9 * (offset.z + 1);
+  return place - (place > 13 ? 1 : 0);  // 13 is the cell itself
+}
+
+}  // namespace
+
+int SweepWays::volume(int axis, const glm::ivec3& offset) const {
+  int before = 0;
+  for (int i = 0; i < axis; ++i) before += static_cast<int>(across[i].size());
+  return before +
+         static_cast<int>(std::ranges::find(across[axis], way_number(offset)) - across[axis].begin());
+}
+
+SweepWays sweep_way_volumes() {
+  SweepWays ways;
+  for (const SweepBin& bin : sweep_bins(1)) {
+    std::vector<int>& across = ways.across[bin.axis];
+    for (const glm::ivec3& offset : bin.offset) {
+      if (std::ranges::find(across, way_number(offset)) == across.end()) across.push_back(way_number(offset));
+    }
   }
   return ways;
 }

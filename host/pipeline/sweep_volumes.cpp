@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "codegen/sweep_source.hpp"
+#include "kernels/shared/sweep.h"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -39,11 +39,11 @@ void SweepVolumes::launch(Kernel& kernel, int channels) const {
 }
 
 std::size_t SweepVolumes::bytes(int grid, const VolumeFormat& format) {
-  return sweep_volume_numbers(grid) * number_bytes(format);
+  return CLPV_SWEEP_VOLUME_OF(std::size_t(grid)) * number_bytes(format);
 }
 
 std::size_t SweepVolumes::bordered_bytes(int grid, const VolumeFormat& format) {
-  return sweep_bordered_numbers(grid) * number_bytes(format);
+  return CLPV_SWEEP_BORDERED_OF(std::size_t(grid)) * number_bytes(format);
 }
 
 Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
@@ -52,7 +52,7 @@ Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
 
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  const std::size_t numbers = count * sweep_volume_numbers(grid_);
+  const std::size_t numbers = count * CLPV_SWEEP_VOLUME_OF(std::size_t(grid_));
   if (numbers > kMost)
     throw Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what, numbers,
                 kMost);

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "basis/sweep.hpp"
-#include "codegen/sky_light.hpp"
+#include "basis/sky_light.hpp"
 #include "reference/transmit.hpp"
 
 namespace clpv::reference {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "codegen/sky_light.hpp"
+#include "basis/sky_light.hpp"
 
 #include <algorithm>
 #include <cmath>
