@@ -9,7 +9,6 @@
 #include "basis/table_kernel.hpp"
 #include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
-#include "codegen/mirrors.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
@@ -74,16 +73,9 @@ int packed_pairs(const GatherForm& form) {
 }
 
 std::string pack_source(const Basis& basis, const GatherForm& form) {
-  const Mirrors mirrors = mirrors_of(basis);
-  LinearCode code;
-  const std::vector<std::string> numbers =
-      code.product(form.matrix(), fields("a", basis.size()), {mirrors.all.begin(), mirrors.all.end()});
-  std::string text = coefficient_macros(basis.size()) +
-                     cell_macros("Gathered", "GATHERED", form.matrix().rows()) +
-                     pair_macros(form.matrix().rows(), "(((const float*)&(a).c{})[lane])");
-  text += "CLPV_INLINE Gathered clpv_gathered(const Coefficients a) {\n" + code.text() + "  Gathered m;\n";
-  for (std::size_t i = 0; i < numbers.size(); ++i) text += fmt::format("  m.c{} = {};\n", i, numbers[i]);
-  return text + "  return m;\n}\n";
+  return coefficient_macros(basis.size()) + cell_macros("Gathered", "GATHERED", form.matrix().rows()) +
+         pair_macros(form.matrix().rows(), "(((const float*)&(a).c{})[lane])") +
+         LinearCode().function("Gathered", "clpv_gathered", "Coefficients", form.matrix());
 }
 
 std::string gather_source(const GatherForm& form, bool packed, bool from_table, const LobeOptions& lobes,

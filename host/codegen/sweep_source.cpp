@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 
+#include "basis/bounce.hpp"
 #include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
-#include "codegen/mirrors.hpp"
 #include "codegen/transmit_source.hpp"
 
 namespace clpv {
@@ -46,15 +46,11 @@ std::string sweep_bin_macros() {
 }
 
 CountedText sweep_source_text(const Basis& basis) {
-  const Mirrors mirrors = mirrors_of(basis);
   LinearCode code;
-  const std::vector<std::string> means =
-      code.product(bin_means(basis), fields("a", basis.size()), {mirrors.all.begin(), mirrors.all.end()});
-  std::string text =
-      coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
-      "CLPV_INLINE Swept clpv_bin_means(const Coefficients a) {\n" + code.text() + "  Swept m;\n";
-  for (std::size_t i = 0; i < means.size(); ++i) text += fmt::format("  m.c{} = {};\n", i, means[i]);
-  return {text + "  return m;\n}\n", code.operations()};
+  const std::string means = code.function("Swept", "clpv_bin_means", "Coefficients", bin_means(basis));
+  return {coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
+              means,
+          code.operations()};
 }
 
 std::string sweep_ways_text(const Basis& basis, const Transport& transport) {
@@ -63,15 +59,23 @@ std::string sweep_ways_text(const Basis& basis, const Transport& transport) {
 
 CountedText sweep_collect_text() {
   const Matrix projection = swept_projection();
-  const Mirrors mirrors = mirrors_of(*make_basis("bins24"));
   LinearCode code;
-  const std::vector<std::string> harmonics =
-      code.product(projection, fields("m", kSweepBins), {mirrors.all.begin(), mirrors.all.end()});
-  std::string text =
-      coefficient_macros(projection.rows()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
-      "CLPV_INLINE Coefficients clpv_projected(const Swept m) {\n" + code.text() + "  Coefficients c;\n";
-  for (std::size_t i = 0; i < harmonics.size(); ++i) text += fmt::format("  c.c{} = {};\n", i, harmonics[i]);
-  return {text + "  return c;\n}\n", code.operations()};
+  const std::string projected = code.function("Coefficients", "clpv_projected", "Swept", projection);
+  return {coefficient_macros(projection.rows()) + sweep_bin_macros() +
+              cell_macros("Swept", "SWEPT", kSweepBins) + projected,
+          code.operations()};
+}
+
+std::string bounce_source_text() {
+  return coefficient_macros(kReflectingSides) + sweep_bin_macros() +
+         cell_macros("Swept", "SWEPT", kSweepBins) +
+         LinearCode().function("Coefficients", "clpv_arriving", "Swept", arriving_flux()) +
+         LinearCode().function("Swept", "clpv_leaving", "Coefficients", leaving_light());
+}
+
+std::string arriving_source_text() {
+  return cell_macros("Sides", "SIDE", kReflectingSides) +
+         LinearCode().function("Sides", "clpv_arriving", "Swept", arriving_flux());
 }
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generated text of the kernels that sweep (kernels/sweep*.cl).
+// Generated text of the kernels that sweep and bounce (kernels/sweep*.cl, kernels/bounce.cl).
 #pragma once
 
 #include <string>
@@ -23,5 +23,10 @@ CountedText sweep_source_text(const Basis& basis);
 std::string sweep_ways_text(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
 CountedText sweep_collect_text();
+
+/// For bounce.cl: coefficients of six sides, Swept of 24 bins, clpv_arriving and clpv_leaving.
+std::string bounce_source_text();
+/// For sweep_collect.cl of all bounces: Sides, and Sides clpv_arriving(Swept).
+std::string arriving_source_text();
 
 }  // namespace clpv

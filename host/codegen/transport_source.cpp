@@ -46,9 +46,8 @@ Matrix half_face_rows(const FaceTransport& faces, State source) {
   return source == State::fluxes ? rows * faces.lobes : rows;
 }
 
-void generate_faces(Generated& out, const Basis& basis, const FaceTransport& faces, const StepForm& form) {
+void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& form) {
   const Matrix rows = half_face_rows(faces, form.source);
-  const Mirrors mirrors = form.source == State::fluxes ? mirrors_of_fluxes() : mirrors_of(basis);
   std::array<std::string, 6> through;
   through.fill("0.0f");
   for (int k = 0; k < 6; ++k) {
@@ -58,8 +57,7 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
       std::copy(rows.row(5 * k + f).begin(), rows.row(5 * k + f).end(), five.row(f).begin());
     const auto fluxes = form.functions_at_run_time
                             ? std::vector<std::string>(5)
-                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
-                                                 mirrors.across(axis_of(travel)));
+                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()));
     for (int f = 0; f < 5; ++f) {
       const int way = 5 * k + f;
       const std::string& half = fluxes[static_cast<std::size_t>(f)];
@@ -93,40 +91,14 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
   if (form.target == State::fluxes) {
     out.gains = received;
   } else {
-    out.gains = out.arrive.product(faces.lobes, received,
-                                   {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
+    out.gains = out.arrive.product(faces.lobes, received);
   }
 }
-
-/// Mirrors of all neighbours' inputs together: a mirror swaps neighbours and the functions within each.
-SignedPermutation mirror_of_neighbours(const OperatorTransport& scheme, const SignedPermutation& within,
-                                       int axis, int n) {
-  if (!within.exists()) return {};
-  SignedPermutation result;
-  for (const auto& neighbour : scheme.neighbours) {
-    glm::ivec3 image = neighbour.offset;
-    image[axis] = -image[axis];
-    int other = -1;
-    for (std::size_t q = 0; q < scheme.neighbours.size(); ++q) {
-      if (scheme.neighbours[q].offset == image) other = static_cast<int>(q);
-    }
-    if (other < 0) return {};
-    for (int i = 0; i < n; ++i) {
-      result.target.push_back(other * n + within.target[static_cast<std::size_t>(i)]);
-      result.sign.push_back(within.sign[static_cast<std::size_t>(i)]);
-    }
-  }
-  return result;
-}
-
-constexpr int kMostSharedInputs =
-    512;  // above, rows are so sparse (direction bins) that mirrors have nothing to share
 
 void generate_operators(Generated& out, const Basis& basis, const OperatorTransport& scheme,
                         const StepForm& form) {
   const int n = basis.size();
   const int count = static_cast<int>(scheme.neighbours.size());
-  const Mirrors mirrors = mirrors_of(basis);
   Matrix rows(n, n * count);
   std::vector<std::string> inputs;
   int way = 0;  // in the order of transmit_source()
@@ -150,27 +122,17 @@ void generate_operators(Generated& out, const Basis& basis, const OperatorTransp
           out.arrive.name(inputs[static_cast<std::size_t>(r)], {.multiplications = 1});
     }
   }
-  std::vector<SignedPermutation> symmetries;
-  for (int axis = 0; axis < 3 && n * count <= kMostSharedInputs; ++axis) {
-    symmetries.push_back(mirror_of_neighbours(scheme, mirrors.all[static_cast<std::size_t>(axis)], axis, n));
-  }
-  out.gains = out.arrive.product(rows, inputs, symmetries);
+  out.gains = out.arrive.product(rows, inputs);
 }
 
 std::string expand_function(const Transport& transport, const Basis& basis, State target) {
-  std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target sum) {\n";
   if (target == State::coefficients) {
-    text += "  Coefficients r;\n";
-    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = sum.c{0};\n", i);
+    std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target a) {\n  Coefficients r;\n";
+    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = a.c{0};\n", i);
     return text + "  return r;\n}\n";
   }
-  LinearCode code;
-  const auto values = code.product(std::get<FaceTransport>(transport.scheme).lobes, fields("sum", 6),
-                                   {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
-  text += code.text() + "  Coefficients r;\n";
-  for (int i = 0; i < basis.size(); ++i)
-    text += fmt::format("  r.c{} = {};\n", i, values[static_cast<std::size_t>(i)]);
-  return text + "  return r;\n}\n";
+  return LinearCode().function("Coefficients", "clpv_expand", "Target",
+                               std::get<FaceTransport>(transport.scheme).lobes);
 }
 
 std::string arrive_macro(const Generated& out) {
@@ -191,7 +153,7 @@ TransportSource transport_source(const Basis& basis, const Transport& transport,
   }
   Generated out;
   if (faces != nullptr) {
-    generate_faces(out, basis, *faces, form);
+    generate_faces(out, *faces, form);
   } else {
     generate_operators(out, basis, std::get<OperatorTransport>(transport.scheme), form);
   }

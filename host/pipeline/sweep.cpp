@@ -8,7 +8,6 @@
 #include "basis/bounce.hpp"
 #include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/bounce_source.hpp"
 #include "codegen/sweep_source.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/sweep_tables.hpp"
