@@ -52,7 +52,7 @@ std::string Basis::lambda_text() const {
 }
 
 std::vector<double> Basis::evaluate(const glm::dvec3& w) const {
-  std::vector<double> b(static_cast<std::size_t>(size_));
+  std::vector<double> b(size_);
   evaluate(w, b);
   return b;
 }
@@ -66,7 +66,7 @@ double Basis::energy(std::span<const double> c) const {
 }
 
 std::vector<double> Basis::clamped_cosine(const glm::dvec3& d) const {
-  std::vector<double> alpha(static_cast<std::size_t>(size_));
+  std::vector<double> alpha(size_);
   cosine_integrals(d, alpha);
   return gram_inverse_ * alpha;
 }

@@ -64,8 +64,7 @@ std::vector<double> CosineOfPoisson::chebyshev() const {
   std::vector<double> c;
   for (int k = 0; k < std::min(nodes, kKernelTerms); ++k) {
     double sum = 0;
-    for (int j = 0; j < nodes; ++j)
-      sum += values[static_cast<std::size_t>(j)] * std::cos(kPi * k * (j + 0.5) / nodes);
+    for (int j = 0; j < nodes; ++j) sum += values[j] * std::cos(kPi * k * (j + 0.5) / nodes);
     c.push_back(sum * (k == 0 ? 1.0 : 2.0) / nodes);
   }
   while (c.size() > 1 && std::abs(c.back()) < kKernelTail * std::abs(c[0])) c.pop_back();

@@ -73,7 +73,7 @@ FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeO
     const std::vector<double> lobe = lobe_round(glm::dvec3(kAxes[a]));
     const double carried = flux == FaceFlux::exact ? basis.energy(lobe) : kPi;
     for (int i = 0; i < basis.size(); ++i) {
-      transport.lobes(i, static_cast<int>(a)) = lobe[static_cast<std::size_t>(i)] / carried;
+      transport.lobes(i, static_cast<int>(a)) = lobe[i] / carried;
     }
   }
   return transport;

@@ -29,10 +29,8 @@ Matrix cosine_projection(const Basis& harmonics, const Basis& basis) {
   for (const QuadratureNode& node : quadrature(basis, octants())) {
     const std::vector<double> y = harmonics.evaluate(node.w), b = basis.evaluate(node.w);
     for (int j = 0; j < projection.rows(); ++j) {
-      const double factor = node.weight * y[static_cast<std::size_t>(j)] *
-                            kCosineFactors[static_cast<std::size_t>(std::sqrt(j + 0.5))];
-      for (int i = 0; i < projection.columns(); ++i)
-        projection(j, i) += factor * b[static_cast<std::size_t>(i)];
+      const double factor = node.weight * y[j] * kCosineFactors[std::sqrt(j + 0.5)];
+      for (int i = 0; i < projection.columns(); ++i) projection(j, i) += factor * b[i];
     }
   }
   return projection;

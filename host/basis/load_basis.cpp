@@ -50,7 +50,7 @@ glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t i
   glm::dvec3 v;
   double largest = 0;
   for (int i = 0; i < 3; ++i) {
-    const json& number = value[static_cast<std::size_t>(i)];
+    const json& number = value[i];
     if (!number.is_number()) throw refuse(fmt::format("/{}", i), number);
     v[i] = number.get<double>();
     largest = std::max(largest, std::abs(v[i]));

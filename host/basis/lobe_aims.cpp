@@ -47,7 +47,7 @@ json parsed(const std::string& path) {
 
 /// |f - max(0, w . d)|^2 / |max(0, w . d)|^2; f is a projection, so that |f|^2 is what is taken off.
 double square_error(const Basis& basis, const glm::dvec3& d) {
-  std::vector<double> alpha(static_cast<std::size_t>(basis.size()));
+  std::vector<double> alpha(basis.size());
   basis.cosine_integrals(d, alpha);
   const std::vector<double> c = basis.clamped_cosine(d), product = basis.gram() * c;
   double square = kNorm;

@@ -81,7 +81,7 @@ double energy_after(const Basis& basis, const FaceTransport& transport, int step
     std::vector<double> through(kAxes.size(), 0.0);
     for (const Face& face : transport.faces) {
       const auto axis = std::find(kAxes.begin(), kAxes.end(), face.normal) - kAxes.begin();
-      through[static_cast<std::size_t>(axis)] += dot(face.flux, c);
+      through[axis] += dot(face.flux, c);
     }
     c = transport.lobes * through;
   }

@@ -40,10 +40,10 @@ Matrix Matrix::operator*(const Matrix& other) const {
 }
 
 std::vector<double> Matrix::operator*(std::span<const double> vector) const {
-  std::vector<double> r(static_cast<std::size_t>(rows_), 0.0);
+  std::vector<double> r(rows_, 0.0);
   for (int i = 0; i < rows_; ++i) {
     for (int j = 0; j < columns_; ++j) {
-      r[static_cast<std::size_t>(i)] += (*this)(i, j) * vector[static_cast<std::size_t>(j)];
+      r[i] += (*this)(i, j) * vector[j];
     }
   }
   return r;

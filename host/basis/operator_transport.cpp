@@ -23,9 +23,9 @@ double upwind_weight(const glm::ivec3& k, const glm::dvec3& w) {
 // sum += weight b b^T. Direction bins have one function that is not 0.
 void add_outer(Matrix& sum, double weight, const std::vector<double>& b) {
   for (int i = 0; i < sum.rows(); ++i) {
-    const double factor = weight * b[static_cast<std::size_t>(i)];
+    const double factor = weight * b[i];
     if (factor == 0) continue;
-    for (int j = 0; j < sum.columns(); ++j) sum(i, j) += factor * b[static_cast<std::size_t>(j)];
+    for (int j = 0; j < sum.columns(); ++j) sum(i, j) += factor * b[j];
   }
 }
 
@@ -49,7 +49,7 @@ template <typename Weight>
 Moments moments(const Basis& basis, const std::vector<glm::ivec3>& offsets, Weight weight) {
   const Matrix zero(basis.size(), basis.size());
   Moments result{std::vector<Matrix>(offsets.size(), zero), zero, zero};
-  std::vector<double> b(static_cast<std::size_t>(basis.size()));
+  std::vector<double> b(basis.size());
   for (const QuadratureNode& node : quadrature(basis, octants())) {
     basis.evaluate(node.w, b);
     add_outer(result.over_norm, node.weight / manhattan(node.w), b);

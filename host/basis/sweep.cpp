@@ -120,17 +120,17 @@ Matrix bin_means(const Basis& basis) {
     for (const QuadratureNode& node : nodes_of(piece)) {
       const std::vector<double> in = bins.evaluate(node.w), b = basis.evaluate(node.w);
       for (int bin = 0; bin < kSweepBins; ++bin) {
-        const double weight = node.weight * in[static_cast<std::size_t>(bin)];
+        const double weight = node.weight * in[bin];
         if (weight == 0) continue;
-        total[static_cast<std::size_t>(bin)] += weight;
-        for (int i = 0; i < basis.size(); ++i) sums(bin, i) += weight * b[static_cast<std::size_t>(i)];
+        total[bin] += weight;
+        for (int i = 0; i < basis.size(); ++i) sums(bin, i) += weight * b[i];
       }
     }
   }
   constexpr double kNone = 1e-14;  // of a bin that a function does not reach
   for (int bin = 0; bin < kSweepBins; ++bin) {
     for (double& mean : sums.row(bin)) {
-      mean /= total[static_cast<std::size_t>(bin)];
+      mean /= total[bin];
       if (std::abs(mean) < kNone) mean = 0;
     }
   }
@@ -160,9 +160,7 @@ Matrix swept_projection() {
   for (const QuadratureNode& node : quadrature(bins, octants())) {
     const std::vector<double> in = bins.evaluate(node.w), y = harmonics->evaluate(node.w);
     for (int j = 0; j < projection.rows(); ++j) {
-      for (int bin = 0; bin < kSweepBins; ++bin)
-        projection(j, bin) +=
-            node.weight * y[static_cast<std::size_t>(j)] * in[static_cast<std::size_t>(bin)];
+      for (int bin = 0; bin < kSweepBins; ++bin) projection(j, bin) += node.weight * y[j] * in[bin];
     }
   }
   return projection;

@@ -47,18 +47,17 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
   const Parameters products = gram_parameters(basis);
   std::string text = opening("clpv_rotated_integrals", {}) + kRotation;
   for (int j = 0; j < basis.size(); ++j) {
-    const glm::dvec3& c = basis.centres()[static_cast<std::size_t>(j)];
+    const glm::dvec3& c = basis.centres()[j];
     text += fmt::format("  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n",
                         j, height(c, {"xx", "xy", "x"}), height(c, {"xy", "yy", "y"}),
                         height(c, {"(-x)", "(-y)", "z"}));
   }
   for (int i = 0; i < basis.size(); ++i) {
     for (int j = 0; j < basis.size(); ++j) {
-      const std::string t = height(basis.centres()[static_cast<std::size_t>(i)],
-                                   {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
-      const std::size_t table = products.of[static_cast<std::size_t>(i * basis.size() + j)];
-      const std::string weight = float_literal(upwards[static_cast<std::size_t>(j)]),
-                        value = entry(t, table, table_size, {});
+      const std::string t =
+          height(basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
+      const std::size_t table = products.of[i * basis.size() + j];
+      const std::string weight = float_literal(upwards[j]), value = entry(t, table, table_size, {});
       text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
                      : fmt::format("  r.c{0} = fma({1}, {2}, r.c{0});\n", i, weight, value);
     }
@@ -70,9 +69,8 @@ std::string table_basis_source(const Basis& basis, int table_size, const TableNa
   const Parameters lambdas = function_parameters(basis);
   std::string text = opening("clpv_table_basis", name);
   for (int i = 0; i < basis.size(); ++i) {
-    const std::string t = height(basis.centres()[static_cast<std::size_t>(i)], {"x", "y", "z"});
-    text += fmt::format("  r.c{} = {};\n", i,
-                        entry(t, lambdas.of[static_cast<std::size_t>(i)], table_size, name));
+    const std::string t = height(basis.centres()[i], {"x", "y", "z"});
+    text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.of[i], table_size, name));
   }
   return text + "  return r;\n}\n";
 }

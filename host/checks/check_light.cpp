@@ -26,7 +26,7 @@ void compare_cascade(const std::vector<float>& found, const Volume& twin, std::s
                      CheckResult& result) {
   double largest = 0;
   for (const double value : twin.values) largest = std::max(largest, std::abs(value));
-  const auto n = static_cast<std::size_t>(twin.n);
+  const std::size_t n = twin.n;
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double error = std::abs(found[at] - twin.values[at]) / largest;
     if (error <= result.worst || std::isnan(result.worst)) continue;  // a NaN is not, and stays the worst

@@ -47,7 +47,7 @@ std::string gather_weights(const GatherForm& form, bool packed, bool from_table)
   if (form.window() > 0) {
     for (int i = 0; i < count; ++i) {
       text += fmt::format("  a.c{0} = fma({1}, a.c{0}, {2});\n", i, float_literal(1 - form.window()),
-                          float_literal(form.window() * form.mean()[static_cast<std::size_t>(i)]));
+                          float_literal(form.window() * form.mean()[i]));
     }
   }
   if (packed) return text + "  return a;\n}\n";

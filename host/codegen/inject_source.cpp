@@ -136,7 +136,7 @@ std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blockin
 }
 
 std::size_t inject_keys(int grid, bool trilinear, bool geometry) {
-  const auto n = static_cast<std::size_t>(grid);
+  const std::size_t n = grid;
   if (trilinear) {
     const std::size_t half = n / 2 + 1;
     return 8 * half * half * half;

@@ -59,8 +59,7 @@ void add_ways(Generated& out, const glm::ivec3& normal, const std::vector<std::v
   const auto corners = static_cast<double>(corners_towards(normal).size());
   Matrix rows(static_cast<int>(weights.size()), static_cast<int>(weights.front().size()));
   for (int r = 0; r < rows.rows(); ++r) {
-    for (int i = 0; i < rows.columns(); ++i)
-      rows(r, i) = weights[static_cast<std::size_t>(r)][static_cast<std::size_t>(i)] * (0.5 / corners);
+    for (int i = 0; i < rows.columns(); ++i) rows(r, i) = weights[r][i] * (0.5 / corners);
   }
   const auto halves = code.product(rows, blockers_towards(code, normal, rows));
   for (std::size_t r = 0; r < ways.size(); ++r) {

@@ -13,7 +13,7 @@ namespace {
 
 int axis_index(const glm::ivec3& axis) {
   for (int i = 0; i < 6; ++i) {
-    if (kAxes[static_cast<std::size_t>(i)] == axis) return i;
+    if (kAxes[i] == axis) return i;
   }
   return -1;
 }
@@ -40,8 +40,7 @@ Matrix half_face_rows(const FaceTransport& faces, State source) {
   const int n = static_cast<int>(faces.faces.front().flux.size());
   Matrix rows(static_cast<int>(faces.faces.size()), n);
   for (int f = 0; f < rows.rows(); ++f) {
-    for (int i = 0; i < n; ++i)
-      rows(f, i) = 0.5 * faces.faces[static_cast<std::size_t>(f)].flux[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i) rows(f, i) = 0.5 * faces.faces[f].flux[i];
   }
   return source == State::fluxes ? rows * faces.lobes : rows;
 }
@@ -51,7 +50,7 @@ void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& 
   std::array<std::string, 6> through;
   through.fill("0.0f");
   for (int k = 0; k < 6; ++k) {
-    const glm::ivec3 travel = kAxes[static_cast<std::size_t>(k)];
+    const glm::ivec3 travel = kAxes[k];
     Matrix five(5, rows.columns());
     for (int f = 0; f < 5; ++f)
       std::copy(rows.row(5 * k + f).begin(), rows.row(5 * k + f).end(), five.row(f).begin());
@@ -60,7 +59,7 @@ void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& 
                             : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()));
     for (int f = 0; f < 5; ++f) {
       const int way = 5 * k + f;
-      const std::string& half = fluxes[static_cast<std::size_t>(f)];
+      const std::string& half = fluxes[f];
       std::string flux =
           out.arrive.name(form.functions_at_run_time ? fmt::format("clpv_flux_through(a{}, at[{}])", k, way)
                                                      : fmt::format("{0} + fabs({0})", half),
@@ -71,8 +70,7 @@ void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& 
         out.gains.push_back(flux);
         continue;
       }
-      std::string& sum =
-          through[static_cast<std::size_t>(axis_index(faces.faces[static_cast<std::size_t>(way)].normal))];
+      std::string& sum = through[axis_index(faces.faces[way].normal)];
       if (!form.blocking) {
         sum = out.arrive.add(sum, flux);
       } else if (sum == "0.0f") {
@@ -103,7 +101,7 @@ void generate_operators(Generated& out, const Basis& basis, const OperatorTransp
   std::vector<std::string> inputs;
   int way = 0;  // in the order of transmit_source()
   for (int k = 0; k < count; ++k) {
-    const auto& neighbour = scheme.neighbours[static_cast<std::size_t>(k)];
+    const auto& neighbour = scheme.neighbours[k];
     for (int r = 0; r < n; ++r) {
       for (int i = 0; i < n; ++i) rows(r, k * n + i) = neighbour.weights(r, i);
     }
@@ -117,9 +115,8 @@ void generate_operators(Generated& out, const Basis& basis, const OperatorTransp
   for (int r = 0; form.blocking && r < static_cast<int>(inputs.size()); ++r) {
     bool used = false;
     for (int row = 0; row < n; ++row) used = used || rows(row, r) != 0;
-    if (used && inputs[static_cast<std::size_t>(r)].front() == '(') {
-      inputs[static_cast<std::size_t>(r)] =
-          out.arrive.name(inputs[static_cast<std::size_t>(r)], {.multiplications = 1});
+    if (used && inputs[r].front() == '(') {
+      inputs[r] = out.arrive.name(inputs[r], {.multiplications = 1});
     }
   }
   out.gains = out.arrive.product(rows, inputs);

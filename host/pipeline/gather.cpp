@@ -109,13 +109,12 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
 void Gatherer::reserve(std::size_t cascades) {
   session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
   if (!packs()) return;
-  const auto n = static_cast<std::size_t>(options_.grid),
-             pairs = static_cast<std::size_t>(packed_pairs(form_));
+  const std::size_t n = options_.grid, pairs = packed_pairs(form_);
   session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
 }
 
 void Gatherer::pack(const Volume& volume, std::size_t slot) {
-  const auto n = static_cast<std::size_t>(options_.grid);
+  const std::size_t n = options_.grid;
   pack_->set(volume.memory(), packed_, static_cast<cl_uint>(slot * n * n * n));
   stencil_.launch(*pack_, 1);
 }

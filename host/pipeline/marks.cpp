@@ -70,7 +70,7 @@ bool meet(const Bounds& a, const Bounds& b) {
 }  // namespace
 
 std::size_t MarksShape::words_a_cascade() const {
-  const auto along = static_cast<std::size_t>(cells);
+  const std::size_t along = cells;
   return along * along * along * words;
 }
 
@@ -179,7 +179,7 @@ void TriangleMarks::add_box(ClpvRegion& region, const ClpvBox& box) const {
 /// Moves what stays, and clears what is made anew.
 void TriangleMarks::clear(std::size_t cascade, const ClpvRegion& region) {
   const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
-  const auto along = static_cast<std::size_t>(shape_.cells);
+  const std::size_t along = shape_.cells;
   const cl::NDRange cells(along, along, along), group(kGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(marks_, bytes, from);
   if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {

@@ -55,7 +55,7 @@ SceneReflector::SceneReflector(Session& session, const SceneBuffers& scene, int 
 void SceneReflector::reflect(std::size_t cascade, const ClpvGrid& grid) {
   sides_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, sides_.buffer());
   shares_.set(sides_.buffer(), reflectors_[cascade]->memory());
-  const auto cells = static_cast<std::size_t>(grid_);
+  const std::size_t cells = grid_;
   shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kGroup, 1, 1));
 }
 

@@ -128,7 +128,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   if (options.blocking)
     ways_.emplace(session, volumes_.program("sweep_ways.cl", sweep_ways_text(basis, transport)),
                   "sweep_ways");
-  const auto ways = static_cast<std::size_t>(options.blocking ? sweep_way_volumes().count() : 1);
+  const std::size_t ways = options.blocking ? sweep_way_volumes().count() : 1;
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     through_.push_back(volumes_.make(ways, "transmittance to sweep through"));
   passes_ = make_passes(options.parts);
@@ -247,7 +247,7 @@ void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const C
     return;
   }
   if (!lit) let_nothing_in(pass);
-  const auto n = static_cast<std::size_t>(options_.grid);
+  const std::size_t n = options_.grid;
   for (int plane = 0; plane < options_.grid; ++plane) {
     set(plane);
     pass.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});

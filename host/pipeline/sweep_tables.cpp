@@ -66,7 +66,7 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
       entry.share = static_cast<float>(d.solid_angle / (d.flux * bins[b].solid_angle));
       if (coarser_parts > 0) {
         entry.coarser = coarser_part(static_cast<int>(part), parts, coarser_parts);
-        const SweepDirection& from = coarser[b].directions[static_cast<std::size_t>(entry.coarser)];
+        const SweepDirection& from = coarser[b].directions[entry.coarser];
         entry.from_coarser = static_cast<float>(kArea * d.flux / from.flux);
       }
       table.push_back(entry);

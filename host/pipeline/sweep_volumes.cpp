@@ -33,7 +33,7 @@ ProgramSource SweepVolumes::program(const char* file, std::string generated) con
 }
 
 void SweepVolumes::launch(Kernel& kernel, int channels) const {
-  const auto tiles = static_cast<std::size_t>((grid_ + tile_ - 1) / tile_);
+  const std::size_t tiles = (grid_ + tile_ - 1) / tile_;
   const auto slices = static_cast<std::size_t>(grid_) * static_cast<std::size_t>(channels);
   kernel.launch({tiles, tiles, slices}, {tile_ == 1 ? std::min(tiles, kRowGroup) : 1, 1, 1});
 }

@@ -27,9 +27,7 @@ struct Masks {
   int n;
   std::vector<Mask> bits;
   explicit Masks(int corners) : n(corners), bits(static_cast<std::size_t>(3 * corners * corners * corners)) {}
-  Mask& at(int axis, const glm::ivec3& c) {
-    return bits[static_cast<std::size_t>(((axis * n + c.z) * n + c.y) * n + c.x)];
-  }
+  Mask& at(int axis, const glm::ivec3& c) { return bits[((axis * n + c.z) * n + c.y) * n + c.x]; }
 };
 
 /// A triangle seen along an axis: corners (u, v) in samples, depth in cells.

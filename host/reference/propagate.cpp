@@ -12,9 +12,8 @@ namespace clpv::reference {
 namespace {
 
 std::vector<double> cell(const Volume& volume, int channel, const glm::ivec3& p) {
-  std::vector<double> c(static_cast<std::size_t>(volume.coefficients));
-  for (int i = 0; i < volume.coefficients; ++i)
-    c[static_cast<std::size_t>(i)] = volume.value(channel, i, p.x, p.y, p.z);
+  std::vector<double> c(volume.coefficients);
+  for (int i = 0; i < volume.coefficients; ++i) c[i] = volume.value(channel, i, p.x, p.y, p.z);
   return c;
 }
 
@@ -70,7 +69,7 @@ Plane arriving(const Volume& from, int channel, const glm::ivec3& travel, std::s
   const int n = from.n, first = std::max(0, travel.x), last = n + std::min(0, travel.x);
   Plane sum(static_cast<std::size_t>(n) * n * n, 0.0);
   for (int i = 0; i < from.coefficients; ++i) {
-    const double weight = weights[static_cast<std::size_t>(i)];
+    const double weight = weights[i];
     if (weight == 0) continue;
     for (int z = std::max(0, travel.z); z < n + std::min(0, travel.z); ++z) {
       for (int y = std::max(0, travel.y); y < n + std::min(0, travel.y); ++y) {
@@ -155,9 +154,8 @@ Propagation propagate(const Transport& transport, const Volume& injected, const 
 std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
   std::array<double, 3> sum{};
   for (int channel = 0; channel < volume.channels; ++channel) {
-    for_each_cell(volume.n, [&](const glm::ivec3& p) {
-      sum[static_cast<std::size_t>(channel)] += basis.energy(cell(volume, channel, p));
-    });
+    for_each_cell(volume.n,
+                  [&](const glm::ivec3& p) { sum[channel] += basis.energy(cell(volume, channel, p)); });
   }
   return sum;
 }
@@ -167,7 +165,7 @@ std::array<double, 3> leaving(const Basis& basis, const Transport& transport, co
   const auto outside = [&](const glm::ivec3& p) { return !travelling.inside(p.x, p.y, p.z); };
   for_each_cell(travelling.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < travelling.channels; ++channel) {
-      double& sum = lost[static_cast<std::size_t>(channel)];
+      double& sum = lost[channel];
       std::optional<std::vector<double>> c;
       const auto here = [&]() -> const std::vector<double>& {
         return c ? *c : c.emplace(cell(travelling, channel, p));
@@ -177,8 +175,7 @@ std::array<double, 3> leaving(const Basis& basis, const Transport& transport, co
           if (!outside(p + face.travel)) continue;
           const double flux = flux_through(face, here(), true);
           for (int i = 0; i < basis.size(); ++i) {
-            sum += flux * faces->lobes(i, column_of(face.normal)) *
-                   basis.integrals()[static_cast<std::size_t>(i)];
+            sum += flux * faces->lobes(i, column_of(face.normal)) * basis.integrals()[i];
           }
         }
       } else {

@@ -129,7 +129,7 @@ class Sides {
       double share = static_cast<double>(side.covered.count()) / whole, unsure = side.unsure / whole;
       for (int other = 0; other < kReflectingSides; ++other) {
         if (other / 2 == side_number / 2) continue;
-        const Side& across = sides_[static_cast<std::size_t>(cell * kReflectingSides + other)];
+        const Side& across = sides_[cell * kReflectingSides + other];
         share *= 1 - edge_loss() * static_cast<double>(across.covered.count()) / whole;
         unsure += across.unsure / whole;
       }
@@ -147,8 +147,7 @@ class Sides {
     glm::ivec3 cell;
     cell[(facing.axis() + 1) % 3] = i, cell[(facing.axis() + 2) % 3] = j, cell[facing.axis()] = k;
     const int number = (cell.z * n_ + cell.y) * n_ + cell.x;
-    return sides_[static_cast<std::size_t>(number * kReflectingSides + 2 * facing.axis() +
-                                           (facing.up() ? 0 : 1))];
+    return sides_[number * kReflectingSides + 2 * facing.axis() + (facing.up() ? 0 : 1)];
   }
 
   void add(std::uint32_t triangle, const Facing& facing) {

@@ -67,7 +67,7 @@ glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const
   const glm::dvec2 x = step_x * size, y = step_y * size;  // [texels]
   const double coarsest = static_cast<double>(levels.size() - 1);
   const double level = std::min(mip_level(std::max(glm::dot(x, x), glm::dot(y, y))), coarsest);
-  const auto fine = static_cast<std::size_t>(level);
+  const std::size_t fine = level;
   const auto weight = static_cast<float>(level - static_cast<double>(fine));
   const glm::vec4 colour = look_up(levels[fine], uv);
   return weight == 0 ? colour : glm::mix(colour, look_up(levels[fine + 1], uv), weight);

@@ -24,7 +24,7 @@ constexpr auto name_list(const Names&... names) {
 }
 
 template <typename E>
-concept NamedEnum = std::is_enum_v<E> && (kNames<E>.size() > 0);
+concept NamedEnum = std::is_enum_v<E> &&(kNames<E>.size() > 0);
 
 /// Empty for what is no value.
 template <NamedEnum E>

@@ -23,8 +23,8 @@ PlaneStage::PlaneStage(Session& session, const VolumeShape& shape, Storage stora
       to_image_(session, source_of(shape, storage), "planes_to_image") {}
 
 void PlaneStage::launch(Kernel& kernel, const Volume& from, const Volume& to) const {
-  const auto n = static_cast<std::size_t>(planes_.shape().n);
-  const auto channels = static_cast<std::size_t>(planes_.shape().channels);
+  const std::size_t n = planes_.shape().n;
+  const std::size_t channels = planes_.shape().channels;
   kernel.set(from.memory(), to.memory()).launch({n, n, n * channels}, {kLocalX, 1, 1});
 }
 

@@ -24,7 +24,7 @@ void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit
 }
 
 std::size_t host_numbers(const VolumeShape& shape) {
-  const auto n = static_cast<std::size_t>(shape.n);
+  const std::size_t n = shape.n;
   return n * n * n * static_cast<std::size_t>(shape.coefficients) * static_cast<std::size_t>(shape.channels);
 }
 
