@@ -9,7 +9,7 @@
 #include "basis/transport.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/baseline/sweep_avx2.hpp"
-#include "checks/check_light.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "reference/propagate.hpp"
 #include "reference/sweep.hpp"

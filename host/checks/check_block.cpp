@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/block.hpp"
 #include "reference/block.hpp"

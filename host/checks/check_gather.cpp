@@ -8,7 +8,7 @@
 #include <random>
 
 #include "checks/check.hpp"
-#include "checks/check_surfaces.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "checks/check.hpp"
-#include "checks/check_surfaces.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"

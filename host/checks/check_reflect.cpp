@@ -7,7 +7,7 @@
 
 #include "basis/bounce.hpp"
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/reflect.hpp"
 #include "reference/reflect.hpp"

@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/see.hpp"
 #include "reference/see.hpp"

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "basis/table_kernel.hpp"
-#include "codegen/cell_macros.hpp"
+#include "basis/kernel_text.hpp"
 #include "codegen/linear_code.hpp"
 #include "support/text.hpp"
 

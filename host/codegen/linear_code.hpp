@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Straight-line OpenCL C for products with constant matrices.
+// Straight-line OpenCL C: the structs of a cell's numbers, and products with constant matrices.
 #pragma once
 
 #include <map>
@@ -45,5 +45,12 @@ std::vector<std::string> fields(const std::string& name, int count);
 /// `statements` as a macro. Not a function: compilers that pass structs in vector registers would keep work-items from
 /// being vectorised.
 std::string macro_text(const std::string& name, const std::string& statements);
+
+/// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and
+/// CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO) and the struct Coefficients of N CLPV_REALs c0, c1, ...
+std::string coefficient_macros(int coefficients);
+
+/// The struct `type` of `count` CLPV_REALs c0, c1, ... and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
+std::string cell_macros(const std::string& type, const std::string& each, int count);
 
 }  // namespace clpv

@@ -7,7 +7,6 @@
 #include <array>
 
 #include "basis/bounce.hpp"
-#include "codegen/cell_macros.hpp"
 #include "codegen/linear_code.hpp"
 #include "codegen/transmit_source.hpp"
 

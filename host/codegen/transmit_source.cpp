@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "codegen/cell_macros.hpp"
+#include "codegen/linear_code.hpp"
 
 namespace clpv {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "codegen/cell_macros.hpp"
+#include "codegen/linear_code.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

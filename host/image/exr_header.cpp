@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "support/error.hpp"
-#include "support/little_endian.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 namespace {

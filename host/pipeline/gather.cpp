@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "codegen/gather_source.hpp"
-#include "pipeline/tile_rows.hpp"
+#include "pipeline/surface.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

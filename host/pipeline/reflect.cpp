@@ -2,7 +2,7 @@
 #include "pipeline/reflect.hpp"
 
 #include "basis/bounce.hpp"
-#include "codegen/cell_macros.hpp"
+#include "codegen/linear_code.hpp"
 #include "kernels/shared/reflect.h"
 
 namespace clpv {
