@@ -122,16 +122,8 @@ Volume random_blockers(int numbers, int n, std::mt19937& random) {
 
 void compare_cascade(const std::vector<float>& found, const Volume& twin, std::size_t cascade,
                      CheckResult& result) {
-  double largest = 0;
-  for (const double value : twin.values) largest = std::max(largest, std::abs(value));
-  const std::size_t n = twin.n;
-  for (std::size_t at = 0; at < found.size(); ++at) {
-    const double error = std::abs(found[at] - twin.values[at]) / largest;
-    if (error <= result.worst || std::isnan(result.worst)) continue;  // a NaN is not, and stays the worst
-    result.worst = error;
-    result.place = fmt::format("cascade {} cell {},{},{} plane {}: {:.7g}, twin {:.7g}", cascade, at % n,
-                               at / n % n, at / n / n % n, at / n / n / n, found[at], twin.values[at]);
-  }
+  const Comparison apart = compare_volumes(found, twin.values, twin.n);
+  result.take(apart.worst, [&] { return fmt::format("cascade {} {}", cascade, apart.place); });
 }
 
 }  // namespace clpv::reference
