@@ -18,12 +18,6 @@ namespace {
 constexpr int kLeastBands = 2, kMostBands = 5;
 constexpr int kBinSides[] = {2, 4};  // bins along each edge of a cube's face
 
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
 void Basis::set_gram(Matrix gram, std::vector<double> integrals) {

@@ -53,12 +53,6 @@ std::vector<glm::dvec3> spread(int count) {
   return directions;
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
 GatherForm::GatherForm(const Basis& basis, const Transport& transport) : basis_(&basis) {

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <numeric>
 
 #include "support/error.hpp"
 
@@ -40,12 +41,8 @@ Matrix Matrix::operator*(const Matrix& other) const {
 }
 
 std::vector<double> Matrix::operator*(std::span<const double> vector) const {
-  std::vector<double> r(rows_, 0.0);
-  for (int i = 0; i < rows_; ++i) {
-    for (int j = 0; j < columns_; ++j) {
-      r[i] += (*this)(i, j) * vector[j];
-    }
-  }
+  std::vector<double> r;
+  for (int i = 0; i < rows_; ++i) r.push_back(dot(row(i), vector));
   return r;
 }
 
@@ -55,6 +52,10 @@ Matrix Matrix::transposed() const {
     for (int j = 0; j < columns_; ++j) r(j, i) = (*this)(i, j);
   }
   return r;
+}
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 Matrix solve(const Matrix& a, const Matrix& b) {

@@ -39,6 +39,9 @@ class Matrix {
   std::vector<double> values_;
 };
 
+/// Sum of a_i b_i, as many as `a` has.
+double dot(std::span<const double> a, std::span<const double> b);
+
 /// X with A X = B for a symmetric positive definite A, in extended precision: relative error 1e-19 times A's
 /// condition number plus a rounding. Throws Error(run_time) where A is not.
 Matrix solve(const Matrix& a, const Matrix& b);

@@ -3,7 +3,6 @@
 
 #include "basis/sweep.hpp"
 #include "pipeline/frame_volumes.hpp"
-#include "pipeline/sky_background.hpp"
 #include "pipeline/view.hpp"
 #include "support/error.hpp"
 
@@ -25,6 +24,29 @@ Transport transport_for(const RenderOptions& options, const Basis& basis, const 
   if (scene.sky && options.transport == TransportKind::sweep)
     close_diagonals(std::get<OperatorTransport>(transport.scheme), kClosedUnderASky);
   return transport;
+}
+
+glm::dvec3 vector(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+/// Gives pixels of an RGBA image without alpha the radiance of the sky that they look at, and alpha 1.
+void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) {
+  const glm::dvec3 forward = vector(view.forward), right = vector(view.right), up = vector(view.up);
+  for (unsigned y = 0; y < view.height; ++y) {
+    for (unsigned x = 0; x < view.width; ++x) {
+      float* pixel = &image[std::size_t{4} * (std::size_t{y} * view.width + x)];
+      if (pixel[3] != 0) continue;
+      glm::dvec3 ray = forward;
+      if (view.orthographic == 0) {
+        ray += (2 * (x + 0.5) / view.width - 1) * double{view.half_width} * right +
+               (1 - 2 * (y + 0.5) / view.height) * double{view.half_height} * up;
+      }
+      const glm::vec3 seen = sky.seen(glm::normalize(ray));
+      for (int channel = 0; channel < 3; ++channel) pixel[channel] = seen[channel];
+      pixel[3] = 1;
+    }
+  }
 }
 
 }  // namespace

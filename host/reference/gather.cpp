@@ -99,12 +99,6 @@ std::vector<double> gather_weights(const Basis& basis, const GatherForm& form, c
   return form.matrix().transposed() * std::span<const double>(form.windowed(f));
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /// E s^2 of one volume, clamped and floored.
 glm::dvec3 irradiance(const Volume& volume, const Around& around, const std::vector<double>& weights,
                       const std::vector<double>& floor) {
