@@ -91,6 +91,10 @@ void FrameLights::rasterize(const Lit& lit, const std::vector<ClpvView>& views,
   }
 }
 
+std::size_t FrameLights::slot(const Lit& lit, int cascade) {
+  return rsm_follows_cascade(lit.light) && lit.rsms.size() > 1 ? cascade : 0;
+}
+
 void FrameLights::rasterize_rsms(int cascade) {
   for (Lit& lit : lights_) {
     Rsms& rsms = lit.rsms[slot(lit, cascade)];

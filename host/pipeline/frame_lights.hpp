@@ -69,9 +69,7 @@ class FrameLights {
     Cached shadow_cached;
   };
   /// Views that do not follow a cascade are the same for all of them.
-  static std::size_t slot(const Lit& lit, int cascade) {
-    return rsm_follows_cascade(lit.light) && lit.rsms.size() > 1 ? cascade : 0;
-  }
+  static std::size_t slot(const Lit& lit, int cascade);
   void find_lights(const Camera& camera);
   void find_scale(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
