@@ -92,18 +92,8 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
   if (volumes.size() != grids.size()) {
     throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades", volumes.size(), grids.size());
   }
-  for (const Volume* volume : volumes) {
-    const VolumeShape& shape = volume->shape();
-    if (shape.n != options_.grid || shape.coefficients != coefficients_ || shape.channels != 3) {
-      throw Error(ExitCode::run_time,
-                  "gather: volume of {}^3 cells, {} coefficients, {} channels; made for {}^3, {}, 3", shape.n,
-                  shape.coefficients, shape.channels, options_.grid, coefficients_);
-    }
-    if (volume->format() != options_.format) {
-      throw Error(ExitCode::run_time, "gather: a volume of {}; made for {}", format_name(volume->format()),
-                  format_name(options_.format));
-    }
-  }
+  for (const Volume* volume : volumes)
+    clpv::require_fit(*volume, {options_.grid, coefficients_, 3}, options_.format, "gathering");
 }
 
 void Gatherer::reserve(std::size_t cascades) {

@@ -133,4 +133,18 @@ void Volume::write(Session& session, const std::vector<float>& values) {
   }
 }
 
+void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFormat& format,
+                 const char* what) {
+  if (volume.format() != format) {
+    throw Error(ExitCode::run_time, "{} is made for volumes of {}, not {}", what, format_name(format),
+                format_name(volume.format()));
+  }
+  const VolumeShape& found = volume.shape();
+  if (found != shape) {
+    throw Error(ExitCode::run_time, "{} is made for volumes of {}^3 x {} x {} values, not {}^3 x {} x {}",
+                what, shape.n, shape.coefficients, shape.channels, found.n, found.coefficients,
+                found.channels);
+  }
+}
+
 }  // namespace clpv
