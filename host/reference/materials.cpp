@@ -114,6 +114,12 @@ float Materials::alpha(const SurfacePoint& point) const {
   return alpha * look_up(scene_->textures[material.texture], uv).a;
 }
 
+double Materials::solidity(const SurfacePoint& point) const {
+  const Material& material = scene_->materials[scene_->triangles[point.triangle].material];
+  if ((material.flags & CLPV_MATERIAL_MASKED) == 0) return 1;
+  return double{alpha(point)} - double{material.alpha_cutoff};
+}
+
 bool Materials::hole(const SurfacePoint& point) const {
   return alpha(point) < scene_->materials[scene_->triangles[point.triangle].material].alpha_cutoff;
 }

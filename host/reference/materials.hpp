@@ -35,6 +35,8 @@ class Materials {
   glm::vec3 emissive(const SurfacePoint& point, const Footprint& footprint = {}) const;
   /// Base colour's alpha x vertex's x texture's, from the texture's finest level.
   float alpha(const SurfacePoint& point) const;
+  /// How far alpha is above the cutoff of a masked material, below 0 in its holes; 1 for a material that is not masked.
+  double solidity(const SurfacePoint& point) const;
   /// Whether a masked material has a hole here.
   bool hole(const SurfacePoint& point) const;
 

@@ -169,7 +169,7 @@ class Sides {
     const glm::dvec2 at = (glm::dvec2(u, v) + 0.5) / double{kSamples};
     const double within = facing.inside(at);
     if (within < -kHair) return;
-    const double solid = solidity(triangle, facing.weights(at));
+    const double solid = materials_.solidity({triangle, on_triangle(facing.weights(at))});
     if (solid < -kAlphaHair) return;
     const auto [nearest, farthest] = facing.depths();
     const glm::dvec2 slope = facing.slope();
@@ -185,13 +185,6 @@ class Sides {
       row.unsure = row.unsure || !sure;
       if (within >= 0 && solid >= 0 && k == static_cast<int>(std::floor(depth))) row.columns.push_back(u);
     }
-  }
-
-  /// How far above the alpha cutoff; anything where there is none.
-  double solidity(std::uint32_t triangle, const glm::dvec2& weights) const {
-    const Material& material = scene_.materials[scene_.triangles[triangle].material];
-    if ((material.flags & CLPV_MATERIAL_MASKED) == 0) return 1;
-    return materials_.alpha({triangle, on_triangle(weights)}) - material.alpha_cutoff;
   }
 
   static glm::vec2 on_triangle(const glm::dvec2& weights) {
