@@ -14,10 +14,8 @@ namespace clpv {
 
 /// A surfel that covers the share A of a cell's cross-section, its normal n.
 enum class Blocking {
-  /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, which is what it covers of a face across each axis. Two-sided lobes of few
-  /// coefficients hardly know which way their surfel lies: |w . n| is even, and of sh2's functions the constant alone is.
+  /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, which is what it covers of a face across each axis.
   areas,
-  two_sided,  ///< N coefficients: those of one_sided round n and round -n
   one_sided,  ///< N coefficients: A times the clamped cosine round n; blocks what meets its front (the paper)
 };
 
@@ -25,8 +23,6 @@ constexpr std::string_view name_of(Blocking blocking) {
   switch (blocking) {
     case Blocking::areas:
       return "areas";
-    case Blocking::two_sided:
-      return "two-sided";
     case Blocking::one_sided:
       return "one-sided";
   }

@@ -167,18 +167,18 @@ Matrix swept_projection() {
   return projection;
 }
 
-void close_diagonals(OperatorTransport& ways, double power) {
-  for (auto& way : ways.neighbours) {
+void close_diagonals(std::vector<SweepWay>& ways, double power) {
+  for (SweepWay& way : ways) {
     const double longer = std::pow(glm::length(glm::dvec3(way.offset)), power);
     for (double& weight : way.blocked_by) weight *= longer;
   }
 }
 
-OperatorTransport sweep_ways() {
-  OperatorTransport ways;
+std::vector<SweepWay> sweep_ways() {
+  std::vector<SweepWay> ways;
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (offset != glm::ivec3(0)) ways.neighbours.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
+    if (offset != glm::ivec3(0)) ways.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
   }
   return ways;
 }

@@ -37,7 +37,7 @@ struct WayList {
 
 WayList way_list() {
   WayList list;
-  for (const auto& way : sweep_ways().neighbours) list.all.push_back(way.offset);
+  for (const auto& way : sweep_ways()) list.all.push_back(way.offset);
   for (const SweepBin& bin : sweep_bins(1)) {
     auto& across = list.across[static_cast<std::size_t>(bin.axis)];
     for (const glm::ivec3& offset : bin.offset) {

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "codegen/cell_macros.hpp"
-#include "support/error.hpp"
 
 namespace clpv {
 namespace {
@@ -98,66 +97,7 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
   }
 }
 
-/// Mirrors of all neighbours' inputs together: a mirror swaps neighbours and the functions within each.
-SignedPermutation mirror_of_neighbours(const OperatorTransport& scheme, const SignedPermutation& within,
-                                       int axis, int n) {
-  if (!within.exists()) return {};
-  SignedPermutation result;
-  for (const auto& neighbour : scheme.neighbours) {
-    glm::ivec3 image = neighbour.offset;
-    image[axis] = -image[axis];
-    int other = -1;
-    for (std::size_t q = 0; q < scheme.neighbours.size(); ++q) {
-      if (scheme.neighbours[q].offset == image) other = static_cast<int>(q);
-    }
-    if (other < 0) return {};
-    for (int i = 0; i < n; ++i) {
-      result.target.push_back(other * n + within.target[static_cast<std::size_t>(i)]);
-      result.sign.push_back(within.sign[static_cast<std::size_t>(i)]);
-    }
-  }
-  return result;
-}
-
-constexpr int kMostSharedInputs =
-    512;  // above, rows are so sparse (direction bins) that mirrors have nothing to share
-
-void generate_operators(Generated& out, const Basis& basis, const OperatorTransport& scheme,
-                        const StepForm& form) {
-  const int n = basis.size();
-  const int count = static_cast<int>(scheme.neighbours.size());
-  const Mirrors mirrors = mirrors_of(basis);
-  Matrix rows(n, n * count);
-  std::vector<std::string> inputs;
-  int way = 0;  // in the order of transmit_source()
-  for (int k = 0; k < count; ++k) {
-    const auto& neighbour = scheme.neighbours[static_cast<std::size_t>(k)];
-    for (int r = 0; r < n; ++r) {
-      for (int i = 0; i < n; ++i) rows(r, k * n + i) = neighbour.weights(r, i);
-    }
-    const bool blocked = neighbour.offset != glm::ivec3(0);
-    for (const std::string& field : fields(fmt::format("a{}", k), n)) {
-      inputs.push_back(form.blocking && blocked ? fmt::format("({} * t.c{})", field, way) : field);
-    }
-    if (blocked) ++way;
-    add_neighbour(out, neighbour.offset);
-  }
-  for (int r = 0; form.blocking && r < static_cast<int>(inputs.size()); ++r) {
-    bool used = false;
-    for (int row = 0; row < n; ++row) used = used || rows(row, r) != 0;
-    if (used && inputs[static_cast<std::size_t>(r)].front() == '(') {
-      inputs[static_cast<std::size_t>(r)] =
-          out.arrive.name(inputs[static_cast<std::size_t>(r)], {.multiplications = 1});
-    }
-  }
-  std::vector<SignedPermutation> symmetries;
-  for (int axis = 0; axis < 3 && n * count <= kMostSharedInputs; ++axis) {
-    symmetries.push_back(mirror_of_neighbours(scheme, mirrors.all[static_cast<std::size_t>(axis)], axis, n));
-  }
-  out.gains = out.arrive.product(rows, inputs, symmetries);
-}
-
-std::string expand_function(const Transport& transport, const Basis& basis, State target) {
+std::string expand_function(const FaceTransport& faces, const Basis& basis, State target) {
   std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target sum) {\n";
   if (target == State::coefficients) {
     text += "  Coefficients r;\n";
@@ -165,7 +105,7 @@ std::string expand_function(const Transport& transport, const Basis& basis, Stat
     return text + "  return r;\n}\n";
   }
   LinearCode code;
-  const auto values = code.product(std::get<FaceTransport>(transport.scheme).lobes, fields("sum", 6),
+  const auto values = code.product(faces.lobes, fields("sum", 6),
                                    {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
   text += code.text() + "  Coefficients r;\n";
   for (int i = 0; i < basis.size(); ++i)
@@ -184,17 +124,9 @@ std::string arrive_macro(const Generated& out) {
 }  // namespace
 
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
-  const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
-  if (faces == nullptr && (form.source == State::fluxes || form.target == State::fluxes)) {
-    throw Error(ExitCode::usage, "state fluxes: transport '{}' has no faces; allowed: coefficients",
-                name_of(transport.kind));
-  }
+  const auto& faces = std::get<FaceTransport>(transport.scheme);
   Generated out;
-  if (faces != nullptr) {
-    generate_faces(out, basis, *faces, form);
-  } else {
-    generate_operators(out, basis, std::get<OperatorTransport>(transport.scheme), form);
-  }
+  generate_faces(out, basis, faces, form);
   TransportSource result;
   result.source_count = form.source == State::fluxes ? 6 : basis.size();
   result.target_count = form.target == State::fluxes ? 6 : basis.size();
@@ -205,7 +137,7 @@ TransportSource transport_source(const Basis& basis, const Transport& transport,
                 fmt::format("#define CLPV_SOURCE_N {}\n#define CLPV_TARGET_N {}\n", result.source_count,
                             result.target_count) +
                 fmt::format("#define CLPV_EACH_NEIGHBOUR(DO){}\n", out.neighbours) + arrive_macro(out) +
-                expand_function(transport, basis, form.target);
+                expand_function(faces, basis, form.target);
   return result;
 }
 

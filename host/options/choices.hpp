@@ -194,19 +194,6 @@ constexpr std::string_view name_of(Bounces bounces) {
   return {};
 }
 
-/// A virtual point light goes to the cell it is in, or is spread over the eight round it.
-enum class Injection { nearest, trilinear };
-
-constexpr std::string_view name_of(Injection injection) {
-  switch (injection) {
-    case Injection::nearest:
-      return "nearest";
-    case Injection::trilinear:
-      return "trilinear";
-  }
-  return {};
-}
-
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
 
 constexpr std::string_view name_of(RsmFormat format) {

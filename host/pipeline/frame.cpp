@@ -14,11 +14,6 @@
 namespace clpv {
 namespace {
 
-PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
-  options.lanes = tuning.lanes, options.local = tuning.local;
-  return options;
-}
-
 /// Where a cascade stands. Where in it the eye is matters to gathering alone.
 MadeOf place_of(const ClpvGrid& grid) {
   return MadeOf().add(grid.origin).add(grid.cell);
@@ -37,7 +32,7 @@ constexpr double kClosedUnderASky = 0.75;
 Transport transport_for(const RenderOptions& options, const Basis& basis, const Scene& scene) {
   Transport transport = make_transport(options, basis);
   if (scene.sky && options.transport == TransportKind::sweep)
-    close_diagonals(std::get<OperatorTransport>(transport.scheme), kClosedUnderASky);
+    close_diagonals(std::get<std::vector<SweepWay>>(transport.scheme), kClosedUnderASky);
   return transport;
 }
 
@@ -50,7 +45,7 @@ MadeOf triangles_of(const Scene& scene) {
 
 }  // namespace
 
-Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options, const Tuning& tuning)
+Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
     : session_(session),
       scene_(scene),
       basis_(make_basis(options)),
@@ -60,8 +55,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
       injector_(session, *basis_, inject_options(options, transport_.unit_flux_lobes)),
-      gatherer_(session, gathered(), swept_ ? make_transport(TransportKind::sweep, *swept_) : transport_,
-                gather_options(options)),
+      gatherer_(session, gathered(), options.transport, gather_options(options)),
       shader_(session),
       lights_(session, scene, buffers_, rasterizer_, options_),
       triangles_(triangles_of(scene)),
@@ -79,7 +73,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
     sweeper_.emplace(session, *basis_, transport_, sweep_options(options));
     if (scene.sky) sweeper_->let_in(*scene.sky);
   } else {
-    propagator_.emplace(session, *basis_, transport_, tuned(propagate_options(options), tuning));
+    propagator_.emplace(session, *basis_, transport_, propagate_options(options));
   }
   if (!geometry_.empty() && !blocked_by_view(options))
     blocker_.emplace(session, buffers_, options.grid, options.cascades, options.format());
