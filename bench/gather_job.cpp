@@ -106,7 +106,8 @@ Job gather_job(Bench& bench, const Variant& variant) {
     const RenderOptions& o = variant.options;
     const std::string key = fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
                                         lobes_of(o), name_of(o.evaluate), o.grid);
-    const auto twin = bench.twin(key, [&] { return twin_of(*p, o.transport, bench.inputs(), seen.camera_image); });
+    const auto twin =
+        bench.twin(key, [&] { return twin_of(*p, o.transport, bench.inputs(), seen.camera_image); });
     return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
                    reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", o.format()));
   };

@@ -144,8 +144,8 @@ TEST(Gather, OutsideAllCascadesIsExactlyDark) {
 
 TEST(Gather, EmptyVolumesAreExactlyDark) {
   const std::unique_ptr<Basis> basis = make_basis("srbf8v2");
-  const Both both = gather(*basis, TransportKind::sampled, {},
-                           {uniform(std::vector<double>(8, 0.0))}, walk({-4, 0, 0}, {4, 0, 0}, kTilted));
+  const Both both = gather(*basis, TransportKind::sampled, {}, {uniform(std::vector<double>(8, 0.0))},
+                           walk({-4, 0, 0}, {4, 0, 0}, kTilted));
   for (const cl_float4& e : both.raw) {
     for (const float value : e.s) ASSERT_EQ(value, 0.0f);
   }

@@ -56,9 +56,9 @@ TEST(Options, EveryChoiceGoesFromTextToAValueAndBack) {
 
 TEST(Options, EveryNumberAndFileGoesFromTextToAValueAndBack) {
   const std::map<std::string, std::string> others = {
-      {"centres", "mine.json"}, {"lambda", "0.375"},      {"table-size", "99"},     {"iterations", "3"},
-      {"grid", "17"},           {"cascades", "2"},        {"cascade-size", "6.25"}, {"rsm-size", "64"},
-      {"shadow-size", "128"},   {"width", "31"},          {"blocker-stride", "2"},  {"height", "17"},
+      {"centres", "mine.json"}, {"lambda", "0.375"}, {"table-size", "99"},     {"iterations", "3"},
+      {"grid", "17"},           {"cascades", "2"},   {"cascade-size", "6.25"}, {"rsm-size", "64"},
+      {"shadow-size", "128"},   {"width", "31"},     {"blocker-stride", "2"},  {"height", "17"},
       {"gather-offset", "1.5"}};
   std::size_t found = 0;
   for (const OptionInfo& info : list_options(RenderOptions{})) {
@@ -156,9 +156,9 @@ TEST(Options, BenchmarksNameLobes) {
 
 template <typename E>
 class EachNamedEnum : public ::testing::Test {};
-using NamedEnums = ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage,
-                                    Bounces, RsmFormat, Show, ToneMap, TransportKind, Blocking,
-                                    LobeKind, LightKind, Stage, Pass>;
+using NamedEnums =
+    ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage, Bounces,
+                     RsmFormat, Show, ToneMap, TransportKind, Blocking, LobeKind, LightKind, Stage, Pass>;
 TYPED_TEST_SUITE(EachNamedEnum, NamedEnums);
 
 TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {

@@ -66,8 +66,8 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
       cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
     }
     variant.options.state = State::coefficients;
-    cases.push_back({make_row("baseline", kNative, variant),
-                     [&bench, variant] { return native_job(bench, variant); }});
+    cases.push_back(
+        {make_row("baseline", kNative, variant), [&bench, variant] { return native_job(bench, variant); }});
   }
   return cases;
 }

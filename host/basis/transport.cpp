@@ -20,7 +20,8 @@ void look_up_blockers(Transport& transport, const Basis& basis) {
     for (Face& face : faces->faces) face.blocked_by = weights(face.direction);
     return;
   }
-  for (SweepWay& way : std::get<std::vector<SweepWay>>(transport.scheme)) way.blocked_by = weights(way.direction);
+  for (SweepWay& way : std::get<std::vector<SweepWay>>(transport.scheme))
+    way.blocked_by = weights(way.direction);
 }
 
 }  // namespace

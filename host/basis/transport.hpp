@@ -34,8 +34,8 @@ struct FaceTransport {
 
 /// One of a sweep's 26 ways into a cell from a neighbour, through the face, edge or corner that the two share.
 struct SweepWay {
-  glm::ivec3 offset;                ///< how far the light travels, in cells
-  glm::dvec3 direction;             ///< unit
+  glm::ivec3 offset;               ///< how far the light travels, in cells
+  glm::dvec3 direction;            ///< unit
   std::vector<double> blocked_by;  ///< as in Face
 };
 

@@ -62,8 +62,7 @@ std::string_view compared_as(const Variant& variant) {
   return sampled_by_device(variant.format) && variant.filtered ? "gather-filter" : "gather";
 }
 
-CheckResult check_one(Session& session, const Basis& basis, TransportKind transport,
-                      const Variant& variant) {
+CheckResult check_one(Session& session, const Basis& basis, TransportKind transport, const Variant& variant) {
   std::mt19937 random(11);
   SurfaceImage image = random_surfaces(random);
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
@@ -142,8 +141,8 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
   if (!scope.beyond_bases) return results;
   const std::unique_ptr<Basis> swept = swept_basis();  // all that a sweep leaves to gather
   results.push_back(check_one(session, *swept, TransportKind::sweep, {"plain"}));
-  results.push_back(check_one(session, *swept, TransportKind::sweep,
-                              {.name = "visible", .gather = Gathering::visible}));
+  results.push_back(
+      check_one(session, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible}));
   check_formats(session, results);
   return results;
 }

@@ -145,8 +145,8 @@ std::string blocking_label(Blocking blocking) {
 std::string name_of(const Basis& basis, const char* stage, bool orthographic, RsmFormat format,
                     const InjectOptions& options) {
   return fmt::format("{}/{}/{}{}{}{}", basis.name(), stage, orthographic ? "orthographic" : "perspective",
-                     format == RsmFormat::paper ? "/paper" : "",
-                     blocking_label(options.blocking), options.unit_flux_lobes ? "/unit-flux" : "") +
+                     format == RsmFormat::paper ? "/paper" : "", blocking_label(options.blocking),
+                     options.unit_flux_lobes ? "/unit-flux" : "") +
          (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
          (options.table == TableStorage::buffer ? "" : "/image") +
          (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));

@@ -25,8 +25,9 @@ std::string pair_macros(int count, const std::string& member) {
 std::string gather_weights(int count, TransportKind transport, bool from_table) {
   std::string text = "CLPV_INLINE Coefficients clpv_gather_weights(const float3 n CLPV_AND_TABLE) {\n";
   if (!has_faces(transport)) return text + "  return clpv_cosine_integrals(-n.x, -n.y, -n.z);\n}\n";
-  text += fmt::format("  Coefficients g = {};\n", from_table ? "clpv_table_basis(-n.x, -n.y, -n.z CLPV_PASS_TABLE)"
-                                                           : "clpv_basis(-n.x, -n.y, -n.z)");
+  text += fmt::format("  Coefficients g = {};\n", from_table
+                                                      ? "clpv_table_basis(-n.x, -n.y, -n.z CLPV_PASS_TABLE)"
+                                                      : "clpv_basis(-n.x, -n.y, -n.z)");
   for (int i = 0; i < count; ++i) text += fmt::format("  g.c{} *= 4.0f;\n", i);
   return text + "  return g;\n}\n";
 }

@@ -72,8 +72,8 @@ std::string projection(const Basis& basis) {
 
 std::string lobe_blockers(const Basis& basis, const LobeOptions& lobes) {
   return lobe_source(basis, lobes) + weighted_sum("clpv_energy", basis.integrals()) +
-      "static inline Coefficients clpv_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
-      "  return clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE);\n}\n"
+         "static inline Coefficients clpv_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
+         "  return clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE);\n}\n"
          "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
          "  return clpv_energy(a) > clpv_energy(b) ? a : b;\n}\n";
 }

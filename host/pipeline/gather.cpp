@@ -104,8 +104,7 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
 void Gatherer::reserve(std::size_t cascades) {
   session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
   if (!packs()) return;
-  const auto n = static_cast<std::size_t>(options_.grid),
-             pairs = static_cast<std::size_t>(pairs_);
+  const auto n = static_cast<std::size_t>(options_.grid), pairs = static_cast<std::size_t>(pairs_);
   session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
 }
 

@@ -58,9 +58,8 @@ bool Injector::looks_up(Kind kind) const {
 Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   const Kind kind = variant.kind;
   const bool light = kind == Kind::light;
-  const Literals both = Literals()
-                            .flag("CLPV_GEOMETRY", !light)
-                            .flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
+  const Literals both =
+      Literals().flag("CLPV_GEOMETRY", !light).flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
   ProgramSource find{"find_cells.cl", both, {}}, sum{"inject.cl", both, {}};
   find.literals.number("CLPV_STRIP", strip_).flag("CLPV_POINTS", variant.points);
   sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);

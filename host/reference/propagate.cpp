@@ -153,7 +153,8 @@ std::array<double, 3> leaving(const Basis& basis, const Transport& transport, co
         if (here.empty()) here = cell(travelling, channel, p);
         const double flux = flux_through(face, here, true);
         for (int i = 0; i < basis.size(); ++i)
-          sum += flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[static_cast<std::size_t>(i)];
+          sum +=
+              flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[static_cast<std::size_t>(i)];
       }
     }
   });
