@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "basis/basis.hpp"
-#include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
 #include "checks/check.hpp"
 #include "checks/comparison.hpp"
@@ -17,7 +16,6 @@ namespace {
 
 struct Gathering {
   std::unique_ptr<Basis> basis;
-  Transport transport;
   GatherOptions options;
   std::vector<ClpvGrid> grids;
   std::vector<std::unique_ptr<Volume>> volumes;
@@ -27,9 +25,8 @@ struct Gathering {
 
   Gathering(Session& session, const Variant& v)
       : basis(make_basis(v.options)),
-        transport(make_transport(v.options, *basis)),
         options(gather_options(v.options)),
-        gatherer(session, *basis, transport, with_filter(options, v.filtered)) {}
+        gatherer(session, *basis, v.options.transport, with_filter(options, v.filtered)) {}
   static const GatherOptions& with_filter(GatherOptions& options, bool filtered) {
     options.filtered = filtered;
     return options;
@@ -53,7 +50,8 @@ glm::dvec3 position(const ClpvView& view, std::size_t pixel, double depth) {
 }
 
 /// Irradiance of every kCheckedPixels-th pixel, three channels each.
-std::vector<double> twin_of(const Gathering& p, Inputs& inputs, const SurfaceImage& camera) {
+std::vector<double> twin_of(const Gathering& p, TransportKind transport, Inputs& inputs,
+                            const SurfaceImage& camera) {
   std::vector<reference::Volume> volumes;
   std::vector<reference::Cascade> cascades;
   for (std::size_t c = 0; c < p.grids.size(); ++c) {
@@ -61,12 +59,11 @@ std::vector<double> twin_of(const Gathering& p, Inputs& inputs, const SurfaceIma
         to_reference(inputs.light(*p.basis, static_cast<int>(c)), p.options.grid, p.basis->size(), 3));
   }
   for (std::size_t c = 0; c < p.grids.size(); ++c) cascades.push_back({p.grids[c], &volumes[c]});
-  const GatherForm form(*p.basis, p.transport);
   std::vector<double> values;
   for (std::size_t i = 0; i < camera.depth.size(); i += kCheckedPixels) {
     const glm::dvec3 normal(glm::vec3(camera.normal[i]));
     const glm::dvec3 e = camera.depth[i] > 0
-                             ? reference::gather(*p.basis, form, p.options, cascades,
+                             ? reference::gather(*p.basis, transport, p.options, cascades,
                                                  position(camera.view, i, camera.depth[i]), normal)
                              : glm::dvec3(0);
     values.insert(values.end(), {e.x, e.y, e.z});
@@ -109,12 +106,13 @@ Job gather_job(Bench& bench, const Variant& variant) {
     const RenderOptions& o = variant.options;
     const std::string key = fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
                                         lobes_of(o), name_of(o.evaluate), o.grid);
-    const auto twin = bench.twin(key, [&] { return twin_of(*p, bench.inputs(), seen.camera_image); });
+    const auto twin =
+        bench.twin(key, [&] { return twin_of(*p, o.transport, bench.inputs(), seen.camera_image); });
     return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
                    reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", o.format()));
   };
   const VolumeFormat format = variant.options.format();
-  const int n = GatherForm(*p->basis, p->transport).functions().size();
+  const int n = p->basis->size();
   double volumes = 0;  // read once; buffers are packed first: read, written and read again
   for (const auto& volume : p->volumes)
     volumes += static_cast<double>(volume->bytes()) * (sampled_by_device(format) ? 1 : 3);

@@ -67,7 +67,7 @@ const Inputs::Injected& Inputs::injected(const Basis& basis, int cascade) {
   const auto [entry, made] = injected_.try_emplace({basis.name(), cascade});
   if (made) {
     const int grid = options_.grid;
-    Injector injector(session_, basis, published_injection(grid));
+    Injector injector(session_, basis, InjectOptions{.grid = grid});
     Volume light(session_, {grid, basis.size(), 3}, "bench: injected light");
     Volume geometry(session_, {grid + 1, basis.size(), 1}, "bench: geometry volume");
     const Seen& from = seen(cascade);

@@ -33,16 +33,12 @@ class Inputs {
   const Seen& seen(int cascade) const { return seen_.at(static_cast<std::size_t>(cascade)); }
   std::vector<ClpvGrid> grids() const;
 
-  /// Injected light and blocking of a cascade in a basis, the published way (nearest cell, one-sided), by layout `soa`
+  /// Injected light and blocking of a cascade in a basis, the published way (one-sided), by layout `soa`
   /// in float: Volume's host order. Made once.
   const std::vector<float>& light(const Basis& basis, int cascade);
   const std::vector<float>& geometry(const Basis& basis, int cascade);
   /// What the scene's triangles block of a cascade, as areas: what the defaults' sweep takes. In the same order, made once.
   const std::vector<float>& areas(int cascade);
-
-  static InjectOptions published_injection(int grid) {
-    return {.grid = grid, .blocking = Blocking::one_sided};
-  }
 
  private:
   struct Injected {

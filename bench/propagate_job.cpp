@@ -10,9 +10,7 @@
 #include "checks/check.hpp"
 #include "checks/comparison.hpp"
 #include "pipeline/propagate.hpp"
-#include "pipeline/tuning.hpp"
 #include "reference/propagate.hpp"
-#include "support/log.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -34,18 +32,13 @@ struct Propagation {
         transport(make_transport(v.options, *basis)),
         injected(session, light_shape(), "bench: injected light", v.options.format()),
         accumulated(session, light_shape(), "bench: accumulated light", v.options.format()),
-        propagator(session, *basis, transport, options_of(v)) {
+        propagator(session, *basis, transport, propagate_options(v.options)) {
     if (v.options.occlusion)
       geometry = std::make_unique<Volume>(
           session, VolumeShape{v.options.grid + 1, blocking_size(v.options.blocking, *basis), 1},
           "bench: geometry volume", v.options.format());
   }
   VolumeShape light_shape() const { return {variant.options.grid, basis->size(), 3}; }
-  static PropagateOptions options_of(const Variant& v) {
-    PropagateOptions options = propagate_options(v.options);
-    options.lanes = v.lanes, options.local = v.local;
-    return options;
-  }
 };
 
 /// What reading or writing `coefficients` numbers of a cell takes, in the variant's format.
@@ -118,19 +111,6 @@ std::string twin_key(const Variant& v) {
                      lobes_of(o), o.occlusion, o.grid, o.iterations, v.cascade.value_or(0));
 }
 
-/// The variant with the user's tuning for it, where it names no shape itself.
-Variant tuned(const Device& device, Variant v) {
-  if (v.lanes != 0 || v.local[0] != 0) return v;
-  const auto cache = TuningCache::of_user();
-  if (!cache) return v;
-  const auto tuning = cache->load(device, tuning_subject(v.options));
-  if (!tuning) return v;
-  spdlog::debug("tuned: {} cells a work-item, work-groups of {} x {}", tuning->lanes, tuning->local[0],
-                tuning->local[1]);
-  v.lanes = tuning->lanes, v.local = tuning->local;
-  return v;
-}
-
 }  // namespace
 
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
@@ -141,8 +121,7 @@ Deviation compare_volumes(const std::vector<float>& device, const std::vector<do
 
 Job propagate_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
-  const auto p =
-      std::make_shared<Propagation>(session, bench.tuned ? tuned(session.device(), variant) : variant);
+  const auto p = std::make_shared<Propagation>(session, variant);
   const int cascade = variant.cascade.value_or(0);
   p->injected.write(session, bench.inputs().light(*p->basis, cascade));
   if (p->geometry) p->geometry->write(session, bench.inputs().geometry(*p->basis, cascade));

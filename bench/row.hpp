@@ -2,7 +2,6 @@
 // One row of a benchmark's results: what was timed, and what came of it.
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -22,8 +21,6 @@ struct Variant {
   RenderOptions options = timed_options();
   std::optional<int> cascade;
   bool filtered = true;  ///< gathering from images: by the device's filter, else from texels
-  int lanes = 0;         ///< of propagation's kernels, as is `local` (pipeline/propagate.hpp); 0: as usual
-  std::array<std::size_t, 2> local = {0, 1};
 };
 
 /// How a variant's lobes come about: "exact", "rotate", and "rotate-kernel", at run time in the kernel.

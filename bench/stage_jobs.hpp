@@ -30,7 +30,6 @@ struct Bench {
     return *seen;
   }
   std::shared_ptr<Inputs> seen;
-  bool tuned = false;  ///< propagation takes the shapes that `clpv tune` found, where a variant names none
 
   /// The twin's result under `key`, made by `make` the first time.
   template <typename Make>
@@ -56,8 +55,6 @@ Job propagate_job(Bench& bench, const Variant& variant);
 /// Light volume -> light swept through its cascade from a dark border, in nine harmonics; with occlusion past what the scene's
 /// triangles block there, the ways' transmittance included. Wants swept().
 Job sweep_job(Bench& bench, const Variant& variant);
-/// What comes of it by the twin, in Volume's host order.
-std::vector<double> swept_twin(Inputs& inputs, const Variant& variant);
 /// The variant as the defaults would have it move light: by the sweep, past areas.
 Variant swept(Variant variant);
 /// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the twin.

@@ -71,7 +71,7 @@ std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
     const auto scene = scene_of(options);
     return std::make_shared<Inputs>(session, *scene, scene->camera(options.camera), settings);
   };
-  return std::make_shared<Bench>(Bench{session, see, {}, {}, options.tuned});
+  return std::make_shared<Bench>(Bench{session, see, {}, {}});
 }
 
 }  // namespace clpv::bench

@@ -20,7 +20,6 @@ struct SuiteOptions {
   std::string camera;
   std::vector<std::string> bases;            ///< named by the user; empty: the suite's own
   RenderOptions settings = timed_options();  ///< of every row, but for what the suite varies
-  bool tuned = false;                        ///< propagation takes the shapes that `clpv tune` found
   std::shared_ptr<RankWork> ranks = {};      ///< of several ranks; none: alone
 };
 

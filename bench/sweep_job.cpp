@@ -101,8 +101,6 @@ std::string twin_key(const Variant& v) {
                      o.occlusion, o.grid, v.cascade.value_or(0));
 }
 
-}  // namespace
-
 std::vector<double> swept_twin(Inputs& inputs, const Variant& variant) {
   const RenderOptions& o = variant.options;
   const int cascade = variant.cascade.value_or(0);
@@ -118,6 +116,8 @@ std::vector<double> swept_twin(Inputs& inputs, const Variant& variant) {
   }
   return reference::kept_of(reference::sweep(*basis, transport, {swept}).front()).values;
 }
+
+}  // namespace
 
 Job sweep_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;

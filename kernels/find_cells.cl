@@ -6,7 +6,7 @@
 //
 // CLPV_POINTS 1: texels are points that no view sees (emit.cl), at `positions`.
 //
-// From the host: CLPV_GEOMETRY, CLPV_POINTS, CLPV_TRILINEAR, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis. Blocking is told
+// From the host: CLPV_GEOMETRY, CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis. Blocking is told
 // its stride (shared/thinned.h); light takes every texel, as literals tell the compiler, which then loads them side by side.
 #include "cell_keys.h"
 #include "shared/grid.h"
@@ -36,9 +36,8 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 }
 
 // keys[i] of taken texel i: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
-// details, geometry: the share of a cell's cross-section that the surfel covers, seen along its normal: of all the texels
+// shares[i], blocking: the share of a cell's cross-section that the surfel covers, seen along its normal: of all the texels
 // that one taken stands for.
-// Trilinear light: where it is between the 8 cells' centres, in [0, 1): all texels' x, all y, all z.
 //
 // One work-item a strip of CLPV_STRIP taken texels of a row: CPU devices vectorise the loop (which they do not across
 // work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
@@ -49,9 +48,9 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
                          __global const float* restrict depths,
 #endif
                          __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
-                         const float colour_scale, __global uint* restrict keys, __global float* restrict details
+                         const float colour_scale, __global uint* restrict keys
 #if CLPV_GEOMETRY
-                         , const uint stride
+                         , __global float* restrict shares, const uint stride
 #endif
 ) {
 #if !CLPV_GEOMETRY
@@ -78,7 +77,7 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
           z = (position.z - grid.origin[2]) * per_metre;
     int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
 #if CLPV_GEOMETRY
-    details[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
+    shares[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
 #else
     x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
     const float3 flux = clpv_load_colour(colours, texel, colour_scale);
@@ -88,11 +87,5 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
     counts = counts & in_grid((float)n, x, y, z);  // no point that is not finite is
     const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
     keys[i] = counts ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
-#if CLPV_TRILINEAR
-    const uint texels = width * height;
-    details[i] = x - (float)cx;
-    details[texels + i] = y - (float)cy;
-    details[2 * texels + i] = z - (float)cz;
-#endif
   }
 }

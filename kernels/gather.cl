@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Gather: the irradiance [W/m^2] that the volumes put on every surface the camera sees.
 //
-//   E(n) = g(n) . M c / s^2,   c the coefficients sampled trilinearly at p + offset s n,
-//   g and M by basis and transport (host/basis/gather_form.hpp), E clamped at 0 after the dot product.
+//   E(n) = g(n) . c / s^2,   c the coefficients sampled trilinearly at p + offset s n,
+//   g by basis and transport (has_faces, host/basis/transport.hpp), E clamped at 0 after the dot product.
 // A cascade weighs min(1, distance to its boundary / CLPV_BLEND), the distance in cells at p itself; finer ones come
 // first and a coarser one gets what they left. So E is continuous everywhere, and 0 outside all cascades. The boundary is that
 // of the cube about the eye that lies in the grid wherever in its cell the eye is: shares glide as the eye does, and do not
@@ -11,8 +11,8 @@
 // A work-item is eight pixels of a row. Where they lie in a cascade is found side by side; each then has its own cells to
 // read, and is gathered by itself.
 //
-// CLPV_PACKED 1: from records of M c (pack.cl, gather_packed.h), whatever the volumes' layout; 0: from images as they are
-// (gather_image.h), where M is applied to the weights. Each of the two defines
+// CLPV_PACKED 1: from records of c (pack.cl, gather_packed.h), whatever the volumes' layout; 0: from images as they are
+// (gather_image.h). Each of the two defines
 //   CLPV_GATHERED, Sampled                     a cascade's volume; a point's coefficients
 //   Places, void clpv_places(at, &places)      eight points, in cells from the first cell's centre; points beyond the
 //                                              outermost centres take their value
@@ -21,16 +21,12 @@
 //
 // `unit`: what a stored 1 stands for [W/sr].
 //
-// The host writes, beside the literals below and the functions of n,
-//   Coefficients clpv_gather_weights(float3 n CLPV_AND_TABLE), Coefficients clpv_floor_weights(void)
+// The host writes, beside the literals below,
+//   Coefficients clpv_gather_weights(float3 n CLPV_AND_TABLE)   g(n)
 // Where b comes from a look-up table, `gather` has it as its last argument.
 #include "coefficients.h"
 #include "shared/grid.h"
 #include "surface_row.h"
-
-#ifndef CLPV_FLOORED
-#define CLPV_FLOORED 0  // 1: E is at least what clpv_floor_weights() give
-#endif
 
 #ifndef CLPV_VISIBLE
 #define CLPV_VISIBLE 0  // 1: cells that are hidden from a surface do not light it (see.cl)
@@ -53,11 +49,7 @@ CLPV_INLINE float4 clpv_irradiance(CLPV_GATHERED volume, const Places* places, c
                                    const Coefficients weights) {
   Sampled sampled;
   const float scale = clpv_sample(volume, places, i, &sampled);
-  float4 least = 0.0f;
-#if CLPV_FLOORED
-  least = max(clpv_weigh(clpv_floor_weights(), sampled), 0.0f);
-#endif
-  return scale * max(clpv_weigh(weights, sampled), least);
+  return scale * max(clpv_weigh(weights, sampled), 0.0f);
 }
 
 // What eight pixels have been given so far, and how they take it.

@@ -10,7 +10,7 @@
 // add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
 // it is made of segments counted from the cell's first texel.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_TRILINEAR, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text what
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text what
 // host/codegen/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
@@ -20,24 +20,21 @@
 
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-// Blocking takes every stride-th texel (shared/thinned.h), light every one.
+// What the taken texels are summed from. Blocking takes every stride-th texel (shared/thinned.h) of rows of `width`, each
+// with its share (find_cells.cl); light takes every one.
 #if CLPV_GEOMETRY
-#define CLPV_AND_STRIDE , const uint stride
-#define CLPV_PASS_STRIDE , stride
+#define CLPV_TEXELS \
+  __global const SurfaceTexel *normals, __global const float *shares, const uint width, const uint stride
+#define CLPV_PASS_TEXELS normals, shares, width, stride
 #else
-#define CLPV_AND_STRIDE
-#define CLPV_PASS_STRIDE
+#define CLPV_TEXELS \
+  __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale
+#define CLPV_PASS_TEXELS normals, colours, colour_scale
 #endif
-
-// What the taken texels are summed from; `width` of the surface's rows; `details`: see find_cells.cl.
-#define CLPV_TEXELS                                                                                     \
-  __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale, \
-      __global const float *details, const uint texels, const uint width
-#define CLPV_PASS_TEXELS normals, colours, colour_scale, details, texels, width
 
 static inline Sums no_sums(void) {
   Sums sums;
-#define CLPV_DO(i) sums.k0.c##i = (Lanes)(0.0f);
+#define CLPV_DO(i) sums.k0.c##i = 0.0f;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
 #if !CLPV_GEOMETRY
@@ -47,8 +44,8 @@ static inline Sums no_sums(void) {
   return sums;
 }
 
-static inline Sum add_lobe(Sum sum, const Lanes weight, const Coefficients lobe) {
-#define CLPV_DO(i) sum.c##i = fma(weight, (Lanes)(lobe.c##i), sum.c##i);
+static inline Coefficients add_lobe(Coefficients sum, const float weight, const Coefficients lobe) {
+#define CLPV_DO(i) sum.c##i = fma(weight, lobe.c##i, sum.c##i);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
   return sum;
@@ -62,24 +59,13 @@ static inline uint taken_index(const uint width, const uint i, const uint stride
   return CLPV_TAKEN_TEXEL(i / of_row, stride) * width + CLPV_TAKEN_TEXEL(i % of_row, stride);
 }
 
-static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_STRIDE CLPV_AND_TABLE) {
+static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = clpv_load_normal(normals, taken_index(width, texel, stride));
-  sums.k0 = add_lobe(sums.k0, details[texel], clpv_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
+  sums.k0 = add_lobe(sums.k0, shares[texel], clpv_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
 
 #else
-
-static inline Lanes cell_weights(__global const float* details, const uint texels, const uint texel) {
-#if CLPV_TRILINEAR
-  const float x = details[texel], y = details[texels + texel], z = details[2 * texels + texel];
-  const float4 p = (float4)((1.0f - x) * (1.0f - y), x * (1.0f - y), (1.0f - x) * y, x * y);
-  const float far = 1.0f - z;  // spelt out as in gather_packed.h
-  return (float8)(p.x, p.y, p.z, p.w, p.x, p.y, p.z, p.w) * (float8)(far, far, far, far, z, z, z, z);
-#else
-  return 1.0f;
-#endif
-}
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = clpv_load_normal(normals, texel);
@@ -88,17 +74,16 @@ static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_T
 #if CLPV_UNIT_FLUX
   flux *= M_PI_F / clpv_flux(lobe);
 #endif
-  const Lanes weights = cell_weights(details, texels, texel);
-  sums.k0 = add_lobe(sums.k0, weights * flux.x, lobe);
-  sums.k1 = add_lobe(sums.k1, weights * flux.y, lobe);
-  sums.k2 = add_lobe(sums.k2, weights * flux.z, lobe);
+  sums.k0 = add_lobe(sums.k0, flux.x, lobe);
+  sums.k1 = add_lobe(sums.k1, flux.y, lobe);
+  sums.k2 = add_lobe(sums.k2, flux.z, lobe);
   return sums;
 }
 
 #endif
 
-static inline void store_sums(__global Lanes* partials, const uint slot, const Sums sums) {
-  __global Lanes* to = partials + slot * (CLPV_CHANNELS * CLPV_N);
+static inline void store_sums(__global float* partials, const uint slot, const Sums sums) {
+  __global float* to = partials + slot * (CLPV_CHANNELS * CLPV_N);
 #define CLPV_DO(i) to[i] = sums.k0.c##i;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
@@ -109,8 +94,8 @@ static inline void store_sums(__global Lanes* partials, const uint slot, const S
 #endif
 }
 
-static inline Sums add_stored(Sums sums, __global const Lanes* partials, const uint slot) {
-  __global const Lanes* from = partials + slot * (CLPV_CHANNELS * CLPV_N);
+static inline Sums add_stored(Sums sums, __global const float* partials, const uint slot) {
+  __global const float* from = partials + slot * (CLPV_CHANNELS * CLPV_N);
 #define CLPV_DO(i) sums.k0.c##i += from[i];
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
@@ -154,29 +139,26 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
 // in it. A cell of one segment is delivered; of a longer cell, `firsts` has where it starts and `partials` the sums:
 // in slot 2 block + 1 of its first segment, in slot 2 block of another one. A block starts at most one of either.
 __kernel void sum_segments(__global const uint2* sorted, __global const uint* count, const uint length,
-                           const uint blocks, const uint phase, CLPV_TEXELS, CLPV_VOLUME_OUT volume,
-                           __global Lanes* partials, __global uint* firsts CLPV_AND_STRIDE CLPV_AND_TABLE) {
+                           const uint blocks, CLPV_TEXELS, CLPV_VOLUME_OUT volume,
+                           __global float* partials, __global uint* firsts CLPV_AND_TABLE) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   firsts[block] = CLPV_NO_SEGMENT;
   const uint total = count[0];
   const uint stop = min((block + 1) * length, total);
   if (block * length >= stop) return;
-  if (phase_of(CLPV_KEYS(CLPV_GRID), sorted[block * length].x) > phase || phase_of(CLPV_KEYS(CLPV_GRID), sorted[stop - 1].x) < phase) return;
   bool starts_cell;
   uint at = first_segment(sorted, total, length, block, &starts_cell);
   while (at < stop) {
     const uint key = sorted[at].x;
     const uint first = at, end = min(at + length, total);
-    const bool wanted = phase_of(CLPV_KEYS(CLPV_GRID), key) == phase;
     Sums sums = no_sums();
-    for (; at < end && sorted[at].x == key; ++at) {
-      if (wanted) sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS CLPV_PASS_STRIDE CLPV_PASS_TABLE);
-    }
+    for (; at < end && sorted[at].x == key; ++at)
+      sums = add_texel(sums, sorted[at].y, CLPV_PASS_TEXELS CLPV_PASS_TABLE);
     const bool ends_cell = at == total || sorted[at].x != key;
-    if (wanted && starts_cell && ends_cell) {
+    if (starts_cell && ends_cell) {
       deliver(volume, key, sums);
-    } else if (wanted) {
+    } else {
       store_sums(partials, 2 * block + (starts_cell ? 1 : 0), sums);
       if (starts_cell) firsts[block] = first;
     }
@@ -186,7 +168,7 @@ __kernel void sum_segments(__global const uint2* sorted, __global const uint* co
 
 // Delivers the cells of several segments: one work-item a block, for the cell whose first segment starts in it.
 __kernel void join_segments(__global const uint2* sorted, __global const uint* count, const uint length,
-                            const uint blocks, CLPV_VOLUME_OUT volume, __global const Lanes* partials,
+                            const uint blocks, CLPV_VOLUME_OUT volume, __global const float* partials,
                             __global const uint* firsts) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;

@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Packs a cascade's volume for gathering (gather_packed.h): from each cell's coefficients the numbers that irradiance is
-// made of, one record a cell.
+// Packs a cascade's volume for gathering (gather_packed.h): one record a cell.
 //
 // In: light volume [W/sr]; out: `packed`, records from the first-th on. The host writes (host/codegen/gather_source.cpp)
-//   Gathered, Gathered clpv_gathered(const Coefficients)     those numbers: M c (host/basis/gather_form.hpp)
-//   CLPV_EACH_PAIR(DO)                                       DO(j, even, odd) for each two of them; even(c), odd(c) are
-//                                                            members of Gathered c, in one lane
+//   CLPV_EACH_PAIR(DO)     DO(j, even, odd) for each two of the coefficients; even(c), odd(c) are members of Coefficients c,
+//                          in one lane
 // A work-item is a cell, or CLPV_LANES cells side by side.
 #include "coefficients.h"
 #include "volume/light.h"
 #include "volume/whole_groups.h"
 
-__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) void pack(
+__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void pack(
     CLPV_VOLUME_IN volume, __global float8* packed, const uint first) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
   CLPV_RETURN_OUTSIDE(x, y);
-  const Gathered r = clpv_gathered(light_load(volume, 0, x, y, z));
-  const Gathered g = clpv_gathered(light_load(volume, 1, x, y, z));
-  const Gathered b = clpv_gathered(light_load(volume, 2, x, y, z));
+  const Coefficients r = light_load(volume, 0, x, y, z), g = light_load(volume, 1, x, y, z),
+                     b = light_load(volume, 2, x, y, z);
   __global float8* record = packed + (size_t)(first + (z * CLPV_GRID + y) * CLPV_GRID + x) * CLPV_PAIRS;
   const int cells = min(CLPV_LANES, CLPV_GRID - x);
   for (int lane = 0; lane < CLPV_LANES; ++lane, record += CLPV_PAIRS) {

@@ -60,7 +60,7 @@ CLPV_INLINE Target clpv_target_sum(const Target a, const Target b) {
     target_store(sum, channel, x, y, z, clpv_target_sum(target_load(sum_so_far, channel, x, y, z), gained)); \
   }
 
-__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) void propagate_step(
+__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_step(
     CLPV_VOLUME_IN source, CLPV_VOLUME_OUT target, CLPV_VOLUME_IN sum_so_far, CLPV_VOLUME_OUT sum
 #if CLPV_BLOCKING
     , CLPV_VOLUME_IN transmittance
@@ -94,7 +94,7 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) vo
 }
 
 // accumulated = base + the coefficients of a sum of gains: ends a propagation of fluxes; base is the injected field.
-__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) void propagate_expand(
+__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_expand(
     CLPV_VOLUME_IN base, CLPV_VOLUME_IN sum, CLPV_VOLUME_OUT accumulated) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;

@@ -10,21 +10,21 @@
 #define CLPV_RUN_TIME_LOBES_H
 
 // What 1 W through a face of that normal adds to the cell's coefficients.
-CLPV_INLINE Sum clpv_run_time_lobe(const float4 normal CLPV_AND_TABLE) {
+CLPV_INLINE Coefficients clpv_run_time_lobe(const float4 normal CLPV_AND_TABLE) {
   const Coefficients alpha = clpv_lobe_integrals(normal.x, normal.y, normal.z CLPV_PASS_TABLE);
 #if CLPV_UNIT_FLUX
   const float scale = 1.0f / clpv_flux(alpha);
 #else
   const float scale = M_1_PI_F;
 #endif
-  Sum scaled;
+  Coefficients scaled;
 #define CLPV_DO(i) scaled.c##i = scale * alpha.c##i;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
   return clpv_project_sum(scaled);
 }
 
-CLPV_INLINE Target clpv_add_lobe(Target gained, const float flux, const Sum lobe) {
+CLPV_INLINE Target clpv_add_lobe(Target gained, const float flux, const Coefficients lobe) {
 #define CLPV_DO(i) gained.c##i = fma(flux, lobe.c##i, gained.c##i);
   CLPV_EACH_TARGET(CLPV_DO)
 #undef CLPV_DO
@@ -81,7 +81,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
   CLPV_CHANNEL_FLUXES(2)                                                            \
   Target red = clpv_no_gain(), green = red, blue = red;                             \
   for (int face = 0; face < CLPV_FACES; ++face) {                                   \
-    const Sum lobe = clpv_run_time_lobe(normals[face] CLPV_PASS_TABLE);             \
+    const Coefficients lobe = clpv_run_time_lobe(normals[face] CLPV_PASS_TABLE);             \
     red = clpv_add_lobe(red, fluxes[face], lobe);                                   \
     green = clpv_add_lobe(green, fluxes[CLPV_FACES + face], lobe);                  \
     blue = clpv_add_lobe(blue, fluxes[2 * CLPV_FACES + face], lobe);                \

@@ -12,7 +12,7 @@
 #define CLPV_LOAD_CORNER(i) \
   const Coefficients g##i = geometry_load(blockers, 0, x + (i & 1), y + ((i >> 1) & 1), z + (i >> 2));
 
-__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, CLPV_LOCAL_Y, 1))) void transmit(
+__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void transmit(
     CLPV_VOLUME_IN blockers, CLPV_VOLUME_OUT transmittance) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
   CLPV_RETURN_OUTSIDE(x, y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The baselines by hand against the twins.
+// The baseline by hand against the twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,11 +8,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
-#include "bench/baseline/sweep_avx2.hpp"
-#include "checks/check_inputs.hpp"
-#include "checks/tolerances.hpp"
 #include "reference/propagate.hpp"
-#include "reference/sweep.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -55,46 +51,6 @@ TEST(Baseline, IsTheTwin) {
         << (blocked ? "blocked" : "free");
   }
   EXPECT_THROW(PropagateBaseline(*basis, transport, 12), Error);
-}
-
-TEST(Baseline, OfTheSweepIsTheTwin) {
-  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
-  const auto basis = make_basis("bins24");
-  const Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
-  std::mt19937 random(3);
-  for (const auto& [grid, parts] : {std::pair{16, 2}, {8, 1}, {8, 3}}) {
-    const reference::Volume light = reference::random_light(*basis, grid, random),
-                            areas = reference::random_blockers(3, grid, random);
-    const std::vector<float> injected(light.values.begin(), light.values.end());
-    const std::vector<float> corners(areas.values.begin(), areas.values.end());
-    SweepBaseline baseline(*basis, transport, grid, parts);
-    for (const bool blocked : {true, false, true}) {
-      baseline.set(injected, blocked ? &corners : nullptr);
-      baseline.sweep();
-      const std::vector<float> found = baseline.accumulated();
-      reference::SweptCascade cascade{{}, &light, blocked ? &areas : nullptr, parts};
-      cascade.grid.n = static_cast<unsigned>(grid), cascade.grid.cell = 1;
-      const reference::Volume twin =
-          reference::kept_of(reference::sweep(*basis, transport, {cascade}).front());
-      double most = 0;
-      for (const double value : twin.values) most = std::max(most, std::abs(value));
-      EXPECT_LT(largest_difference({found.begin(), found.end()}, twin.values),
-                reference::tolerance("sweep") * most)
-          << grid << "^3, parts " << parts << (blocked ? ", blocked" : ", free");
-    }
-  }
-}
-
-TEST(Baseline, OfTheSweepRefusesWhatItIsNotMadeFor) {
-  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
-  const auto bins = make_basis("bins24"), harmonics = make_basis("sh2");
-  const auto transport = [](const Basis& basis, Blocking blocking) {
-    return make_transport(TransportKind::sweep, basis, {}, blocking);
-  };
-  EXPECT_THROW(SweepBaseline(*bins, transport(*bins, Blocking::areas), 12, 2), Error);
-  EXPECT_THROW(SweepBaseline(*bins, transport(*bins, Blocking::two_sided), 8, 2), Error);
-  EXPECT_THROW(SweepBaseline(*bins, make_transport(TransportKind::sampled, *bins), 8, 2), Error);
-  EXPECT_THROW(SweepBaseline(*harmonics, transport(*harmonics, Blocking::areas), 8, 2), Error);
 }
 
 }  // namespace

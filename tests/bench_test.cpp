@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Benchmarks: statistics, reports, comparison of runs, and what
-// `clpv bench` and `clpv tune` do as a user meets them.
+// `clpv bench` does as a user meets them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

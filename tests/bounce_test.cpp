@@ -202,7 +202,7 @@ TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
 
 TEST(BouncedFrame, RefusesWhatDoesNotSweep) {
   RenderOptions options = small_frame(Bounces::two, 1);
-  options.transport = TransportKind::upwind;
+  options.transport = TransportKind::sampled;
   EXPECT_THROW(irradiance(options), Error);
 }
 

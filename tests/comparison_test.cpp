@@ -50,9 +50,9 @@ TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
   put(a, 0, up, 1), put(b, 0, along, 1.0005);  // as halves may round it
   put(a, 1, up, 1), put(b, 1, along, 1.01);
   Volume merged = a;
-  merge_geometry(b, *basis, Blocking::two_sided, merged);
+  merge_geometry(b, *basis, Blocking::one_sided, merged);
   EXPECT_EQ(merged.values, b.values);
-  const Volume other = otherwise_merged(a, b, *basis, Blocking::two_sided);
+  const Volume other = otherwise_merged(a, b, *basis, Blocking::one_sided);
   for (int i = 0; i < basis->size(); ++i) {
     EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
     EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));

@@ -209,7 +209,7 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
 // The same through the transports in steps: it is the same injection.
 TEST(EmissiveFrame, LightsByEveryTransport) {
   Scene scene = lamp_over_floor(2);
-  for (const TransportKind transport : {TransportKind::sampled, TransportKind::upwind}) {
+  for (const TransportKind transport : {TransportKind::sampled, TransportKind::exact}) {
     RenderOptions options = small_frame();
     options.transport = transport, options.blockers = Blockers::seen, options.gather = Gathering::all;
     options.basis = "sh2", options.rsm_format = RsmFormat::paper;

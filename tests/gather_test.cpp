@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Gathering against closed forms: uniform and linear fields, seams between cascades, clamp, floor.
+// Gathering against closed forms: uniform and linear fields, seams between cascades, clamp.
 // Every field is gathered by the kernels and by the twin, and both are held against mathematics.
 #include "pipeline/gather.hpp"
 
@@ -24,21 +24,13 @@ namespace {
 using std::numbers::pi;
 using namespace test;
 
-constexpr double kKappa = 0.6742128;  // mean of 1 / |w|_1: sh2's K under upwind transport
-
-Matrix scaled_identity(int n, double scale) {
-  Matrix m(n, n);
-  for (int i = 0; i < n; ++i) m(i, i) = scale;
-  return m;
-}
-
 TEST(Gather, UniformLightIsTheSameEverywhereInside) {
   for (const char* name : {"sh2", "sh3", "srbf4", "srbf8v2"}) {
     SCOPED_TRACE(name);
     const std::unique_ptr<Basis> basis = make_basis(name);
     const std::vector<double> c = times(1.75, basis->constant());
     const SurfaceImage image = walk({-0.98, 0.9, -0.9}, {0.97, -0.98, 0.9}, kTilted);
-    const Both both = gather(*basis, intensity_transport(), {}, {uniform(c)}, image);
+    const Both both = gather(*basis, TransportKind::sampled, {}, {uniform(c)}, image);
     expect_all(both, 4 * basis->value(c, -kTilted) / (kCell * kCell));  // spherical harmonics: 4 . 1.75 / s^2
   }
 }
@@ -47,42 +39,32 @@ TEST(Gather, IsotropicIntensityGivesFourIOverSSquared) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, kTilted);
   const Both both =
-      gather(*basis, intensity_transport(), {}, {uniform(times(1.75, basis->constant()))}, image);
+      gather(*basis, TransportKind::sampled, {}, {uniform(times(1.75, basis->constant()))}, image);
   expect_all(both, 4 * 1.75 / (kCell * kCell));
 }
 
-TEST(Gather, OperatorsTurnUniformRadianceIntoPiL) {
-  // Radiance L everywhere: c(w) / |w|_1 averages L s^2; for sh2 K c = kappa c = L s^2 times the constant 1.
+TEST(Gather, SweptUniformRadianceIsPiL) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const double radiance = 2.5;
-  const std::vector<double> c = times(radiance * kCell * kCell / kKappa, basis->constant());
+  const std::vector<double> c = times(radiance * kCell * kCell, basis->constant());
   for (const glm::dvec3& n : {kTilted, glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0)}) {
-    const Both both = gather(*basis, cosine_transport(scaled_identity(4, kKappa)), {}, {uniform(c)},
-                             walk({-1, 0, 0}, {1, 0, 0}, n));
+    const Both both = gather(*basis, TransportKind::sweep, {}, {uniform(c)}, walk({-1, 0, 0}, {1, 0, 0}, n));
     expect_all(both, pi * radiance);
   }
 }
 
-TEST(Gather, OperatorsGatherThroughTheirMatrix) {
+TEST(Gather, SweptLightIsIntegratedOverTheClampedCosine) {
   const std::unique_ptr<Basis> basis = make_basis("srbf8v2");
   std::mt19937 random(5);
   std::uniform_real_distribution<double> positive(0.1, 1);
-  Matrix k(8, 8);  // not symmetric: a transposed K must show
   std::vector<double> c(8), alpha(8);
-  for (int i = 0; i < 8; ++i) {
-    c[static_cast<std::size_t>(i)] = positive(random);
-    for (int j = 0; j < 8; ++j) k(i, j) = positive(random);
-  }
+  for (double& value : c) value = positive(random);
   basis->cosine_integrals(-kTilted, alpha);
-  const std::vector<double> kc = k * c;
   double expected = 0;
-  for (std::size_t i = 0; i < 8; ++i) expected += alpha[i] * kc[i];
-  double mean = 0;  // over all normals, that of alpha being a quarter of the integrals
-  for (std::size_t i = 0; i < 8; ++i) mean += basis->integrals()[i] / 4 * kc[i];
-  const double window = GatherForm(*basis, cosine_transport(k)).window();
+  for (std::size_t i = 0; i < 8; ++i) expected += alpha[i] * c[i];
   const Both both =
-      gather(*basis, cosine_transport(k), {}, {uniform(c)}, walk({-1, 0, 0}, {1, 0, 0}, kTilted));
-  expect_all(both, (expected + window * (mean - expected)) / (kCell * kCell));
+      gather(*basis, TransportKind::sweep, {}, {uniform(c)}, walk({-1, 0, 0}, {1, 0, 0}, kTilted));
+  expect_all(both, expected / (kCell * kCell));
 }
 
 TEST(Gather, LinearLightIsReproducedWithTheOffset) {
@@ -95,7 +77,7 @@ TEST(Gather, LinearLightIsReproducedWithTheOffset) {
   const glm::dvec3 from(-0.98, 0.8, -0.9), to(0.97, -0.95, 0.95);
   for (const double offset : {0.5, 0.75, 0.0}) {
     const Both both =
-        gather(*basis, intensity_transport(), {.gather_offset = offset}, {light}, walk(from, to, kTilted));
+        gather(*basis, TransportKind::sampled, {.gather_offset = offset}, {light}, walk(from, to, kTilted));
     const auto expected = [&](std::size_t pixel) {
       const glm::dvec3 p(along(from.x, to.x, pixel), along(from.y, to.y, pixel), along(from.z, to.z, pixel));
       return 4 * intensity(p / double{kCell} + kGrid / 2.0 + offset * kTilted) / (kCell * kCell);
@@ -113,7 +95,7 @@ TEST(Gather, CascadesHandOverWithoutASeam) {
   // From inside the finer cascade (boundary at 2.5 m) through the coarser (5 m) and out.
   const double from = 1, to = 7;
   const SurfaceImage image = walk({from, 0.1, 0.2}, {to, 0.1, 0.2}, {0, 1, 0});
-  const Both both = gather(*basis, intensity_transport(), {.blend_cells = 3}, light, image);
+  const Both both = gather(*basis, TransportKind::sampled, {.blend_cells = 3}, light, image);
   const auto expected = [&](std::size_t pixel) {
     const double x = along(from, to, pixel);
     const double in_fine = std::clamp((2.5 - x) / (3 * kCell), 0.0, 1.0);
@@ -130,12 +112,11 @@ TEST(Gather, CascadesHandOverWithoutASeam) {
 
 TEST(Gather, SharesDoNotJumpWhereTheEyeCrossesIntoAnotherCell) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const GatherForm form(*basis, intensity_transport());
   const reference::Volume fine = uniform(times(5, basis->constant())), coarse = uniform(basis->constant());
   const auto seen_from = [&](float eye, const glm::dvec3& p) {
     const auto grids = cascade_grids({eye, 0.1f, 0.2f}, 2, double{kCell} * kGrid, kGrid);
-    return reference::gather(*basis, form, {.grid = kGrid}, {{grids[0], &fine}, {grids[1], &coarse}}, p,
-                             glm::dvec3(0, 1, 0))
+    return reference::gather(*basis, TransportKind::sampled, {.grid = kGrid},
+                             {{grids[0], &fine}, {grids[1], &coarse}}, p, glm::dvec3(0, 1, 0))
         .x;
   };
   const float boundary = 2 * kCell;  // of both cascades' cells
@@ -156,15 +137,15 @@ TEST(Gather, OutsideAllCascadesIsExactlyDark) {
   const std::vector<reference::Volume> light = {uniform(basis->constant()), uniform(basis->constant())};
   for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1)}) {
     const Both both =
-        gather(*basis, intensity_transport(), {}, light, walk(5.001 * axis, 900.0 * axis, -axis));
+        gather(*basis, TransportKind::sampled, {}, light, walk(5.001 * axis, 900.0 * axis, -axis));
     for (const glm::dvec3& e : both.device) ASSERT_EQ(e, glm::dvec3(0));
   }
 }
 
 TEST(Gather, EmptyVolumesAreExactlyDark) {
   const std::unique_ptr<Basis> basis = make_basis("srbf8v2");
-  const Both both = gather(*basis, intensity_transport(), {.floor = 0.15},
-                           {uniform(std::vector<double>(8, 0.0))}, walk({-4, 0, 0}, {4, 0, 0}, kTilted));
+  const Both both = gather(*basis, TransportKind::sampled, {}, {uniform(std::vector<double>(8, 0.0))},
+                           walk({-4, 0, 0}, {4, 0, 0}, kTilted));
   for (const cl_float4& e : both.raw) {
     for (const float value : e.s) ASSERT_EQ(value, 0.0f);
   }
@@ -177,35 +158,22 @@ TEST(Gather, BackgroundIsExactlyDark) {
     image.depth[pixel] = 0;
     image.normal[pixel] = glm::vec4(0);
   }
-  const Both both = gather(*basis, intensity_transport(), {}, {uniform(basis->constant())}, image);
+  const Both both = gather(*basis, TransportKind::sampled, {}, {uniform(basis->constant())}, image);
   for (unsigned pixel = 0; pixel < kPixels; ++pixel) {
     ASSERT_EQ(both.device[pixel] == glm::dvec3(0), pixel % 2 == 0) << "pixel " << pixel;
     ASSERT_EQ(both.raw[pixel].s[3], 0.0f);
   }
 }
 
-TEST(Gather, NegativeLightIsClampedAndFloored) {
+TEST(Gather, NegativeLightIsClamped) {
   // All light travels towards +z; sh2's lobe is negative backwards, at a surface that faces +z.
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const std::vector<double> c = basis->clamped_cosine({0, 0, 1});
   ASSERT_LT(basis->value(c, {0, 0, -1}), 0);
   const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, {0, 0, 1});
-  expect_all(gather(*basis, intensity_transport(), {}, {uniform(c)}, image), 0);
-  const double floor = 0.15, energy = pi;  // of a clamped cosine
-  const double isotropic = 4 * energy / (4 * pi) / (kCell * kCell);
-  expect_all(gather(*basis, intensity_transport(), {.floor = floor}, {uniform(c)}, image), floor * isotropic);
-  const Transport upwind = cosine_transport(scaled_identity(4, kKappa));
   // Int (1/4 + cos/2) max(0, -cos) dw = pi/4 - pi/3 is negative too.
-  expect_all(gather(*basis, upwind, {.floor = floor}, {uniform(c)}, image),
-             floor * kKappa * energy / 4 / (kCell * kCell));
-}
-
-TEST(Gather, IsotropicLightStandsOnItsOwnFloor) {
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const Transport upwind = cosine_transport(scaled_identity(4, kKappa));
-  const SurfaceImage image = walk({-1, 0, 0}, {1, 0, 0}, kTilted);
-  expect_all(gather(*basis, upwind, {.floor = 1}, {uniform(basis->constant())}, image),
-             kKappa * pi / (kCell * kCell));
+  for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep})
+    expect_all(gather(*basis, transport, {}, {uniform(c)}, image), 0);
 }
 
 /// Light in front of a wall across x through the origin, none behind it.
@@ -231,7 +199,7 @@ TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
   const double lit = 4 * 2.0 / (kCell * kCell);
   const auto on_wall = [&](double side, Gathering gathering) {
     const SurfaceImage image = walk({side * 1e-4, -0.98, -0.9}, {side * 1e-4, 0.97, 0.95}, {side, 0, 0});
-    return gather(*basis, intensity_transport(), {.gather = gathering, .gather_offset = 0.25}, {scene.light},
+    return gather(*basis, TransportKind::sampled, {.gather = gathering, .gather_offset = 0.25}, {scene.light},
                   image, scene.hidden);
   };
   const auto is = [](double e) { return [e](std::size_t) { return e; }; };
@@ -247,7 +215,7 @@ TEST(Gather, WhereNothingIsSeenAllCellsCount) {
   const auto basis = make_basis("sh2");
   const SurfaceImage image = walk({-1, 0.1, 0.3}, {1, -0.2, 0.1}, kTilted);
   const std::vector<std::uint8_t> nothing(SceneSight::bytes(kGrid), 0xff);
-  const Both both = gather(*basis, intensity_transport(), {.gather = Gathering::visible},
+  const Both both = gather(*basis, TransportKind::sampled, {.gather = Gathering::visible},
                            {uniform(times(1.75, basis->constant()))}, image, nothing);
   expect_all(both, 4 * 1.75 / (kCell * kCell));
 }
@@ -259,7 +227,7 @@ TEST(Gather, LightIsContinuousWhereCellsGoOutOfSight) {
   const std::vector<std::uint8_t> hidden = reference::see(wall, grid_of(0)).least;
   const SurfaceImage image = walk({0.1, -0.4, 0.13}, {0.1, 0.4, 0.13}, {0, 0, 1});
   const Both both =
-      gather(*basis, intensity_transport(), {.gather = Gathering::visible, .gather_offset = 0.25},
+      gather(*basis, TransportKind::sampled, {.gather = Gathering::visible, .gather_offset = 0.25},
              {walled(*basis).light}, image, hidden);
   const double lit = 4 * 2.0 / (kCell * kCell), step = 0.8 / kCell / kPixels;  // [cells]
   EXPECT_LT(both.device.front().x, 0.05 * lit);
@@ -274,21 +242,20 @@ TEST(Gather, TwoRunsAreIdentical) {
     return times(1 + channel + 0.1 * std::sin(centre.x * centre.y), basis->clamped_cosine(kTilted));
   });
   const SurfaceImage image = walk({-2.9, -2, 1}, {2.9, 2, -1}, -kTilted);
-  const Both first = gather(*basis, intensity_transport(), {}, {light}, image);
-  const Both second = gather(*basis, intensity_transport(), {}, {light}, image);
+  const Both first = gather(*basis, TransportKind::sampled, {}, {light}, image);
+  const Both second = gather(*basis, TransportKind::sampled, {}, {light}, image);
   EXPECT_EQ(first.device, second.device);
 }
 
 TEST(Gather, RefusesWhatDoesNotFit) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const auto make = [&](GatherOptions options) {
-    Gatherer(test_session(), *basis, intensity_transport(), options);
+    Gatherer(test_session(), *basis, TransportKind::sampled, options);
   };
   EXPECT_THROW(make({.grid = 0}), Error);
   EXPECT_THROW(make({.blend_cells = 0}), Error);
-  EXPECT_THROW(make({.floor = -0.1}), Error);
   EXPECT_THROW(make({.gather_offset = std::numeric_limits<double>::infinity()}), Error);
-  Gatherer gatherer(test_session(), *basis, intensity_transport(), {.grid = kGrid});
+  Gatherer gatherer(test_session(), *basis, TransportKind::sampled, {.grid = kGrid});
   const Volume small(test_session(), {kGrid - 1, 4, 3}, "test: light");
   Buffer e = test_session().buffer(kPixels * sizeof(cl_float4), "test: E");
   Surface camera;

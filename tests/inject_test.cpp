@@ -141,12 +141,10 @@ TEST_P(EachBasis, TotalEnergyIsTheFluxOfAllTexels) {
   const SurfaceImage floor = plane(from_above(64, 64, 1.0f / 32), 0.3f, {1, 0.25f, 0});
   const double lobe_flux = basis->energy(basis->clamped_cosine({0, 1, 0})) / kPi;
   EXPECT_NEAR(lobe_flux, 1, basis->centres().empty() ? 1e-12 : 1.5e-3);
-  for (const bool trilinear : {false, true}) {
-    const Injection light = light_of(*basis, floor, {.trilinear = trilinear});
-    EXPECT_NEAR(basis->energy(light.total(0)), 4096 * lobe_flux, 4096 * kRounding);
-    EXPECT_NEAR(basis->energy(light.total(1)), 1024 * lobe_flux, 1024 * kRounding);
-    EXPECT_EQ(basis->energy(light.total(2)), 0);
-  }
+  const Injection light = light_of(*basis, floor);
+  EXPECT_NEAR(basis->energy(light.total(0)), 4096 * lobe_flux, 4096 * kRounding);
+  EXPECT_NEAR(basis->energy(light.total(1)), 1024 * lobe_flux, 1024 * kRounding);
+  EXPECT_EQ(basis->energy(light.total(2)), 0);
 }
 
 TEST_P(EachBasis, UnitFluxLobesCarryExactlyTheFlux) {
@@ -167,10 +165,7 @@ TEST_P(EachBasis, TwoRunsAreIdentical) {
   SurfaceImage floor = plane(from_above(50, 70, 0.05f), 0.3f);
   for (std::size_t i = 0; i < floor.depth.size(); ++i)
     floor.depth[i] += 0.3f * std::sin(static_cast<float>(i));
-  for (const bool trilinear : {false, true}) {
-    const InjectOptions options{.trilinear = trilinear};
-    EXPECT_EQ(light_of(*basis, floor, options).values, light_of(*basis, floor, options).values);
-  }
+  EXPECT_EQ(light_of(*basis, floor).values, light_of(*basis, floor).values);
   EXPECT_EQ(geometry_of(*basis, {floor}).values, geometry_of(*basis, {floor}).values);
 }
 
@@ -189,27 +184,6 @@ TEST_P(EachBasis, ACellDependsOnItsOwnTexelsAlone) {
     }
   }
   EXPECT_EQ(occupied, 2 * 4) << "a square metre in cells of half a metre";
-}
-
-TEST(Inject, TrilinearSharesAddUpRoundThePoint) {
-  const auto basis = make_basis("sh2");
-  // Moved up to (4.25, 4.5, 4.75) cells: between the centres of 3 and 4 in x, of 4 and 5 in z, on that of 4 in y.
-  const SurfaceImage texel = one_texel({0.125f, 0, 0.375f}, {0, 1, 0}, glm::vec3(1));
-  const Injection light = light_of(*basis, texel, {.trilinear = true});
-  const double whole = light.total(0)[0];
-  EXPECT_NEAR(light.cell(0, 3, 4, 4)[0], 0.25 * 0.75 * whole, kRounding);
-  EXPECT_NEAR(light.cell(0, 4, 4, 4)[0], 0.75 * 0.75 * whole, kRounding);
-  EXPECT_NEAR(light.cell(0, 3, 4, 5)[0], 0.25 * 0.25 * whole, kRounding);
-  EXPECT_NEAR(light.cell(0, 4, 4, 5)[0], 0.75 * 0.25 * whole, kRounding);
-  EXPECT_NEAR(basis->energy(light.total(0)), 1, kRounding);
-}
-
-TEST(Inject, TrilinearLosesWhatFallsOutsideTheGrid) {
-  const auto basis = make_basis("sh2");
-  // A quarter of a cell inside the grid's face x = -2: the quarter of it that belongs to the cell beyond is gone.
-  const SurfaceImage texel = one_texel({-1.875f, 0, 0.125f}, {0, 1, 0}, glm::vec3(1));
-  const Injection light = light_of(*basis, texel, {.trilinear = true});
-  EXPECT_NEAR(basis->energy(light.total(0)), 0.75, kRounding);
 }
 
 TEST(Inject, WhatIsOutsideTheGridIsDropped) {
@@ -246,16 +220,12 @@ TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
   const auto basis = make_basis("sh2");
   // Two metres square: from corner 2 to 6, each inner corner's square full of 8 x 8 texels. Layer 5 is .5 m.
   const SurfaceImage wall = plane(from_above(32, 32, 1.0f / 16), 0.55f);
-  const Injection one_sided = geometry_of(*basis, {wall}, {.blocking = Blocking::one_sided});
-  const Injection two_sided = geometry_of(*basis, {wall});
+  const Injection blocked = geometry_of(*basis, {wall});
   for (const int x : {3, 4, 5}) {
-    EXPECT_NEAR(basis->value(one_sided.cell(0, x, 5, 4), {0, 1, 0}), 0.75, kRounding);
-    EXPECT_NEAR(basis->value(one_sided.cell(0, x, 5, 4), {0, -1, 0}), -0.25, kRounding);
-    // sh2 has no function that is even in w but for the constant: both sides average.
-    EXPECT_NEAR(basis->value(two_sided.cell(0, x, 5, 4), {0, 1, 0}), 0.5, kRounding);
-    EXPECT_NEAR(basis->value(two_sided.cell(0, x, 5, 4), {1, 0, 0}), 0.5, kRounding);
+    EXPECT_NEAR(basis->value(blocked.cell(0, x, 5, 4), {0, 1, 0}), 0.75, kRounding);
+    EXPECT_NEAR(basis->value(blocked.cell(0, x, 5, 4), {0, -1, 0}), -0.25, kRounding);
   }
-  EXPECT_NEAR(basis->value(one_sided.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding) << "half a square";
+  EXPECT_NEAR(basis->value(blocked.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding) << "half a square";
 }
 
 TEST(Inject, AreasAreWhatIsCoveredOfEachFace) {
@@ -281,9 +251,9 @@ TEST(Inject, SlantedSurfelsCoverMoreUpToALimit) {
     return basis->energy(blocked.cell(0, 4, 4, 4)) / (4 * kPi);
   };
   const double across = 0.01 * 0.01 / (kCell * kCell);  // of a cell, in the view's plane
-  EXPECT_NEAR(mean(1.0), across / 2, across * 1e-5);
-  EXPECT_NEAR(mean(0.5), across, across * 1e-5);
-  EXPECT_NEAR(mean(0.01), across / 0.1 / 2, across * 1e-4);
+  EXPECT_NEAR(mean(1.0), across / 4, across * 1e-5);
+  EXPECT_NEAR(mean(0.5), across / 2, across * 1e-5);
+  EXPECT_NEAR(mean(0.01), across / 0.1 / 4, across * 1e-4);
 }
 
 TEST(Inject, PerspectiveFootprintsTileTheWall) {
@@ -291,7 +261,7 @@ TEST(Inject, PerspectiveFootprintsTileTheWall) {
   // A camera 3 m above a floor, 90 degrees wide: the floor's squares in view are covered once, however slanted.
   ClpvView camera = from_above(240, 240, 1);
   camera.orthographic = 0, camera.eye[1] = 3.1f, camera.half_width = camera.half_height = 1;
-  const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)}, {.blocking = Blocking::one_sided});
+  const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)});
   for (const int x : {1, 4, 6}) {
     // Squares hold 40 x 40 pixels, cut by pixel centres.
     EXPECT_NEAR(basis->value(blocked.cell(0, x, 4, 3), {0, 1, 0}), 0.75, 0.02) << x;

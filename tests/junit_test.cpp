@@ -40,7 +40,7 @@ TEST(Junit, IsWrittenByTheCheck) {
 TEST(Pages, TheManPageNamesEveryCommandAndOption) {
   const test::Outcome page = test::run(CLPV_PROGRAM " --man-page");
   EXPECT_EQ(page.exit_code, 0) << page.err;
-  EXPECT_THAT(page.out, AllOf(HasSubstr(".TH CLPV 1"), HasSubstr(".SS render"), HasSubstr(".SS tune"),
+  EXPECT_THAT(page.out, AllOf(HasSubstr(".TH CLPV 1"), HasSubstr(".SS render"), HasSubstr(".SS bench"),
                               HasSubstr("\\fB\\-\\-transport\\fR"), HasSubstr("Exit codes: 0 ok")));
   EXPECT_THAT(page.out, Not(HasSubstr("man\\-page")));
   const test::Outcome read =

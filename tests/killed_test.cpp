@@ -105,7 +105,7 @@ class Killed : public ::testing::Test {
     if (!fs::exists(folder)) return;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      if (name.starts_with(".") || (!name.ends_with(".json") && !name.ends_with(".tuning"))) continue;
+      if (name.starts_with(".") || !name.ends_with(".json")) continue;
       EXPECT_TRUE(nlohmann::json::accept(read_file(entry.path()))) << entry.path();
     }
   }
@@ -132,7 +132,7 @@ TEST_F(Killed, WhileItRenders) {
 TEST_F(Killed, WhileItJudges) {
   const fs::path json = folder_ / "q.json";
   kill_at_moments("quality " + kTiny + kSmall +
-                      "--basis sh2 --gather all --blockers seen --vary transport=sampled,upwind --width 24 "
+                      "--basis sh2 --gather all --blockers seen --vary transport=sampled,exact --width 24 "
                       "--height 18 --spp 4 --frames 1 --cache " +
                       (folder_ / "kept").string() + " --json " + json.string(),
                   [&] {
@@ -154,11 +154,6 @@ TEST_F(Killed, WhileItTimes) {
       [&] { EXPECT_TRUE(nlohmann::json::accept(read_file(json))); });
   EXPECT_THAT(read_file(log), HasSubstr("{\"begun\":\"propagate/sh2/soa/float\"}"));
   EXPECT_THAT(read_file(log), HasSubstr("{\"row\":"));
-}
-
-TEST_F(Killed, WhileItTunes) {
-  kill_at_moments("tune --basis sh2 --grid 1 --layout soa --occlusion off --repetitions 1 --json",
-                  [&] { expect_whole_json(folder_ / "cache"); });
 }
 
 /// Long enough to be met at work: frames without end.

@@ -56,10 +56,10 @@ TEST(Options, EveryChoiceGoesFromTextToAValueAndBack) {
 
 TEST(Options, EveryNumberAndFileGoesFromTextToAValueAndBack) {
   const std::map<std::string, std::string> others = {
-      {"centres", "mine.json"}, {"lambda", "0.375"},      {"table-size", "99"},     {"iterations", "3"},
-      {"grid", "17"},           {"cascades", "2"},        {"cascade-size", "6.25"}, {"rsm-size", "64"},
-      {"shadow-size", "128"},   {"width", "31"},          {"blocker-stride", "2"},  {"height", "17"},
-      {"gather-offset", "1.5"}, {"gather-floor", "0.125"}};
+      {"centres", "mine.json"}, {"lambda", "0.375"}, {"table-size", "99"},     {"iterations", "3"},
+      {"grid", "17"},           {"cascades", "2"},   {"cascade-size", "6.25"}, {"rsm-size", "64"},
+      {"shadow-size", "128"},   {"width", "31"},     {"blocker-stride", "2"},  {"height", "17"},
+      {"gather-offset", "1.5"}};
   std::size_t found = 0;
   for (const OptionInfo& info : list_options(RenderOptions{})) {
     if (info.allowed.find('|') != std::string::npos) continue;
@@ -125,10 +125,9 @@ TEST(Options, AllPresetsApply) {
 TEST(Options, StagesAreToldWhatWasChosen) {
   RenderOptions options;
   apply_preset(options, PresetName::paper);
-  options.injection = Injection::trilinear, options.table = TableStorage::image, options.grid = 11;
-  options.gather_floor = 0.25, options.state = State::fluxes;
+  options.table = TableStorage::image, options.grid = 11, options.state = State::fluxes;
   const InjectOptions inject = inject_options(options, true);
-  EXPECT_TRUE(inject.trilinear && inject.unit_flux_lobes);
+  EXPECT_TRUE(inject.unit_flux_lobes);
   EXPECT_EQ(inject.grid, 11);
   EXPECT_EQ(inject.blocking, Blocking::one_sided);
   EXPECT_EQ(inject.lobes.kind, LobeKind::rotate);
@@ -141,7 +140,6 @@ TEST(Options, StagesAreToldWhatWasChosen) {
   EXPECT_EQ(sweep_options(options).parts, (std::vector<int>{3, 2, 2}));
   EXPECT_EQ(sweep_options(options).grid, 11);
   const GatherOptions gather = gather_options(options);
-  EXPECT_EQ(gather.floor, 0.25);
   EXPECT_TRUE(gather.lobes.table_functions);
   EXPECT_EQ(gather.table, TableStorage::image);
 }
@@ -158,9 +156,9 @@ TEST(Options, BenchmarksNameLobes) {
 
 template <typename E>
 class EachNamedEnum : public ::testing::Test {};
-using NamedEnums = ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage,
-                                    Bounces, Injection, RsmFormat, Show, ToneMap, TransportKind, Blocking,
-                                    LobeKind, LightKind, Stage, Pass>;
+using NamedEnums =
+    ::testing::Types<PresetName, Layout, Storage, State, LobeTime, Evaluation, TableStorage, Bounces,
+                     RsmFormat, Show, ToneMap, TransportKind, Blocking, LobeKind, LightKind, Stage, Pass>;
 TYPED_TEST_SUITE(EachNamedEnum, NamedEnums);
 
 TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {

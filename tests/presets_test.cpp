@@ -43,10 +43,8 @@ TEST(Presets, PaperIsThePublishedScheme) {
   EXPECT_EQ(json["rsm-format"], "paper");
   EXPECT_EQ(json["blocking"], "one-sided");
   EXPECT_EQ(json["blockers"], "seen");
-  EXPECT_EQ(json["injection"], "nearest");
   EXPECT_EQ(json["gather"], "all");
   EXPECT_EQ(json["gather-offset"], 0.5);
-  EXPECT_EQ(json["gather-floor"], 0);
 }
 
 TEST(Presets, LeaveAloneWhatTheyDoNotSet) {
@@ -103,9 +101,9 @@ TEST(Presets, PropagateTakesThem) {
   EXPECT_EQ(paper["preset"], "paper");
   EXPECT_EQ(paper["basis"], "srbf8v2");
   EXPECT_EQ(paper["lambda"], 0.3);
-  const nlohmann::json best = options("--preset best --transport upwind");
+  const nlohmann::json best = options("--preset best --transport exact");
   EXPECT_EQ(best["basis"], RenderOptions{}.basis);
-  EXPECT_EQ(best["transport"], "upwind");
+  EXPECT_EQ(best["transport"], "exact");
   const test::Outcome swept = test::run(std::string(CLPV_PROGRAM) + " propagate --at 0,0,0 --preset best");
   EXPECT_EQ(swept.exit_code, 2);
   EXPECT_THAT(swept.err, HasSubstr("transport: found 'sweep', which takes no steps"));

@@ -59,8 +59,7 @@ std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
 TEST(LightField, IsWhatTheCameraSeesWhereItSees) {
   const Scene scene = load_scene(kCornell);
   const Camera& camera = scene.camera("");
-  for (const TransportKind transport :
-       {TransportKind::upwind, TransportKind::sampled, TransportKind::sweep}) {
+  for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
     Session& session = test_session();
@@ -145,7 +144,7 @@ TEST_F(PointsFile, BadLinesAreNamed) {
 TEST_F(PointsFile, QueryAddsLightToEachPoint) {
   folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n900,0,0,0,1,0\n");
   const std::string command = "cd " + folder.path().string() + " && " CLPV_PROGRAM " query " + kCornell +
-                              " --points p.csv --width 48 --height 27 --grid 16 --rsm-size 64 --no-tune";
+                              " --points p.csv --width 48 --height 27 --grid 16 --rsm-size 64";
   const Outcome outcome = run(command);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("1 of 2 points lie outside the cascades"));

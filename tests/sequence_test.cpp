@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kSmall = " --width 48 --height 27 --grid 16 --rsm-size 64 --shadow-size 128 --no-tune";
+constexpr const char* kSmall = " --width 48 --height 27 --grid 16 --rsm-size 64 --shadow-size 128";
 
 struct SequenceTest : ::testing::Test {
   TemporaryFolder folder;
@@ -43,7 +43,7 @@ struct SequenceTest : ::testing::Test {
 
 TEST_F(SequenceTest, EveryFrameIsTheOneRenderedAlone) {
   // The camera crosses cells of .25 m, a wall, a sun and a lamp move; both kinds of blockers and of transport.
-  for (const std::string options : {"", " --transport upwind --blockers seen --gather all"}) {
+  for (const std::string options : {"", " --transport sampled --blockers seen --gather all"}) {
     const Outcome outcome = sequence("--frames 4 --fps 3 --from 0.1" + options);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     for (int i = 0; i < 4; ++i) {

@@ -11,8 +11,8 @@
 #include <limits>
 #include <numbers>
 
-#include "basis/sweep.hpp"
 #include "basis/sky_light.hpp"
+#include "basis/sweep.hpp"
 #include "image/image.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/sky_sampler.hpp"
@@ -263,13 +263,13 @@ TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
 TEST(SkyFrame, StepsRefuseIt) {
   const Scene scene = under(even_sky(glm::vec3(1)));
   RenderOptions options = small_frame();
-  options.transport = TransportKind::upwind;
+  options.transport = TransportKind::sampled;
   try {
     Frame frame(test_session(), scene, options);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_NE(std::string(error.what()).find("transport: found 'upwind' with a sky"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("transport: found 'sampled' with a sky"), std::string::npos);
   }
 }
 

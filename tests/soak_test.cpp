@@ -48,7 +48,7 @@ RenderOptions small(const std::string& basis, TransportKind transport, Layout la
 TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
   const std::vector<RenderOptions> all = {small("sh2", TransportKind::sweep, Layout::soa, 8),
                                           small("sh2", TransportKind::sampled, Layout::soa, 12),
-                                          small("sh2", TransportKind::upwind, Layout::aos, 8),
+                                          small("sh2", TransportKind::exact, Layout::aos, 8),
                                           small("srbf4", TransportKind::sampled, Layout::tiled, 16),
                                           small("sh3", TransportKind::sweep, Layout::soa, 16)};
   const Scene scene = load_scene(kTiny);

@@ -34,18 +34,17 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
 constexpr int kGrid = 7, kSteps = 6;
 
 // Volume values of `samples`^3 samples, a different direction in each; every third is empty.
-std::vector<float> lobes_everywhere(const Basis& basis, int samples, int channels, bool two_sided) {
+std::vector<float> lobes_everywhere(const Basis& basis, int samples, int channels) {
   const auto cells = static_cast<std::size_t>(samples) * samples * samples;
   std::vector<float> values(cells * static_cast<std::size_t>(basis.size() * channels), 0.0f);
   for (std::size_t cell = 0; cell < cells; cell += 1 + cell % 2) {
     const double turn = 2.399963 * static_cast<double>(cell), z = std::cos(1.7 * static_cast<double>(cell));
     const double radius = std::sqrt(1 - z * z);
     const glm::dvec3 d(radius * std::cos(turn), radius * std::sin(turn), z);
-    const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
-    for (std::size_t plane = 0; plane < front.size() * static_cast<std::size_t>(channels); ++plane) {
-      const std::size_t i = plane % front.size(), channel = plane / front.size();
-      values[plane * cells + cell] = static_cast<float>((front[i] + (two_sided ? back[i] : 0)) *
-                                                        (0.4 + 0.3 * static_cast<double>(channel)));
+    const std::vector<double> lobe = basis.clamped_cosine(d);
+    for (std::size_t plane = 0; plane < lobe.size() * static_cast<std::size_t>(channels); ++plane) {
+      const std::size_t i = plane % lobe.size(), channel = plane / lobe.size();
+      values[plane * cells + cell] = static_cast<float>(lobe[i] * (0.4 + 0.3 * static_cast<double>(channel)));
     }
   }
   return values;
@@ -55,8 +54,8 @@ std::vector<float> propagated(const Basis& basis, const Transport& transport, St
   Volume injected(test_session(), {kGrid, basis.size(), 3}, "injected"),
       accumulated(test_session(), {kGrid, basis.size(), 3}, "accumulated"),
       geometry(test_session(), {kGrid + 1, basis.size(), 1}, "geometry");
-  injected.write(test_session(), lobes_everywhere(basis, kGrid, 3, false));
-  geometry.write(test_session(), lobes_everywhere(basis, kGrid + 1, 1, true));
+  injected.write(test_session(), lobes_everywhere(basis, kGrid, 3));
+  geometry.write(test_session(), lobes_everywhere(basis, kGrid + 1, 1));
   Propagator(test_session(), basis, transport, {.grid = kGrid, .state = state})
       .propagate({injected, blockers ? &geometry : nullptr, accumulated}, kSteps);
   return accumulated.read(test_session());

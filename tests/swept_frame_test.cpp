@@ -91,7 +91,7 @@ TEST(SweptFrame, EveryLayoutAndTheBlockersThatAreSeen) {
     EXPECT_NEAR(frame.render(frame.camera()).irradiance, wanted, 2e-3 * wanted) << name_of(layout);
   }
   SweptFrame seen([](RenderOptions& o) {
-    o.blockers = Blockers::seen, o.blocking = Blocking::two_sided, o.basis = "sh2";
+    o.blockers = Blockers::seen, o.blocking = Blocking::one_sided, o.basis = "sh2";
   });
   EXPECT_GT(seen.render(seen.camera()).irradiance, 0.3 * wanted);
   SweptFrame open([](RenderOptions& o) { o.occlusion = false; });
@@ -101,7 +101,7 @@ TEST(SweptFrame, EveryLayoutAndTheBlockersThatAreSeen) {
 TEST(SweptFrame, RefusesWhatDoesNotApply) {
   EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.state = State::fluxes; }), Error);
   EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.lobe_time = LobeTime::kernel; }), Error);
-  EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.blocking = Blocking::two_sided; }), Error);
+  EXPECT_THROW(SweptFrame([](RenderOptions& o) { o.blocking = Blocking::one_sided; }), Error);
 }
 
 }  // namespace

@@ -37,10 +37,8 @@ std::vector<Way> ways(const Transport& transport) {
     for (const Face& face : faces->faces) result.push_back({face.normal, face.direction, face.blocked_by});
     return result;
   }
-  for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
-    if (neighbour.offset != glm::ivec3(0))
-      result.push_back({-neighbour.offset, neighbour.direction, neighbour.blocked_by});
-  }
+  for (const SweepWay& way : std::get<std::vector<SweepWay>>(transport.scheme))
+    result.push_back({-way.offset, way.direction, way.blocked_by});
   return result;
 }
 
@@ -95,11 +93,11 @@ std::vector<double> times(double s, std::vector<double> c) {
 
 class EachTransport : public ::testing::TestWithParam<TransportKind> {
  protected:
-  Transport transport(const Basis& basis, Blocking blocking = Blocking::two_sided) const {
+  Transport transport(const Basis& basis, Blocking blocking = Blocking::one_sided) const {
     return make_transport(GetParam(), basis, {}, blocking);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport, ::testing::ValuesIn(stepped_transports()),
+INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport, ::testing::ValuesIn(values_of<TransportKind>()),
                          [](const auto& info) {
                            std::string name(name_of(info.param));
                            std::ranges::replace(name, '-', '_');

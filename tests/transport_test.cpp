@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Transports against quadrature done here: solid angles, face fluxes, energies, operators and their gather.
+// Transports against quadrature done here: solid angles, face fluxes, energies.
 #include "basis/transport.hpp"
 
 #include <gtest/gtest.h>
@@ -16,13 +16,8 @@ namespace {
 
 using test::EveryBasis;
 using test::integral;
-using test::sphere;
 
 constexpr double kPi = std::numbers::pi;
-
-double norm1(const glm::dvec3& w) {
-  return std::abs(w.x) + std::abs(w.y) + std::abs(w.z);
-}
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
@@ -37,10 +32,6 @@ int axis_index(const glm::ivec3& normal) {
 const FaceTransport& faces(const Transport& transport) {
   return std::get<FaceTransport>(transport.scheme);
 }
-const OperatorTransport& operators(const Transport& transport) {
-  return std::get<OperatorTransport>(transport.scheme);
-}
-
 TEST(SolidAngles, AreThoseOfTheFacesAndSumToTheSphere) {
   EXPECT_NEAR(far_solid_angle(), 0.4006696846462392, 1e-15);
   EXPECT_NEAR(side_solid_angle(), 0.4234313544367390, 1e-15);
@@ -145,119 +136,6 @@ TEST(Clamping, GainsEnergyFromAnAxisLobe) {
     double flux = 0;
     for (const Face& face : faces(transport).faces) flux += std::max(0.0, dot(face.flux, lobe));
     EXPECT_NEAR(flux / basis->energy(lobe) - 1, gain, 5.1e-4) << name_of(kind);
-  }
-}
-
-TEST(Upwind, OperatorsOfSh2) {
-  const auto basis = make_basis("sh2");
-  const Transport transport = make_transport(TransportKind::upwind, *basis);
-  ASSERT_EQ(operators(transport).neighbours.size(), 6u);
-  const int coefficient[] = {3, 1, 2};  // of x, y, z in the order y, z, x
-  for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
-    EXPECT_NEAR(weights(0, 0), 1.0 / 6, 1e-12);
-    for (int a = 0; a < 3; ++a) {
-      const int i = coefficient[a];
-      EXPECT_NEAR(weights(0, i), offset[a] * .19462866, 1e-8);
-      EXPECT_NEAR(weights(i, 0), offset[a] * .19462866, 1e-8);
-      for (int b = 0; b < 3; ++b) {
-        const double expected = a != b ? 0 : offset[a] == 0 ? .12168181 : .25663639;
-        EXPECT_NEAR(weights(i, coefficient[b]), expected, 1e-8);
-      }
-    }
-  }
-  const double kappa = integral(sphere(), [](const glm::dvec3& w) { return 1 / norm1(w); }) / (4 * kPi);
-  EXPECT_NEAR(kappa, .67421347, 1e-8);
-  for (int i = 0; i < 4; ++i) EXPECT_NEAR(transport.gather(i, i), kappa, i == 0 ? 1e-12 : .5);
-}
-
-// A R_k, which is what the operators are made of, entry by entry.
-TEST_P(EveryBasis, OperatorsAreMomentsOfTheirWeights) {
-  const Transport transport = make_transport(TransportKind::upwind, *basis_);
-  for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
-    Matrix expected(basis_->size(), basis_->size());
-    for (const test::Node& node : sphere({0, 0, 1}, 16)) {
-      const double weight = node.weight * std::max(0.0, glm::dot(glm::dvec3(offset), node.w)) / norm1(node.w);
-      if (weight == 0) continue;
-      const std::vector<double> b = basis_->evaluate(node.w);
-      for (int i = 0; i < basis_->size(); ++i) {
-        for (int j = 0; j < basis_->size(); ++j)
-          expected(i, j) += weight * b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
-      }
-    }
-    const Matrix found = basis_->gram() * weights;
-    for (int i = 0; i < basis_->size(); ++i) {
-      for (int j = 0; j < basis_->size(); ++j)
-        ASSERT_NEAR(found(i, j), expected(i, j), 1e-9) << i << ' ' << j;
-    }
-  }
-}
-
-TEST_P(EveryBasis, OperatorsKeepEnergyAndCarryABeamAlong) {
-  const glm::dvec3 d = glm::normalize(glm::dvec3(3, -1, 2));
-  const std::vector<double> beam = basis_->clamped_cosine(d), one = basis_->constant();
-  const Transport transport = make_transport(TransportKind::upwind, *basis_);
-  double energy = 0;
-  glm::dvec3 drift(0);
-  for (const auto& [offset, direction, weights, against] : operators(transport).neighbours) {
-    const double part = basis_->energy(weights * beam);
-    energy += part;
-    drift += part * glm::dvec3(offset);
-  }
-  EXPECT_NEAR(energy / basis_->energy(beam), 1, 1e-12);
-  // What a cell sends is weighed with the basis's best 1; w / |w|_1 is the way of a step.
-  for (int a = 0; a < 3; ++a) {
-    const double expected = integral(sphere(), [&](const glm::dvec3& w) {
-      return basis_->value(one, w) * basis_->value(beam, w) * w[a] / norm1(w);
-    });
-    EXPECT_NEAR(drift[a], expected, 1e-10);
-  }
-  EXPECT_GT(glm::dot(glm::normalize(drift), d), .98);
-}
-
-// Irradiance from a uniform radiance of 1 W/(m^2 sr), in cells of 1 m.
-double gathered(const Basis& basis, const Transport& transport, const glm::dvec3& normal) {
-  std::vector<double> moments(static_cast<std::size_t>(basis.size()), 0.0), alpha(moments.size());
-  for (const test::Node& node : sphere()) {
-    const double intensity = transport.kind == TransportKind::upwind ? norm1(node.w) : 1;
-    const std::vector<double> b = basis.evaluate(node.w);
-    for (std::size_t i = 0; i < b.size(); ++i) moments[i] += node.weight * intensity * b[i];
-  }
-  basis.cosine_integrals(-normal, alpha);
-  return dot(alpha, transport.gather * (basis.gram_inverse() * moments));
-}
-
-TEST_P(EveryBasis, GatherOfAUniformFieldIsPi) {
-  for (const TransportKind kind : {TransportKind::upwind, TransportKind::sweep}) {
-    const Transport transport = make_transport(kind, *basis_);
-    EXPECT_TRUE(transport.gathers_cosine);
-    // Upwind: |w|_1 is a best fit on the basis, which the few functions cannot make flat again.
-    const double allowed = transport.kind == TransportKind::upwind ? .02 : .002;
-    for (const glm::dvec3& n : {glm::dvec3(0, 0, 1), glm::normalize(glm::dvec3(1, -2, .5))})
-      EXPECT_NEAR(gathered(*basis_, transport, n) / kPi, 1, allowed) << name_of(kind);
-  }
-}
-
-TEST(Octahedral, OperatorsArePermutationsOfOne) {
-  for (const char* basis_name : {"srbf6", "srbf8v2", "srbf14"}) {
-    const auto basis = make_basis(basis_name);
-    const auto transport = make_transport(TransportKind::upwind, *basis);
-    const auto& neighbours = operators(transport).neighbours;
-    // x -> y -> z -> x maps the centres onto themselves, and the operator of +x onto that of +y.
-    std::vector<int> image;
-    for (const glm::dvec3& c : basis->centres()) {
-      const glm::dvec3 turned(c.z, c.x, c.y);
-      for (int j = 0; j < basis->size(); ++j) {
-        if (glm::length(basis->centres()[static_cast<std::size_t>(j)] - turned) < 1e-12) image.push_back(j);
-      }
-    }
-    ASSERT_EQ(image.size(), basis->centres().size());
-    for (int i = 0; i < basis->size(); ++i) {
-      for (int j = 0; j < basis->size(); ++j)
-        EXPECT_NEAR(
-            neighbours[0].weights(i, j),
-            neighbours[2].weights(image[static_cast<std::size_t>(i)], image[static_cast<std::size_t>(j)]),
-            1e-9);
-    }
   }
 }
 

@@ -152,7 +152,7 @@ struct Run {
   State state = State::coefficients;
   bool blockers = false;
   std::string basis = "sh2";
-  Blocking blocking = Blocking::two_sided;
+  Blocking blocking = Blocking::one_sided;
 };
 
 /// What propagation makes of light and blockers, in one format.

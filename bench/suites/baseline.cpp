@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `baseline`: propagation of sh2, and the sweep of bins24, in OpenCL against the same in C++, OpenMP and AVX2 on the host.
+// Suite `baseline`: propagation of sh2 in OpenCL against the same in C++, OpenMP and AVX2 on the host.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include "basis/basis.hpp"
 #include "bench/baseline/own_cores.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
-#include "bench/baseline/sweep_avx2.hpp"
 #include "bench/suites.hpp"
 #include "checks/check.hpp"
 #include "reference/propagate.hpp"
@@ -18,28 +17,22 @@
 namespace clpv::bench {
 namespace {
 
-constexpr const char *kStepped = "sh2", *kSwept = "bins24";  // that the baselines are written for
+constexpr const char* kBasis = "sh2";  // that the baseline is written for
 constexpr const char* kNative = "native";
 
-template <typename Baseline>
 struct Native {
   std::unique_ptr<Basis> basis;
   Transport transport;
-  Baseline baseline;
-  template <typename... More>
-  explicit Native(const RenderOptions& o, const More&... more)
-      : basis(make_basis(o)),
-        transport(make_transport(o, *basis)),
-        baseline(*basis, transport, o.grid, more...) {}
+  PropagateBaseline baseline;
+  explicit Native(const RenderOptions& o)
+      : basis(make_basis(o)), transport(make_transport(o, *basis)), baseline(*basis, transport, o.grid) {}
 };
 
-void require_support() {
+Job native_job(Bench& bench, const Variant& variant) {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
-}
-
-Job native_propagate_job(Bench& bench, const Variant& variant) {
+  give_threads_own_cores();
   const RenderOptions& o = variant.options;
-  const auto p = std::make_shared<Native<PropagateBaseline>>(o);
+  const auto p = std::make_shared<Native>(o);
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
   const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
   p->baseline.set(light, o.occlusion ? &geometry : nullptr);
@@ -63,55 +56,18 @@ Job native_propagate_job(Bench& bench, const Variant& variant) {
   return job;
 }
 
-/// What sweep_job times: what blocks the ways, from injected light to the nine harmonics that are kept.
-Job native_sweep_job(Bench& bench, const Variant& variant) {
-  const RenderOptions& o = variant.options;
-  const auto p = std::make_shared<Native<SweepBaseline>>(o, parts_of(o.directions));
-  p->baseline.set(bench.inputs().light(*p->basis, 0), o.occlusion ? &bench.inputs().areas(0) : nullptr);
-  Job job;
-  job.own_stages = true;
-  job.run = [p] { p->baseline.sweep(); };
-  job.verify = [p, &bench, variant] {
-    return compare_volumes(p->baseline.accumulated(), swept_twin(bench.inputs(), variant),
-                           variant.options.grid, reference::tolerance_in("sweep", variant.options.format()));
-  };
-  job.cost.flops = p->baseline.flops();
-  job.cost.bytes = p->baseline.bytes();
-  job.cost.working_set = p->baseline.working_set();
-  return job;
-}
-
-/// The same by hand.
-Case native_case(Bench& bench, const Variant& variant, Job (*make)(Bench&, const Variant&)) {
-  return {make_row("baseline", kNative, variant), [&bench, variant, make] {
-            require_support();
-            give_threads_own_cores();
-            return make(bench, variant);
-          }};
-}
-
-std::vector<Case> propagate_cases(Bench& bench, const SuiteOptions& options) {
+std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
-    Variant variant = plain_variant(options, kStepped);
+    Variant variant = plain_variant(options, kBasis);
     variant.options.occlusion = occlusion;
     for (const State state : values_of<State>()) {
       variant.options.state = state;
       cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
     }
     variant.options.state = State::coefficients;
-    cases.push_back(native_case(bench, variant, native_propagate_job));
-  }
-  return cases;
-}
-
-std::vector<Case> sweep_cases(Bench& bench, const SuiteOptions& options) {
-  std::vector<Case> cases;
-  for (const bool occlusion : {false, true}) {
-    Variant variant = plain_variant(options, kSwept);
-    variant.options.occlusion = occlusion;
-    cases.push_back(stage_case(bench, "baseline", kSweep, variant));
-    cases.push_back(native_case(bench, swept(variant), native_sweep_job));
+    cases.push_back(
+        {make_row("baseline", kNative, variant), [&bench, variant] { return native_job(bench, variant); }});
   }
   return cases;
 }
@@ -119,9 +75,8 @@ std::vector<Case> sweep_cases(Bench& bench, const SuiteOptions& options) {
 /// The row by hand that does the same work.
 const Row* native_row(const std::vector<Row>& rows, const Row& row) {
   const auto found = std::ranges::find_if(rows, [&](const Row& other) {
-    const RenderOptions &a = row.variant->options, &b = other.variant->options;
-    return other.stage == kNative && other.status == Status::ok && a.basis == b.basis &&
-           a.transport == b.transport && a.occlusion == b.occlusion;
+    return other.stage == kNative && other.status == Status::ok &&
+           other.variant->options.occlusion == row.variant->options.occlusion;
   });
   return found == rows.end() || row.stage == kNative ? nullptr : &*found;
 }
@@ -152,11 +107,10 @@ std::string table(const std::vector<Row>& rows) {
 }  // namespace
 
 Suite baseline_suite() {
-  return {"baseline", "propagation of sh2, and the sweep, against C++ with OpenMP and AVX2",
+  return {"baseline", "propagation of sh2 against C++ with OpenMP and AVX2",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
-            return std::vector<Group>{{[bench, options] { return propagate_cases(*bench, options); }},
-                                      {[bench, options] { return sweep_cases(*bench, options); }}};
+            return std::vector<Group>{{[bench, options] { return cases(*bench, options); }}};
           },
           table};
 }

@@ -42,7 +42,6 @@ SuiteOptions small(SuiteOptions options) {
   options.settings.grid = kCells;
   options.settings.rsm_size = kTexels;
   options.settings.width = kWidth, options.settings.height = kHeight;
-  options.tuned = false;  // the same launches everywhere and ever
   return options;
 }
 

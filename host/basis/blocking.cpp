@@ -9,7 +9,6 @@ bool blocks_by_lobes(Blocking blocking) {
   switch (blocking) {
     case Blocking::areas:
       return false;
-    case Blocking::two_sided:
     case Blocking::one_sided:
       return true;
   }
@@ -20,7 +19,6 @@ int blocking_size(Blocking blocking, const Basis& basis) {
   switch (blocking) {
     case Blocking::areas:
       return 3;
-    case Blocking::two_sided:
     case Blocking::one_sided:
       break;
   }
@@ -32,7 +30,6 @@ std::vector<double> blocking_weights(Blocking blocking, const Basis& basis, cons
   switch (blocking) {
     case Blocking::areas:
       return {std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
-    case Blocking::two_sided:
     case Blocking::one_sided:
       break;
   }

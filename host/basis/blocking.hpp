@@ -14,15 +14,13 @@ namespace clpv {
 
 /// A surfel that covers the share A of a cell's cross-section, its normal n.
 enum class Blocking {
-  /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, which is what it covers of a face across each axis. Two-sided lobes of few
-  /// coefficients hardly know which way their surfel lies: |w . n| is even, and of sh2's functions the constant alone is.
+  /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, which is what it covers of a face across each axis.
   areas,
-  two_sided,  ///< N coefficients: those of one_sided round n and round -n
   one_sided,  ///< N coefficients: A times the clamped cosine round n; blocks what meets its front (the paper)
 };
 
 template <>
-inline constexpr auto kNames<Blocking> = name_list("areas", "two-sided", "one-sided");
+inline constexpr auto kNames<Blocking> = name_list("areas", "one-sided");
 
 /// Whether a surfel is a lobe in the basis, or else numbers of its own.
 bool blocks_by_lobes(Blocking blocking);

@@ -46,33 +46,21 @@ std::vector<double> Matrix::operator*(std::span<const double> vector) const {
   return r;
 }
 
-Matrix Matrix::transposed() const {
-  Matrix r(columns_, rows_);
-  for (int i = 0; i < rows_; ++i) {
-    for (int j = 0; j < columns_; ++j) r(j, i) = (*this)(i, j);
-  }
-  return r;
-}
-
 double dot(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-Matrix solve(const Matrix& a, const Matrix& b) {
+Matrix inverse(const Matrix& a) {
   const Eigen::LLT<Wide> cholesky(widened(a));
   if (cholesky.info() != Eigen::Success) {
     throw Error(ExitCode::run_time, "a matrix of {} rows is not positive definite", a.rows());
   }
-  const Wide x = cholesky.solve(widened(b));
-  Matrix r(b.rows(), b.columns());
+  const Wide x = cholesky.solve(Wide::Identity(a.rows(), a.rows()));
+  Matrix r(a.rows(), a.rows());
   for (int i = 0; i < r.rows(); ++i) {
     for (int j = 0; j < r.columns(); ++j) r(i, j) = static_cast<double>(x(i, j));
   }
   return r;
-}
-
-Matrix inverse(const Matrix& a) {
-  return solve(a, Matrix::identity(a.rows()));
 }
 
 double condition_number(const Matrix& a) {

@@ -166,18 +166,18 @@ Matrix swept_projection() {
   return projection;
 }
 
-void close_diagonals(OperatorTransport& ways, double power) {
-  for (auto& way : ways.neighbours) {
+void close_diagonals(std::vector<SweepWay>& ways, double power) {
+  for (SweepWay& way : ways) {
     const double longer = std::pow(glm::length(glm::dvec3(way.offset)), power);
     for (double& weight : way.blocked_by) weight *= longer;
   }
 }
 
-OperatorTransport sweep_ways() {
-  OperatorTransport ways;
+std::vector<SweepWay> sweep_ways() {
+  std::vector<SweepWay> ways;
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (offset != glm::ivec3(0)) ways.neighbours.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
+    if (offset != glm::ivec3(0)) ways.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
   }
   return ways;
 }
@@ -191,15 +191,15 @@ int way_number(const glm::ivec3& offset) {
 
 }  // namespace
 
-int SweepWays::volume(int axis, const glm::ivec3& offset) const {
+int WayVolumes::volume(int axis, const glm::ivec3& offset) const {
   int before = 0;
   for (int i = 0; i < axis; ++i) before += static_cast<int>(across[i].size());
   return before +
          static_cast<int>(std::ranges::find(across[axis], way_number(offset)) - across[axis].begin());
 }
 
-SweepWays sweep_way_volumes() {
-  SweepWays ways;
+WayVolumes way_volumes() {
+  WayVolumes ways;
   for (const SweepBin& bin : sweep_bins(1)) {
     std::vector<int>& across = ways.across[bin.axis];
     for (const glm::ivec3& offset : bin.offset) {

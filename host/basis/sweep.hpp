@@ -55,26 +55,28 @@ Matrix bin_means(const Basis& basis);
 /// Whether a basis's coefficients are these means already: bins24's.
 bool holds_bin_means(const Basis& basis);
 
-/// What is kept of swept light: the nine spherical harmonics of bands 0 to 2, all that gathering asks of it (gather_form.hpp).
+/// What is kept of swept light: the nine spherical harmonics of bands 0 to 2, all that gathering asks of it: a convolution with the
+/// clamped cosine leaves almost nothing beyond band 2 (Ramamoorthi & Hanrahan 2001, 'An efficient representation for
+/// irradiance environment maps').
 std::unique_ptr<Basis> swept_basis();
 
 /// 9 x 24: the projection on them of light that is the same all over each bin.
 Matrix swept_projection();
 
 /// What blocks along diagonal ways grows by their length to that power: by 1 a wall that fills its faces lets nothing through.
-void close_diagonals(OperatorTransport& ways, double power);
+void close_diagonals(std::vector<SweepWay>& ways, double power);
 
-/// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them: an operator transport without weights.
-OperatorTransport sweep_ways();
+/// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them.
+std::vector<SweepWay> sweep_ways();
 
 /// Volumes of the transmittance of ways that sweep_ways.cl writes: for each axis, x's first, those that directions across it use.
-struct SweepWays {
+struct WayVolumes {
   std::array<std::vector<int>, 3> across;  ///< numbers of sweep_ways()
 
   int count() const { return static_cast<int>(across[0].size() + across[1].size() + across[2].size()); }
   /// The number of the volume that holds the way from `offset` for directions across `axis`.
   int volume(int axis, const glm::ivec3& offset) const;
 };
-SweepWays sweep_way_volumes();
+WayVolumes way_volumes();
 
 }  // namespace clpv

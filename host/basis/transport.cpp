@@ -2,7 +2,6 @@
 #include "basis/transport.hpp"
 
 #include "basis/face_transport.hpp"
-#include "basis/operator_transport.hpp"
 #include "basis/sweep.hpp"
 #include "support/named_enum.hpp"
 
@@ -21,9 +20,8 @@ void look_up_blockers(Transport& transport, const Basis& basis) {
     for (Face& face : faces->faces) face.blocked_by = weights(face.direction);
     return;
   }
-  for (auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
-    if (neighbour.offset != glm::ivec3(0)) neighbour.blocked_by = weights(neighbour.direction);
-  }
+  for (SweepWay& way : std::get<std::vector<SweepWay>>(transport.scheme))
+    way.blocked_by = weights(way.direction);
 }
 
 }  // namespace
@@ -42,7 +40,6 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
   transport.kind = kind;
   transport.lobes = lobes;
   transport.blocking = blocking;
-  transport.gather = Matrix::identity(basis.size());
   switch (kind) {
     case TransportKind::sampled:
       transport.scheme = make_face_transport(basis, FaceFlux::sampled, lobes);
@@ -51,13 +48,8 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
       transport.scheme = make_face_transport(basis, FaceFlux::exact, lobes);
       transport.unit_flux_lobes = true;
       break;
-    case TransportKind::upwind:
-      transport.scheme = make_upwind(basis, transport.gather);
-      transport.gathers_cosine = true;
-      break;
     case TransportKind::sweep:
       transport.scheme = sweep_ways();
-      transport.gathers_cosine = true;
       break;
   }
   look_up_blockers(transport, basis);

@@ -32,43 +32,33 @@ struct FaceTransport {
   Matrix lobes;  ///< N x 6: what 1 W through the face of normal +x -x +y -y +z -z adds to the coefficients
 };
 
-/// A linear operator: `upwind`; and, without weights, the ways of `sweep`. c'(x) = sum_k (1 - B_k) R_k c(x - offset_k).
-struct OperatorTransport {
-  struct Neighbour {
-    glm::ivec3 offset;  ///< how far the light travels, in cells; zero: it stays
-    glm::dvec3
-        direction;  ///< unit; what blocks on the shared face (or edge, or corner) is looked up along it; zero: nothing
-    Matrix weights;                       ///< R_k, N x N
-    std::vector<double> blocked_by = {};  ///< as in Face; empty where nothing blocks
-  };
-  std::vector<Neighbour> neighbours;
+/// One of a sweep's 26 ways into a cell from a neighbour, through the face, edge or corner that the two share.
+struct SweepWay {
+  glm::ivec3 offset;               ///< how far the light travels, in cells
+  glm::dvec3 direction;            ///< unit
+  std::vector<double> blocked_by;  ///< as in Face
 };
 
 enum class TransportKind {
   sampled,  ///< the paper's: fluxes through faces, each seen along one direction
   exact,    ///< fluxes through faces, integrated over each
-  upwind,   ///< an operator of finite volumes
-  sweep,  ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its ways and gather
+  sweep,    ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its ways
 };
 
-/// Whether its scheme is a FaceTransport.
+/// Whether its scheme is a FaceTransport. Then gathering evaluates radiant intensity, E(n) = 4 b(-n) . c / s^2; of swept light
+/// irradiance, E(n) = alpha(-n) . c / s^2, alpha the integrals over the clamped cosine (docs/method.md, 'Gathering').
 constexpr bool has_faces(TransportKind kind) {
   return kind == TransportKind::sampled || kind == TransportKind::exact;
 }
 
 template <>
-inline constexpr auto kNames<TransportKind> = name_list("sampled", "exact", "upwind", "sweep");
+inline constexpr auto kNames<TransportKind> = name_list("sampled", "exact", "sweep");
 
 struct Transport {
   TransportKind kind = TransportKind::sampled;
   LobeOptions lobes;  ///< that it was made with, and so is
-  Blocking blocking = Blocking::two_sided;
-  std::variant<FaceTransport, OperatorTransport> scheme;
-  /// Irradiance on a surface of normal n from coefficients c of its cell: E = gather(n) . c / s^2 [W/m^2],
-  /// where gather(n) = 4 b(-n) for face transports (docs/method.md, 'Gathering'), alpha(-n) K for
-  /// operators; GatherForm says how it is evaluated.
-  bool gathers_cosine = false;  ///< false: 4 b(-n);  true: alpha(-n) K
-  Matrix gather;                ///< K, N x N; used where gathers_cosine
+  Blocking blocking = Blocking::one_sided;
+  std::variant<FaceTransport, std::vector<SweepWay>> scheme;
   /// Lobes carry their nominal flux exactly: injection scales each virtual point light's lobe f to Int f dw =
   /// its flux.
   bool unit_flux_lobes = false;
@@ -77,9 +67,9 @@ struct Transport {
 /// Those that move light in steps: all but the sweep.
 std::vector<TransportKind> stepped_transports();
 
-/// Operators have no lobes: `lobes` does not matter to them. `blocking`: what the geometry volume holds.
+/// A sweep has no lobes: `lobes` does not matter to it. `blocking`: what the geometry volume holds.
 Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptions& lobes = {},
-                         Blocking blocking = Blocking::two_sided);
+                         Blocking blocking = Blocking::one_sided);
 
 /// The six axes in the order used everywhere: +x -x +y -y +z -z.
 extern const std::array<glm::ivec3, 6> kAxes;

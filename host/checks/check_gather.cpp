@@ -7,6 +7,7 @@
 #include <memory>
 #include <random>
 
+#include "basis/sweep.hpp"
 #include "checks/check.hpp"
 #include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
@@ -31,7 +32,6 @@ Volume random_light(int coefficients, std::mt19937& random) {
 
 struct Variant {
   std::string name;
-  double floor = 0;
   LobeOptions lobes = {};
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};
@@ -62,8 +62,7 @@ std::string_view compared_as(const Variant& variant) {
   return sampled_by_device(variant.format) && variant.filtered ? "gather-filter" : "gather";
 }
 
-CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
-                      const Variant& variant) {
+CheckResult check_one(Session& session, const Basis& basis, TransportKind transport, const Variant& variant) {
   std::mt19937 random(11);
   SurfaceImage image = random_surfaces(random);
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
@@ -72,7 +71,6 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
   const GatherOptions options{.grid = kGrid,
                               .gather = variant.gather,
-                              .floor = variant.floor,
                               .lobes = variant.lobes,
                               .table = variant.table,
                               .format = variant.format,
@@ -98,7 +96,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image)) twin.emplace_back(e, 0.0);
   CheckResult result =
       compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), twin, image.view.width,
-                     "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport.kind), variant.name));
+                     "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport), variant.name));
   result.allowed = tolerance_in(compared_as(variant), variant.format);
   return result;
 }
@@ -106,7 +104,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
 /// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
 void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const Transport transport = make_transport(TransportKind::upwind, *basis);
+  constexpr TransportKind transport = TransportKind::sweep;
   for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
     Variant variant{.name = format_name(format), .format = format};
     if (sampled_by_device(format)) {
@@ -119,11 +117,6 @@ void check_formats(Session& session, CheckResults& results) {
     variant.gather = Gathering::visible;
     variant.name += " visible";
     results.push_back(check_one(session, *basis, transport, variant));
-    variant = {.name = format_name(format), .format = format};
-    if (!sampled_by_device(format)) continue;
-    // More coefficients than irradiance needs are packed, from images too.
-    const std::unique_ptr<Basis> large = make_basis("bins24");
-    results.push_back(check_one(session, *large, make_transport(TransportKind::upwind, *large), variant));
   }
 }
 
@@ -133,23 +126,24 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
   CheckResults results;
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
-    // One transport that gathers radiant intensity, one that gathers through its own matrix.
-    results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"plain"}));
-    results.push_back(
-        check_one(session, *basis, make_transport(TransportKind::upwind, *basis), {"floor", 0.15}));
+    results.push_back(check_one(session, *basis, TransportKind::sampled, {"plain"}));
     if (scope.thorough || name == "bins24") {
-      results.push_back(check_one(session, *basis, make_transport(TransportKind::upwind, *basis),
+      results.push_back(check_one(session, *basis, TransportKind::sampled,
                                   {.name = "visible", .gather = Gathering::visible}));
     }
     if (basis->centres().empty()) continue;  // no table
     const LobeOptions functions{.table_functions = true};
-    results.push_back(
-        check_one(session, *basis, make_transport(TransportKind::sampled, *basis), {"table", 0, functions}));
+    results.push_back(check_one(session, *basis, TransportKind::sampled, {"table", functions}));
     if (!session.device().images || (!scope.thorough && basis->size() > 4)) continue;
-    results.push_back(check_one(session, *basis, make_transport(TransportKind::sampled, *basis),
-                                {"table image", 0, functions, TableStorage::image}));
+    results.push_back(
+        check_one(session, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image}));
   }
-  if (scope.beyond_bases) check_formats(session, results);
+  if (!scope.beyond_bases) return results;
+  const std::unique_ptr<Basis> swept = swept_basis();  // all that a sweep leaves to gather
+  results.push_back(check_one(session, *swept, TransportKind::sweep, {"plain"}));
+  results.push_back(
+      check_one(session, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible}));
+  check_formats(session, results);
   return results;
 }
 

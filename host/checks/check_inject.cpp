@@ -144,9 +144,9 @@ std::string blocking_label(Blocking blocking) {
 
 std::string name_of(const Basis& basis, const char* stage, bool orthographic, RsmFormat format,
                     const InjectOptions& options) {
-  return fmt::format("{}/{}/{}{}{}{}{}", basis.name(), stage, orthographic ? "orthographic" : "perspective",
-                     format == RsmFormat::paper ? "/paper" : "", options.trilinear ? "/trilinear" : "",
-                     blocking_label(options.blocking), options.unit_flux_lobes ? "/unit-flux" : "") +
+  return fmt::format("{}/{}/{}{}{}{}", basis.name(), stage, orthographic ? "orthographic" : "perspective",
+                     format == RsmFormat::paper ? "/paper" : "", blocking_label(options.blocking),
+                     options.unit_flux_lobes ? "/unit-flux" : "") +
          (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
          (options.table == TableStorage::buffer ? "" : "/image") +
          (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
@@ -194,18 +194,15 @@ void check_rotated(Session& session, const Basis& basis, bool thorough, CheckRes
   if (session.device().images && (thorough || basis.size() == 4))
     results.push_back(check_light(session, basis, rotated, false, RsmFormat::float32));
   if (!thorough) return;
-  const InjectOptions spread{
-      .grid = kGrid, .trilinear = true, .unit_flux_lobes = true, .lobes = rotated.lobes};
-  const InjectOptions one_sided{.grid = kGrid, .blocking = Blocking::one_sided, .lobes = rotated.lobes};
-  results.push_back(check_light(session, basis, spread, false, RsmFormat::float32));
-  results.push_back(check_geometry(session, basis, one_sided, false, RsmFormat::float32));
+  const InjectOptions scaled{.grid = kGrid, .unit_flux_lobes = true, .lobes = rotated.lobes};
+  results.push_back(check_light(session, basis, scaled, false, RsmFormat::float32));
 }
 
-/// Every other way for volumes to lie in memory. Trilinear injection adds to a cell up to eight times.
+/// Every other way for volumes to lie in memory.
 void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   for (const VolumeFormat& format : other_formats(session.device(), {kGrid + 1, basis->size(), 3})) {
-    const InjectOptions options{.grid = kGrid, .trilinear = true, .format = format};
+    const InjectOptions options{.grid = kGrid, .format = format};
     results.push_back(check_light(session, *basis, options, false, RsmFormat::float32));
     results.push_back(check_geometry(session, *basis, options, true, RsmFormat::float32));
   }
@@ -223,11 +220,10 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
     check_rotated(session, *basis, scope.thorough, results);
     // What hardly depends on the basis, for the small ones: compiling takes most of the time.
     if (basis->size() > 4) continue;
-    const InjectOptions trilinear{.grid = kGrid, .trilinear = true, .unit_flux_lobes = true};
-    const InjectOptions one_sided{.grid = kGrid, .blocking = Blocking::one_sided};
-    results.push_back(check_light(session, *basis, trilinear, false, RsmFormat::float32));
+    const InjectOptions unit_flux{.grid = kGrid, .unit_flux_lobes = true};
+    results.push_back(check_light(session, *basis, unit_flux, false, RsmFormat::float32));
     results.push_back(check_light(session, *basis, plain, false, RsmFormat::paper));
-    results.push_back(check_geometry(session, *basis, one_sided, false, RsmFormat::paper));
+    results.push_back(check_geometry(session, *basis, plain, false, RsmFormat::paper));
   }
   if (!scope.beyond_bases) return results;
   for (const bool orthographic : {true, false}) {
@@ -238,10 +234,8 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
           check_geometry(session, *make_basis("sh2"), areas, orthographic, RsmFormat::float32, stride));
     }
   }
-  for (const bool trilinear : {false, true}) {
-    const InjectOptions options{.grid = kGrid, .trilinear = trilinear};
-    results.push_back(check_light(session, *make_basis("sh2"), options, false, RsmFormat::float32, true));
-  }
+  results.push_back(
+      check_light(session, *make_basis("sh2"), {.grid = kGrid}, false, RsmFormat::float32, true));
   check_formats(session, results);
   return results;
 }

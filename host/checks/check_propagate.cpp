@@ -40,7 +40,7 @@ Volume random_light(const Basis& basis, int n, std::mt19937& random) {
   return volume;
 }
 
-/// Surfels of random direction and cover, two-sided or as areas, on half the corners.
+/// Surfels of random direction and cover, as lobes or areas, on half the corners.
 Volume random_blockers(const Basis& basis, const Transport& transport, int n, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const int numbers = blocking_size(transport.blocking, basis);
@@ -51,10 +51,9 @@ Volume random_blockers(const Basis& basis, const Transport& transport, int n, st
         const glm::dvec3 d =
             glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
         const double cover = std::max(0.0, 1.5 * uniform(random));
-        const std::vector<double> front = basis.clamped_cosine(d), back = basis.clamped_cosine(-d);
+        const std::vector<double> lobe = basis.clamped_cosine(d);
         for (int i = 0; i < numbers; ++i) {
-          const std::size_t k = i;
-          const double share = blocks_by_lobes(transport.blocking) ? front[k] + back[k] : std::abs(d[i]);
+          const double share = blocks_by_lobes(transport.blocking) ? lobe[i] : std::abs(d[i]);
           volume.at(0, i, x, y, z) = static_cast<float>(cover * share);
         }
       }
@@ -101,18 +100,16 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
 void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
                      CheckResults& results) {
   for (const TransportKind kind : stepped_transports()) {
-    if (!full && kind != TransportKind::sampled && kind != TransportKind::upwind) continue;
+    if (!full && kind != TransportKind::sampled) continue;
     const Transport transport = make_transport(kind, basis, lobes);
-    const bool faces = std::holds_alternative<FaceTransport>(transport.scheme);
-    if (!faces && lobes.kind == LobeKind::rotate) continue;  // has no lobes
     const auto add = [&](State state, bool blockers) {
       results.push_back(check_one(session, basis, transport, {.grid = kGrid, .state = state}, blockers));
     };
     // The first step never blocks, so a run with blockers has run both of its kernels. Not so with fluxes, whose first
     // step is a kernel of its own.
-    if (full || !faces) add(State::coefficients, true);
-    if (faces) add(State::fluxes, true);
-    if (faces && full) add(State::fluxes, false);
+    if (full) add(State::coefficients, true);
+    add(State::fluxes, true);
+    if (full) add(State::fluxes, false);
   }
 }
 
@@ -145,7 +142,7 @@ void check_areas(Session& session, bool thorough, CheckResults& results) {
 /// Every other way for volumes to lie in memory: one basis and transport, since these have no part in it.
 void check_formats(Session& session, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const Transport transport = make_transport(TransportKind::upwind, *basis);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
   const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
   for (const VolumeFormat& format : other_formats(session.device(), corners)) {
     results.push_back(check_one(session, *basis, transport, {.grid = kFormatGrid, .format = format}, true));

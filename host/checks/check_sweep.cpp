@@ -35,7 +35,7 @@ struct Case {
     for (const int p : parts)
       directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
     return fmt::format("{}/{}^3/{}{}{}{}{}/{}", basis, grid, directions, blocking ? "" : "/free",
-                       blocked_by == Blocking::areas ? "" : "/two-sided",
+                       blocked_by == Blocking::areas ? "" : "/one-sided",
                        form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", format_name(format));
   }
 };
@@ -101,7 +101,7 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       {.basis = "bins24", .grid = 7, .parts = {1, 1, 2}, .form = SweepForm::planes},
       {.basis = "bins24", .grid = 9, .parts = {2, 1, 2}, .sky = true},
       {.basis = "bins24", .grid = 7, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
-      {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::two_sided},
+      {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::one_sided},
       {.basis = "bins96", .grid = 5, .parts = {3, 2}, .blocking = false},
       {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},
   };

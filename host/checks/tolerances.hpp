@@ -54,7 +54,7 @@ inline constexpr Tolerance kTolerances[] = {
      "numbers of 11 bits: each step rounds what travels and the sum by up to 2^-12 of themselves; measured "
      "1.4e-3"},
     {"inject-half", 4e-3,
-     "numbers of 11 bits, rounded once a phase of trilinear injection, times the square root of the Gram "
+     "numbers of 11 bits, rounded once a surface, times the square root of the Gram "
      "matrix's condition number; measured 5e-4"},
     {"gather-half", 2e-3, "numbers of 11 bits, rounded once, N of mixed sign a direction; measured 4e-4"},
     {"gather-filter", 2e-2,

@@ -44,31 +44,24 @@ std::string unknown(std::string right, double diagonal, const char* known, int f
                     Factor factor) {
   for (int j = first; j < last; ++j) {
     if (std::abs(factor(j)) < kNegligible) continue;
-    right = fmt::format("fma((Lanes)({}), {}{}, {})", float_literal(-factor(j)), known, j, right);
+    right = fmt::format("fma({}, {}{}, {})", float_literal(-factor(j)), known, j, right);
   }
   if (std::abs(diagonal - 1) < kNegligible) return right;
   return fmt::format("{} * ({})", float_literal(1 / diagonal), right);
 }
 
-/// Lanes and Sum, of n numbers.
-std::string sum_types(int n, bool trilinear) {
-  std::string text = fmt::format("typedef float{} Lanes;\ntypedef struct {{\n  Lanes", trilinear ? "8" : "");
-  for (int i = 0; i < n; ++i) text += fmt::format("{} c{}", i == 0 ? "" : ",", i);
-  return text + ";\n} Sum;\n";
-}
-
-/// Lanes, Sum and clpv_project_sum. A^-1 by the two triangles of A = L L^T: rounding then stays where it hardly
+/// clpv_project_sum. A^-1 by the two triangles of A = L L^T: rounding then stays where it hardly
 /// changes the function, which A^-1 written out in single precision does not achieve (srbf14: 20 times worse).
-std::string projection(const Basis& basis, bool trilinear) {
+std::string projection(const Basis& basis) {
   const int n = basis.size();
   const Matrix lower = cholesky(basis.gram());
-  std::string text = sum_types(n, trilinear) + "static inline Sum clpv_project_sum(const Sum a) {\n";
+  std::string text = "static inline Coefficients clpv_project_sum(const Coefficients a) {\n";
   for (int i = 0; i < n; ++i) {
     const auto row = [&](int j) { return lower(i, j); };
-    text += fmt::format("  const Lanes y{} = {};\n", i,
+    text += fmt::format("  const float y{} = {};\n", i,
                         unknown(fmt::format("a.c{}", i), lower(i, i), "y", 0, i, row));
   }
-  text += "  Sum r;\n";
+  text += "  Coefficients r;\n";
   for (int i = n - 1; i >= 0; --i) {
     const auto column = [&](int j) { return lower(j, i); };
     text += fmt::format("  r.c{} = {};\n", i,
@@ -77,24 +70,16 @@ std::string projection(const Basis& basis, bool trilinear) {
   return text + "  return r;\n}\n";
 }
 
-std::string lobe_blockers(const Basis& basis, const LobeOptions& lobes, bool two_sided) {
-  std::string text = lobe_source(basis, lobes, false) + weighted_sum("clpv_energy", basis.integrals());
-  text +=
-      "static inline Coefficients clpv_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
-      "  Coefficients b = clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE);\n";
-  if (two_sided) {
-    text += "  const Coefficients back = clpv_lobe_integrals(-x, -y, -z CLPV_PASS_TABLE);\n";
-    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c{0} += back.c{0};\n", i);
-  }
-  return text +
-         "  return b;\n}\n"
+std::string lobe_blockers(const Basis& basis, const LobeOptions& lobes) {
+  return lobe_source(basis, lobes) + weighted_sum("clpv_energy", basis.integrals()) +
+         "static inline Coefficients clpv_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
+         "  return clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE);\n}\n"
          "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
          "  return clpv_energy(a) > clpv_energy(b) ? a : b;\n}\n";
 }
 
 std::string area_blockers() {
-  return sum_types(3, false) +
-         "static inline Sum clpv_project_sum(const Sum a) { return a; }\n"
+  return "static inline Coefficients clpv_project_sum(const Coefficients a) { return a; }\n"
          "static inline Coefficients clpv_blocker(float x, float y, float z) {\n"
          "  const Coefficients b = {fabs(x), fabs(y), fabs(z)};\n  return b;\n}\n"
          "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
@@ -103,7 +88,7 @@ std::string area_blockers() {
 
 }  // namespace
 
-std::string lobe_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
+std::string lobe_source(const Basis& basis, const LobeOptions& lobes) {
   // The flux of c = A^-1 alpha is integrals . A^-1 alpha, and A is symmetric.
   const std::vector<double> flux = basis.gram_inverse() * std::span<const double>(basis.integrals());
   std::string text = basis.kernel_source();
@@ -114,12 +99,11 @@ std::string lobe_source(const Basis& basis, const LobeOptions& lobes, bool trili
     text += "#define clpv_lobe_integrals clpv_cosine_integrals\n";
   }
   text += weighted_sum("clpv_flux", flux);
-  text += projection(basis, trilinear);
-  return text;
+  return text + projection(basis);
 }
 
-std::string inject_source(const Basis& basis, const LobeOptions& lobes, bool trilinear) {
-  return coefficient_macros(basis.size()) + lobe_source(basis, lobes, trilinear);
+std::string inject_source(const Basis& basis, const LobeOptions& lobes) {
+  return coefficient_macros(basis.size()) + lobe_source(basis, lobes);
 }
 
 std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blocking blocking) {
@@ -127,22 +111,10 @@ std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blockin
   switch (blocking) {
     case Blocking::areas:
       return macros + area_blockers();
-    case Blocking::two_sided:
-      return macros + lobe_blockers(basis, lobes, true);
     case Blocking::one_sided:
-      return macros + lobe_blockers(basis, lobes, false);
+      return macros + lobe_blockers(basis, lobes);
   }
   return macros;
-}
-
-std::size_t inject_keys(int grid, bool trilinear, bool geometry) {
-  const std::size_t n = grid;
-  if (trilinear) {
-    const std::size_t half = n / 2 + 1;
-    return 8 * half * half * half;
-  }
-  const std::size_t keys = geometry ? n + 1 : n;
-  return keys * keys * keys;
 }
 
 }  // namespace clpv

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kAxisNames = "XYZ";
 
 std::string way_macros() {
-  const SweepWays ways = sweep_way_volumes();
+  const WayVolumes ways = way_volumes();
   std::string text = fmt::format("#define CLPV_X_WAYS {}\n", ways.across[0].size());
   int volume = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -85,13 +85,10 @@ int add_faces(Generated& out, const FaceTransport& scheme) {
 }
 
 /// One way a neighbour, through the face, edge or corner that the two cells share.
-int add_neighbours(Generated& out, const OperatorTransport& scheme) {
-  int way = 0;
-  for (const OperatorTransport::Neighbour& neighbour : scheme.neighbours) {
-    if (neighbour.offset == glm::ivec3(0)) continue;
-    add_ways(out, -neighbour.offset, {neighbour.blocked_by}, {way++});
-  }
-  return way;
+int add_neighbours(Generated& out, const std::vector<SweepWay>& ways) {
+  int number = 0;
+  for (const SweepWay& way : ways) add_ways(out, -way.offset, {way.blocked_by}, {number++});
+  return number;
 }
 
 }  // namespace
@@ -101,7 +98,7 @@ TransmitSource transmit_source(const Basis& basis, const Transport& transport) {
   TransmitSource result;
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
   result.ways = faces != nullptr ? add_faces(out, *faces)
-                                 : add_neighbours(out, std::get<OperatorTransport>(transport.scheme));
+                                 : add_neighbours(out, std::get<std::vector<SweepWay>>(transport.scheme));
   result.operations = out.code.operations();
   result.text = coefficient_macros(blocking_size(transport.blocking, basis)) + way_macros(result.ways) +
                 macro_text("CLPV_TRANSMITTANCE", "\n" + out.code.text() + "  Ways ways;\n" + out.assignments);

@@ -12,7 +12,7 @@ namespace clpv {
 
 /// Generated text for kernels/transmit.cl, for one transport and what it is blocked by: way_macros(), and CLPV_TRANSMITTANCE, which
 /// declares `ways` from the cell's corners g0 .. g7 (bit 0 x, 1 y, 2 z).
-/// Ways are numbered as FaceTransport::faces are, or as the neighbours of an OperatorTransport but the cell itself.
+/// Ways are numbered as FaceTransport::faces are, or as sweep_ways() are.
 struct TransmitSource {
   std::string text;
   OperationCount operations;  ///< a cell

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "codegen/linear_code.hpp"
-#include "support/error.hpp"
 
 namespace clpv {
 namespace {
@@ -93,43 +92,13 @@ void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& 
   }
 }
 
-void generate_operators(Generated& out, const Basis& basis, const OperatorTransport& scheme,
-                        const StepForm& form) {
-  const int n = basis.size();
-  const int count = static_cast<int>(scheme.neighbours.size());
-  Matrix rows(n, n * count);
-  std::vector<std::string> inputs;
-  int way = 0;  // in the order of transmit_source()
-  for (int k = 0; k < count; ++k) {
-    const auto& neighbour = scheme.neighbours[k];
-    for (int r = 0; r < n; ++r) {
-      for (int i = 0; i < n; ++i) rows(r, k * n + i) = neighbour.weights(r, i);
-    }
-    const bool blocked = neighbour.offset != glm::ivec3(0);
-    for (const std::string& field : fields(fmt::format("a{}", k), n)) {
-      inputs.push_back(form.blocking && blocked ? fmt::format("({} * t.c{})", field, way) : field);
-    }
-    if (blocked) ++way;
-    add_neighbour(out, neighbour.offset);
-  }
-  for (int r = 0; form.blocking && r < static_cast<int>(inputs.size()); ++r) {
-    bool used = false;
-    for (int row = 0; row < n; ++row) used = used || rows(row, r) != 0;
-    if (used && inputs[r].front() == '(') {
-      inputs[r] = out.arrive.name(inputs[r], {.multiplications = 1});
-    }
-  }
-  out.gains = out.arrive.product(rows, inputs);
-}
-
-std::string expand_function(const Transport& transport, const Basis& basis, State target) {
+std::string expand_function(const FaceTransport& faces, const Basis& basis, State target) {
   if (target == State::coefficients) {
     std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target a) {\n  Coefficients r;\n";
     for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = a.c{0};\n", i);
     return text + "  return r;\n}\n";
   }
-  return LinearCode().function("Coefficients", "clpv_expand", "Target",
-                               std::get<FaceTransport>(transport.scheme).lobes);
+  return LinearCode().function("Coefficients", "clpv_expand", "Target", faces.lobes);
 }
 
 std::string arrive_macro(const Generated& out) {
@@ -143,17 +112,9 @@ std::string arrive_macro(const Generated& out) {
 }  // namespace
 
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
-  const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
-  if (faces == nullptr && (form.source == State::fluxes || form.target == State::fluxes)) {
-    throw Error(ExitCode::usage, "state fluxes: transport '{}' has no faces; allowed: coefficients",
-                name_of(transport.kind));
-  }
+  const auto& faces = std::get<FaceTransport>(transport.scheme);
   Generated out;
-  if (faces != nullptr) {
-    generate_faces(out, *faces, form);
-  } else {
-    generate_operators(out, basis, std::get<OperatorTransport>(transport.scheme), form);
-  }
+  generate_faces(out, faces, form);
   TransportSource result;
   result.source_count = form.source == State::fluxes ? 6 : basis.size();
   result.target_count = form.target == State::fluxes ? 6 : basis.size();
@@ -164,7 +125,7 @@ TransportSource transport_source(const Basis& basis, const Transport& transport,
                 fmt::format("#define CLPV_SOURCE_N {}\n#define CLPV_TARGET_N {}\n", result.source_count,
                             result.target_count) +
                 fmt::format("#define CLPV_EACH_NEIGHBOUR(DO){}\n", out.neighbours) + arrive_macro(out) +
-                expand_function(transport, basis, form.target);
+                expand_function(faces, basis, form.target);
   return result;
 }
 

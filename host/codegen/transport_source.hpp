@@ -35,7 +35,7 @@ struct TransportSource {
   int source_count = 0, target_count = 0, neighbours = 0;
 };
 
-/// Throws Error(usage) for State::fluxes with a transport that has no faces.
+/// Of a transport with faces.
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form);
 
 }  // namespace clpv

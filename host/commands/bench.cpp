@@ -30,7 +30,6 @@ constexpr double kLongestRow = 86400;  // [s]; a day
 
 struct Options {
   std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
-  bool no_tune = false;
   bench::BenchOptions bench;
 };
 
@@ -157,7 +156,6 @@ void run(Options options, Shared& shared) {
   team.agree([&] { check_ranks(team, options); });
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
-  options.bench.suite.tuned = !options.no_tune;
   options.bench.log = options.log;
   for (const std::string& file : {options.out, options.log}) {
     if (!file.empty()) check_writable(file);
@@ -242,7 +240,6 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->add_option("--compare", options->compare,
                    "JSON of an earlier run: prints what changed, and by what spread")
       ->type_name("OLD.json");
-  command->add_flag("--no-tune", options->no_tune, "leave what clpv tune found aside");
   command->add_option("--plot", options->plot, "charts of the rows as SVG and PNG, by matplotlib")
       ->type_name("DIR");
   command->callback([options, &shared] { run(*options, shared); });

@@ -63,8 +63,7 @@ std::span<const Command> all_commands() {
       {"devices", add_devices}, {"render", add_render},       {"sequence", add_sequence},
       {"query", add_query},     {"propagate", add_propagate}, {"check", add_check},
       {"compare", add_compare}, {"reference", add_reference}, {"quality", add_quality},
-      {"basis", add_basis},     {"bench", add_bench},         {"tune", add_tune},
-      {"report", add_report},
+      {"basis", add_basis},     {"bench", add_bench},         {"report", add_report},
   };
   return kCommands;
 }

@@ -47,7 +47,6 @@ void add_reference(CLI::App& app, Shared& shared);
 void add_quality(CLI::App& app, Shared& shared);
 void add_basis(CLI::App& app, Shared& shared);
 void add_bench(CLI::App& app, Shared& shared);
-void add_tune(CLI::App& app, Shared& shared);
 void add_report(CLI::App& app, Shared& shared);
 
 }  // namespace clpv

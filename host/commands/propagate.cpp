@@ -153,7 +153,7 @@ void run(const Options& options, const Shared& shared) {
   const RenderOptions& frame = options.frame;
   const auto basis = make_basis(frame);
   // What blocks here does so in all directions: as coefficients, whatever a frame's blockers are.
-  const Transport transport = make_transport(frame.transport, *basis, frame.lobes(), Blocking::two_sided);
+  const Transport transport = make_transport(frame.transport, *basis, frame.lobes(), Blocking::one_sided);
   const VolumeFormat format = frame.format();
   const reference::Volume light = injected_light(*basis, options);
   Session session(choose_device(shared.device), ProgramCache::of_user());

@@ -43,13 +43,11 @@ void run(const Options& options, const Shared& shared) {
   const RenderRequest& request = options.request;
   MovingScene moving(request.scene, {request.model});
   moving.pose(options.time);
-  RenderOptions resolved = resolve_options(request.frame, moving.scene());
+  const RenderOptions resolved = resolve_options(request.frame, moving.scene());
   const Camera& camera = moving.scene().camera(request.camera);
   tell_of_scene(moving.scene(), camera, resolved);
   Session session(choose_device(shared.device), ProgramCache::of_user());
-  const Tuning tuning =
-      request.no_tune ? Tuning{} : tuning_for(session.device(), resolved, !request.frame.contains("layout"));
-  Frame frame(session, moving.scene(), resolved, tuning);
+  Frame frame(session, moving.scene(), resolved);
   frame.render(camera);
   const std::string table = table_of(points, LightField(session, frame));
   if (options.output.empty()) {

@@ -109,16 +109,14 @@ void run(const Options& options, const Shared& shared) {
   MovingScene moving(request.scene, {request.model});
   const Scene& scene = moving.scene();
   moving.pose(options.time);
-  RenderOptions resolved = resolve_options(request.frame, scene);
+  const RenderOptions resolved = resolve_options(request.frame, scene);
   const Camera& camera = scene.camera(request.camera);
   tell_of_scene(scene, camera, resolved);
   progress.advance();
 
   stats.begin_startup();
   Session session(choose_device(shared.device), ProgramCache::of_user());
-  const Tuning tuning =
-      request.no_tune ? Tuning{} : tuning_for(session.device(), resolved, !request.frame.contains("layout"));
-  Frame frame(session, scene, resolved, tuning);
+  Frame frame(session, scene, resolved);
   stats.end_startup(session);
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
                 session.device().driver);

@@ -15,7 +15,6 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
   command.add_option("--model", request.model, "replaces the scene file's model")->type_name("PATH");
   command.add_option("--camera", request.camera, "camera by name; default: the scene's first")
       ->type_name("NAME");
-  command.add_flag("--no-tune", request.no_tune, "leave what clpv tune found aside");
   add_frame_options(command, request.frame);
 }
 

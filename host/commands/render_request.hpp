@@ -19,7 +19,6 @@ struct RenderRequest {
   std::string scene, model, camera, tonemap = "aces";
   std::optional<float> exposure;
   GivenOptions frame;
-  bool no_tune = false;
 
   float exposure_of(const Scene& shown) const { return exposure.value_or(shown.exposure); }
 };

@@ -47,9 +47,6 @@ Sequence::Sequence(const SequenceOptions& options, const Shared& shared, Team& t
       moving_(options.request.scene, {options.request.model}),
       resolved_(resolve_options(options.request.frame, moving_.scene())),
       device_(device_of_rank(team, shared.device)),
-      tuning_(options.request.no_tune
-                  ? Tuning{}
-                  : tuning_for(device_, resolved_, !options.request.frame.contains("layout"))),
       identity_(moving_.scene(), device_, resolved_) {
   tell_of_scene(moving_.scene(), moving_.scene().camera(options.request.camera), resolved_);
   if (!moving_.moves()) spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
@@ -153,7 +150,7 @@ void Sequence::gather_times() {
 void Sequence::render_one(int number) {
   at_ = number;
   const bool first = !renderer_;
-  if (first) renderer_.emplace(device_, moving_.scene(), resolved_, tuning_);
+  if (first) renderer_.emplace(device_, moving_.scene(), resolved_);
   FrameTimes times = render(renderer_->session, renderer_->frame, number);
   times.first = first;
   times_.add(number, options_.instant(number), times);
@@ -199,7 +196,7 @@ void Sequence::run() {
 void Sequence::measure_stability() {
   Progress progress("stability", static_cast<std::uint64_t>(options_.frames));
   Session session(device_, ProgramCache::of_user());
-  Frame frame(session, moving_.scene(), resolved_, tuning_);
+  Frame frame(session, moving_.scene(), resolved_);
   SequenceStability stability(session, frame, options_.traced);
   for (int i = 0; i < options_.frames; ++i) {
     stop_if_interrupted(fmt::format("the frames are in {}, their stability is not told", options_.output));

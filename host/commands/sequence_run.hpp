@@ -56,8 +56,8 @@ class Sequence {
   struct Renderer {
     Session session;
     Frame frame;
-    Renderer(const Device& device, const Scene& scene, const RenderOptions& options, const Tuning& tuning)
-        : session(device, ProgramCache::of_user()), frame(session, scene, options, tuning) {}
+    Renderer(const Device& device, const Scene& scene, const RenderOptions& options)
+        : session(device, ProgramCache::of_user()), frame(session, scene, options) {}
   };
 
   const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
@@ -81,7 +81,6 @@ class Sequence {
   MovingScene moving_;
   RenderOptions resolved_;
   Device device_;
-  Tuning tuning_;
   FrameIdentity identity_;
   SequenceTimes times_;  ///< of this rank; at rank 0 of frames that were there too
   Clock::time_point times_written_ = Clock::now();

@@ -45,7 +45,6 @@ struct Renderer::State {
   std::optional<MovingScene> posed;  ///< a copy of its own, where something moves
   RenderOptions options;
   Session session;
-  Tuning tuning;
   Frame frame;
   std::optional<LightField> light;  ///< of the last frame, once it is asked for
 
@@ -54,8 +53,7 @@ struct Renderer::State {
         posed(scene.moves() ? std::optional(scene.contents().moving) : std::nullopt),
         options(resolve_options(given.given(), shown())),
         session(choose_device(device), ProgramCache::of_user()),
-        tuning(tuning_for(session.device(), options, !given.given().contains("layout"))),
-        frame(session, shown(), options, tuning) {}
+        frame(session, shown(), options) {}
 
   const Scene& shown() const { return posed ? posed->scene() : file.contents().moving.scene(); }
 

@@ -8,12 +8,6 @@
 namespace clpv {
 namespace {
 
-Transport gathered_transport(const Frame& frame) {
-  return frame.options().transport == TransportKind::sweep
-             ? make_transport(TransportKind::sweep, frame.gathered())
-             : frame.transport();
-}
-
 reference::Volume read_light(Session& session, const Volume& volume, double scale) {
   const std::vector<float> values = volume.read(session);
   reference::Volume made;
@@ -28,7 +22,7 @@ reference::Volume read_light(Session& session, const Volume& volume, double scal
 
 LightField::LightField(Session& session, const Frame& frame)
     : basis_(frame.gathered()),
-      form_(basis_, gathered_transport(frame)),
+      transport_(frame.options().transport),
       options_(gather_options(frame.options())) {
   const GatheredLight light = frame.light();
   if (light.grids.empty())
@@ -45,7 +39,7 @@ LightField::LightField(Session& session, const Frame& frame)
 }
 
 glm::dvec3 LightField::irradiance(const glm::dvec3& position, const glm::dvec3& normal) const {
-  return reference::gather(basis_, form_, options_, cascades_, position, normal);
+  return reference::gather(basis_, transport_, options_, cascades_, position, normal);
 }
 
 bool LightField::reaches(const glm::dvec3& position) const {

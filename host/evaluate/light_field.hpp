@@ -6,7 +6,6 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "basis/gather_form.hpp"
 #include "device/session.hpp"
 #include "pipeline/frame.hpp"
 #include "reference/gather.hpp"
@@ -30,7 +29,7 @@ class LightField {
 
  private:
   const Basis& basis_;
-  GatherForm form_;
+  TransportKind transport_;
   GatherOptions options_;
   std::vector<reference::Volume> volumes_;
   std::vector<std::uint8_t> hidden_;  ///< empty where all cells light a surface

@@ -107,12 +107,6 @@ enum class Bounces { one, two, all };
 template <>
 inline constexpr auto kNames<Bounces> = name_list("1", "2", "all");
 
-/// A virtual point light goes to the cell it is in, or is spread over the eight round it.
-enum class Injection { nearest, trilinear };
-
-template <>
-inline constexpr auto kNames<Injection> = name_list("nearest", "trilinear");
-
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
 
 template <>

@@ -13,11 +13,11 @@ namespace {
 /// Kaplanyan and Dachsbacher's scheme with the paper's basis, step by step as published.
 const std::vector<std::pair<std::string, std::string>>& paper_options() {
   static const std::vector<std::pair<std::string, std::string>> options{
-      {"basis", "srbf8v2"},      {"lambda", "0.25"},       {"lobe", "rotate"},   {"lobe-time", "kernel"},
-      {"evaluate", "table"},     {"table-size", "256"},    {"table", "image"},   {"transport", "sampled"},
-      {"state", "coefficients"}, {"rsm-format", "paper"},  {"blockers", "seen"}, {"blocking", "one-sided"},
-      {"blocker-stride", "1"},   {"injection", "nearest"}, {"gather", "all"},    {"gather-offset", "0.5"},
-      {"gather-floor", "0"},     {"layout", "image"},      {"storage", "half"},
+      {"basis", "srbf8v2"},      {"lambda", "0.25"},      {"lobe", "rotate"},       {"lobe-time", "kernel"},
+      {"evaluate", "table"},     {"table-size", "256"},   {"table", "image"},       {"transport", "sampled"},
+      {"state", "coefficients"}, {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"},
+      {"blocker-stride", "1"},   {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},
+      {"storage", "half"},
   };
   return options;
 }

@@ -83,18 +83,14 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("blockers", o.blockers,
         "what blocks light: the scene's triangles, or what lights and the camera see of it", Named{});
   visit("blocking", o.blocking,
-        "how surfaces block light: by their area across each axis, or by lobes, from both sides or what "
-        "meets their lit one",
+        "how surfaces block light: by their area across each axis, or by lobes what meets their lit side",
         Named{});
   visit("blocker-stride", o.blocker_stride, "of the camera's pixels every so many each way become blockers",
         Range{1, kMostStride});
-  visit("injection", o.injection, "a virtual point light goes to its cell, or is spread over eight", Named{});
   visit("gather", o.gather,
         "cells that a surface is lit by, of the eight round it: all, or those that no triangle hides",
         Named{});
   visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
-  visit("gather-floor", o.gather_floor, "least irradiance, as a share of its mean over all normals",
-        Range{0, 1});
   visit("width", o.width, "image width [pixels]", Range{1, kMostPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMostPixels});
 }

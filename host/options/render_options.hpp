@@ -46,10 +46,8 @@ struct RenderOptions {
   Blockers blockers = Blockers::scene;
   Blocking blocking = Blocking::areas;
   int blocker_stride = 3;
-  Injection injection = Injection::nearest;
   Gathering gather = Gathering::visible;
   double gather_offset = usual_gather_offset(Gathering::visible);
-  double gather_floor = 0;
   int width = 960, height = 540;
 
   VolumeFormat format() const { return {layout, storage}; }

@@ -7,7 +7,6 @@ namespace clpv {
 
 InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes) {
   return {.grid = options.grid,
-          .trilinear = options.injection == Injection::trilinear,
           .blocking = options.blocking,
           .unit_flux_lobes = unit_flux_lobes,
           .lobes = options.lobes(),
@@ -37,7 +36,6 @@ GatherOptions gather_options(const RenderOptions& options) {
   return {.grid = options.grid,
           .gather = options.gather,
           .gather_offset = options.gather_offset,
-          .floor = options.gather_floor,
           .lobes = options.lobes(),
           .table = options.table,
           .format = options.format()};

@@ -3,8 +3,6 @@
 // stages and their twins share it.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <vector>
 
 #include "basis/blocking.hpp"
@@ -16,9 +14,8 @@ namespace clpv {
 struct RenderOptions;
 
 struct InjectOptions {
-  int grid = 32;           ///< cells along each axis
-  bool trilinear = false;  ///< a virtual point light spreads over the 8 cells round it; else its own cell's
-  Blocking blocking = Blocking::two_sided;
+  int grid = 32;  ///< cells along each axis
+  Blocking blocking = Blocking::one_sided;
   bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
   LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
   TableStorage table = TableStorage::buffer;
@@ -26,12 +23,11 @@ struct InjectOptions {
 };
 
 /// What shapes a launch that serves every cell of a grid. Work-items lie along x, y, z; along x each serves `lanes` cells.
+/// Work-groups are rows as long as the grid's, of at most 64 work-items.
 struct StencilOptions {
   int grid = 32;             ///< cells along each axis
   VolumeFormat format = {};  ///< of all volumes a kernel reaches
   int lanes = 0;             ///< 1 or 8; 0: what suits device and format
-  /// Work-group size along x, y; x 0: rows as long as the grid's, at most 64 work-items.
-  std::array<std::size_t, 2> local = {0, 1};
 };
 
 struct PropagateOptions {
@@ -40,11 +36,10 @@ struct PropagateOptions {
   LobeTime lobe_time = LobeTime::host;
   TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
   VolumeFormat format = {};                   ///< of all volumes
-  int lanes = 0;                              ///< as in StencilOptions, and so is `local`
-  std::array<std::size_t, 2> local = {0, 1};
+  int lanes = 0;                              ///< as in StencilOptions
 
   /// Lobes made in the kernel are those of one cell.
-  StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes, local}; }
+  StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes}; }
 };
 
 /// How the work of a sweep is dealt out; light is the same but for rounding.
@@ -68,7 +63,6 @@ struct GatherOptions {
   Gathering gather = Gathering::all;
   double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
   double blend_cells = 2;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
-  double floor = 0;            ///< E is at least so much of its mean over all normals, in [0, 1]
   LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< of the cascades' volumes

@@ -22,7 +22,7 @@ constexpr double kClosedUnderASky = 0.75;
 Transport transport_for(const RenderOptions& options, const Basis& basis, const Scene& scene) {
   Transport transport = make_transport(options, basis);
   if (scene.sky && options.transport == TransportKind::sweep)
-    close_diagonals(std::get<OperatorTransport>(transport.scheme), kClosedUnderASky);
+    close_diagonals(std::get<std::vector<SweepWay>>(transport.scheme), kClosedUnderASky);
   return transport;
 }
 
@@ -51,7 +51,7 @@ void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) 
 
 }  // namespace
 
-Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options, const Tuning& tuning)
+Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
     : session_(session),
       scene_(scene),
       basis_(make_basis(options)),
@@ -60,11 +60,10 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options,
       transport_(transport_for(options, *basis_, scene)),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
-      gatherer_(session, gathered(), swept_ ? make_transport(TransportKind::sweep, *swept_) : transport_,
-                gather_options(options)),
+      gatherer_(session, gathered(), options.transport, gather_options(options)),
       shader_(session),
       lights_(session, scene, buffers_, rasterizer_, options_),
-      cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_, tuning),
+      cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_),
       packed_(options.cascades) {
   require_sweep(options, scene);
   const std::size_t pixels = std::size_t(options.width) * options.height;

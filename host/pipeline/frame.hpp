@@ -18,7 +18,6 @@
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/shade.hpp"
-#include "pipeline/tuning.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -27,8 +26,7 @@ namespace clpv {
 class Frame {
  public:
   /// Throws Error(run_time) where the device's memory does not suffice, naming a grid that would fit.
-  /// `tuning`: launch shapes of propagation, for options.layout; by default the usual ones.
-  Frame(Session& session, const Scene& scene, const RenderOptions& options, const Tuning& tuning = {});
+  Frame(Session& session, const Scene& scene, const RenderOptions& options);
   Frame(const Frame&) = delete;  // its stages refer to its other parts
   Frame& operator=(const Frame&) = delete;
 
@@ -61,7 +59,6 @@ class Frame {
   const Basis& basis() const { return *basis_; }  ///< of injected light
   /// Of light on its way to surfaces: that of injected light, or what a sweep leaves.
   const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
-  const Transport& transport() const { return transport_; }
 
  private:
   void rasterize_camera(const Camera& camera);

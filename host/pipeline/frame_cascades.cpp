@@ -7,18 +7,10 @@
 #include "support/fingerprint.hpp"
 
 namespace clpv {
-namespace {
-
-PropagateOptions tuned(PropagateOptions options, const Tuning& tuning) {
-  options.lanes = tuning.lanes, options.local = tuning.local;
-  return options;
-}
-
-}  // namespace
 
 FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
                              const RenderOptions& options, const Basis& basis, const Basis* swept,
-                             const Transport& transport, FrameLights& lights, const Tuning& tuning)
+                             const Transport& transport, FrameLights& lights)
     : session_(session),
       scene_(scene),
       buffers_(buffers),
@@ -37,7 +29,7 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
     sweeper_.emplace(session, basis, transport, sweep_options(options));
     if (scene.sky) sweeper_->let_in(*scene.sky);
   } else {
-    propagator_.emplace(session, basis, transport, tuned(propagate_options(options), tuning));
+    propagator_.emplace(session, basis, transport, propagate_options(options));
   }
   if (!geometry_.empty() && !blocked_by_view(options))
     blocker_.emplace(session, buffers, options.grid, options.cascades, options.format());

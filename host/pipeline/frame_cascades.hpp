@@ -21,7 +21,6 @@
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/see.hpp"
 #include "pipeline/sweep.hpp"
-#include "pipeline/tuning.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -50,7 +49,7 @@ class FrameCascades {
   /// All must stay as long as this does. `swept`: the basis that a sweep leaves; null without one.
   FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
                 const RenderOptions& options, const Basis& basis, const Basis* swept,
-                const Transport& transport, FrameLights& lights, const Tuning& tuning);
+                const Transport& transport, FrameLights& lights);
 
   /// To be called for each frame, once its lights are prepared: where cascades stand, and what the camera sees.
   void prepare(const std::vector<ClpvGrid>& grids, const Surface& camera);

@@ -78,6 +78,20 @@ void require_memory(const Session& session, const RenderOptions& options, const 
               device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
 }
 
+/// Refuses what needs a transport by faces.
+void require_faces(const RenderOptions& options) {
+  if (has_faces(options.transport)) return;
+  if (options.state != State::coefficients) {
+    throw Error(ExitCode::usage, "state: found '{}' with transport '{}', allowed: coefficients",
+                name_of(options.state), name_of(options.transport));
+  }
+  if (options.lobe_time != LobeTime::host) {
+    throw Error(ExitCode::usage,
+                "lobe-time: found '{}' with transport '{}', which has no lobes; allowed: host",
+                name_of(options.lobe_time), name_of(options.transport));
+  }
+}
+
 /// Refuses what a transport cannot do, and what the scene's triangles cannot.
 void require_compatible(const RenderOptions& options) {
   if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
@@ -93,19 +107,6 @@ void require_compatible(const RenderOptions& options) {
 }
 
 }  // namespace
-
-void require_faces(const RenderOptions& options) {
-  if (has_faces(options.transport)) return;
-  if (options.state != State::coefficients) {
-    throw Error(ExitCode::usage, "state: found '{}' with transport '{}', allowed: coefficients",
-                name_of(options.state), name_of(options.transport));
-  }
-  if (options.lobe_time != LobeTime::host) {
-    throw Error(ExitCode::usage,
-                "lobe-time: found '{}' with transport '{}', which has no lobes; allowed: host",
-                name_of(options.lobe_time), name_of(options.transport));
-  }
-}
 
 VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
   return {options.grid, basis.size(), 3};

@@ -29,9 +29,6 @@ int injected_volumes(const RenderOptions& options);
 /// Geometry volumes that a frame keeps: what the scene blocks, a cascade; else one; none without occlusion.
 int geometry_volumes(const RenderOptions& options);
 
-/// Throws Error(usage) for a state or a time of lobes that needs faces, with a transport that has none.
-void require_faces(const RenderOptions& options);
-
 /// `options` themselves. Throws Error(usage) for those that contradict each other, Error(device) for volumes that the device
 /// cannot hold at all, Error(run_time) for a grid too large for it, naming the largest that fits.
 const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis);

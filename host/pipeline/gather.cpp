@@ -11,9 +11,9 @@ namespace clpv {
 namespace {
 
 /// Gathering by the cosine evaluates no basis function.
-LobeOptions looked_up(const Transport& transport, const GatherOptions& options) {
+LobeOptions looked_up(TransportKind transport, const GatherOptions& options) {
   LobeOptions lobes = options.lobes;
-  lobes.table_functions = lobes.table_functions && !transport.gathers_cosine;
+  lobes.table_functions = lobes.table_functions && has_faces(transport);
   return lobes;
 }
 
@@ -23,23 +23,21 @@ std::string cascade_macro(std::size_t cascades) {
   return text + "\n";
 }
 
-ProgramSource source_of(const GatherForm& form, const GatherOptions& options, bool packed,
-                        const LookupTable& table) {
+ProgramSource source_of(const Basis& basis, TransportKind transport, const GatherOptions& options,
+                        bool packed, const LookupTable& table) {
   ProgramSource source;
   source.file = "gather.cl";
   source.literals.integer("CLPV_GRID", options.grid)
       .flag("CLPV_PACKED", packed)
       .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
-      .integer("CLPV_PAIRS", packed_pairs(form))
+      .integer("CLPV_PAIRS", packed_pairs(basis))
       .real("CLPV_GATHER_OFFSET", options.gather_offset)
-      .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells)
-      .flag("CLPV_FLOORED", options.floor > 0);
+      .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
   if (!packed) {
     add_format_literals(source.literals, options.format);
     source.literals.flag("CLPV_FILTERED", options.filtered);
   }
-  source.generated =
-      table.macros() + gather_source(form, packed, table.exists(), options.lobes, options.floor);
+  source.generated = table.macros() + gather_source(basis, transport, options.lobes, table.exists());
   return source;
 }
 
@@ -51,28 +49,25 @@ void require_sound(const GatherOptions& options) {
   if (!(options.blend_cells > 0)) {
     throw Error(ExitCode::usage, "gather: blend over {} cells; more than 0 allowed", options.blend_cells);
   }
-  if (!(options.floor >= 0 && options.floor <= 1)) {
-    throw Error(ExitCode::usage, "gather: floor {} outside 0..1", options.floor);
-  }
 }
 
 }  // namespace
 
-Gatherer::Gatherer(Session& session, const Basis& basis, const Transport& transport,
+Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport,
                    const GatherOptions& options)
     : session_(session),
       options_(options),
       coefficients_(basis.size()),
-      form_(basis, transport),
+      pairs_(packed_pairs(basis)),
       table_(session, basis, looked_up(transport, options), options.table, TableUse::functions),
-      source_(source_of(form_, options, packs(), table_)),
+      source_(source_of(basis, transport, options, packs(), table_)),
       stencil_(session.device(), {.grid = options.grid,
                                   .format = options.format,
                                   .lanes = preferred_row_lanes(session.device(), options.format)}) {
   require_sound(options);
   if (!packs()) return;
-  ProgramSource pack{"pack.cl", stencil_.literals(), pack_source(basis, form_)};
-  pack.literals.integer("CLPV_PAIRS", packed_pairs(form_));
+  ProgramSource pack{"pack.cl", stencil_.literals(), pack_source(basis)};
+  pack.literals.integer("CLPV_PAIRS", pairs_);
   pack_.emplace(session, pack, "pack");
   gather_.try_emplace(0, session, source_, "gather");
 }
@@ -99,7 +94,7 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
 void Gatherer::reserve(std::size_t cascades) {
   session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
   if (!packs()) return;
-  const std::size_t n = options_.grid, pairs = packed_pairs(form_);
+  const std::size_t n = options_.grid, pairs = pairs_;
   session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
 }
 

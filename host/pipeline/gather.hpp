@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "basis/basis.hpp"
-#include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
 #include "device/kernel.hpp"
 #include "device/session.hpp"
@@ -21,7 +20,7 @@
 
 namespace clpv {
 
-/// The gathering of one basis and transport. E(n) = g(n) . M c / s^2 by GatherForm, c the volume
+/// The gathering of one basis and transport. E(n) = g(n) . c / s^2 (has_faces), c the volume
 /// sampled trilinearly `gather_offset` cells off the surface, negative E clamped at 0.
 ///
 /// Which cascade lights a surface depends on the surface point alone: cascade i has the share
@@ -31,7 +30,7 @@ namespace clpv {
 class Gatherer {
  public:
   /// Throws Error(usage) for options out of range.
-  Gatherer(Session& session, const Basis& basis, const Transport& transport, const GatherOptions& options);
+  Gatherer(Session& session, const Basis& basis, TransportKind transport, const GatherOptions& options);
 
   /// Finest cascade first; `accumulated` a volume a grid.
   /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
@@ -45,8 +44,8 @@ class Gatherer {
 
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
-  /// Images are sampled as they are, unless they hold more than irradiance needs, or cells are chosen one by one.
-  bool packs() const { return !sampled_by_device(options_.format) || form_.projects() || sees(); }
+  /// Images are sampled as they are, unless cells are chosen one by one.
+  bool packs() const { return !sampled_by_device(options_.format) || sees(); }
   Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;
@@ -55,8 +54,7 @@ class Gatherer {
 
   Session& session_;
   GatherOptions options_;
-  int coefficients_;
-  GatherForm form_;
+  int coefficients_, pairs_;
   LookupTable table_;
   ProgramSource source_;
   Stencil stencil_;  ///< of packing

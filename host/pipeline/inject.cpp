@@ -12,7 +12,6 @@ namespace {
 // Segments are short enough that a wall seen by a whole view still makes many work-items, and few enough that
 // one work-item joins those of a single cell.
 constexpr std::size_t kLeastSegment = 32, kMostBlocks = 16384;
-constexpr std::size_t kPhases = 8;     // of trilinear injection
 constexpr std::size_t kCpuStrip = 32;  // texels a work-item finds the cells of: a CPU vectorises over them
 const cl::NDRange kSegments(16);  // long and few work-items: small groups let all compute units have some
 
@@ -45,16 +44,14 @@ bool Injector::looks_up(Kind kind) const {
 Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   const Kind kind = variant.kind;
   const bool light = kind == Kind::light;
-  const Literals both = Literals()
-                            .flag("CLPV_GEOMETRY", !light)
-                            .flag("CLPV_TRILINEAR", light && options_.trilinear)
-                            .flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
+  const Literals both =
+      Literals().flag("CLPV_GEOMETRY", !light).flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
   ProgramSource find{"find_cells.cl", both, {}}, sum{"inject.cl", both, {}};
   find.literals.number("CLPV_STRIP", strip_).flag("CLPV_POINTS", variant.points);
   sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
   add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
   sum.generated = (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
-                  (light ? inject_source(basis_, options_.lobes, options_.trilinear)
+                  (light ? inject_source(basis_, options_.lobes)
                          : blocker_source(basis_, options_.lobes, options_.blocking));
   return {Kernel(session_, find, "find_cells"), Kernel(session_, sum, "sum_segments"),
           Kernel(session_, sum, "join_segments")};
@@ -68,12 +65,10 @@ Injector::Kernels& Injector::kernels(const Variant& variant) {
 
 void Injector::reserve(std::size_t texels) {
   sorter_.reserve(texels);
-  const std::size_t lanes = options_.trilinear ? 8 : 1,
-                    coefficients = static_cast<std::size_t>(basis_.size());
+  const auto coefficients = static_cast<std::size_t>(basis_.size());
   const std::size_t blocks = block_count(texels);
-  session_.reserve(details_, texels * (options_.trilinear ? 3 : 1) * sizeof(cl_float), "injection, texels");
-  session_.reserve(partials_, 2 * blocks * 3 * coefficients * lanes * sizeof(cl_float),
-                   "injection, partial sums");
+  session_.reserve(shares_, texels * sizeof(cl_float), "injection, texels");
+  session_.reserve(partials_, 2 * blocks * 3 * coefficients * sizeof(cl_float), "injection, partial sums");
   session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
 }
 
@@ -84,7 +79,7 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, i
 
 void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
                             const Volume& volume) {
-  const bool light = kind == Kind::light, trilinear = light && options_.trilinear;
+  const bool light = kind == Kind::light;
   const auto step = static_cast<unsigned>(stride);
   const std::size_t width = CLPV_TAKEN(surface.view.width, step),
                     height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
@@ -93,25 +88,27 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
   const bool points = surface.position.exists();
   Kernels& kernel = kernels({kind, surface.format, points});
   kernel.find_cells.set(surface.view, grid, points ? surface.position : surface.depth, surface.normal,
-                        surface.colour, surface.colour_scale, sorter_.keys(), details_);
-  if (!light) kernel.find_cells.add(step);
+                        surface.colour, surface.colour_scale, sorter_.keys());
+  if (!light) kernel.find_cells.add(shares_, step);
   kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
                            strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
-  sorter_.sort(texels, inject_keys(options_.grid, trilinear, !light));
+  const auto keys = static_cast<std::size_t>(options_.grid + (light ? 0 : 1));
+  sorter_.sort(texels, keys * keys * keys);
 
   const auto length = static_cast<cl_uint>(segment_length(texels)),
              blocks = static_cast<cl_uint>(block_count(texels));
-  for (cl_uint phase = 0; phase < (trilinear ? kPhases : 1); ++phase) {
-    kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, phase, surface.normal,
-                            surface.colour, surface.colour_scale, details_, static_cast<cl_uint>(texels),
-                            surface.view.width, volume.memory(), partials_, firsts_);
-    if (!light) kernel.sum_segments.add(step);
-    if (looks_up(kind)) table_.add_to(kernel.sum_segments);
-    kernel.sum_segments.launch(cl::NDRange(blocks), kSegments);
-    kernel.join_segments
-        .set(sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(), partials_, firsts_)
-        .launch(cl::NDRange(blocks), kSegments);
+  kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, surface.normal);
+  if (light) {
+    kernel.sum_segments.add(surface.colour, surface.colour_scale);
+  } else {
+    kernel.sum_segments.add(shares_, surface.view.width, step);
   }
+  kernel.sum_segments.add(volume.memory(), partials_, firsts_);
+  if (looks_up(kind)) table_.add_to(kernel.sum_segments);
+  kernel.sum_segments.launch(cl::NDRange(blocks), kSegments);
+  kernel.join_segments
+      .set(sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(), partials_, firsts_)
+      .launch(cl::NDRange(blocks), kSegments);
 }
 
 void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {

@@ -63,7 +63,7 @@ class Injector {
   std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
   std::map<Variant, Kernels> kernels_;
   Accumulator accumulator_;
-  Buffer details_, partials_, firsts_;
+  Buffer shares_, partials_, firsts_;
 };
 
 }  // namespace clpv

@@ -42,7 +42,7 @@ RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport
                            TableStorage storage)
     : table_(session, basis, transport.lobes, storage, TableUse::lobes),
       functions_(session, basis, transport.lobes, storage, TableUse::functions),
-      text_(lobe_source(basis, transport.lobes, false) + functions_source(basis, transport.lobes)),
+      text_(lobe_source(basis, transport.lobes) + functions_source(basis, transport.lobes)),
       unit_flux_(transport.unit_flux_lobes),
       evaluates_(transport.kind == TransportKind::sampled) {
   if (state == State::fluxes) {

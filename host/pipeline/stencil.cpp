@@ -17,15 +17,12 @@ std::size_t items_per_row(int grid, int lanes) {
 
 Stencil::Stencil(const Device& device, const StencilOptions& options) : options_(options) {
   if (options_.lanes == 0) options_.lanes = preferred_lanes(device, options.format);
-  if (options_.local[0] == 0)
-    options_.local[0] = std::min(items_per_row(options.grid, options_.lanes), kWidestGroup);
+  group_ = std::min(items_per_row(options.grid, options_.lanes), kWidestGroup);
 }
 
 Literals Stencil::literals() const {
   Literals literals;
-  literals.integer("CLPV_GRID", options_.grid)
-      .integer("CLPV_LOCAL_X", options_.local[0])
-      .integer("CLPV_LOCAL_Y", options_.local[1]);
+  literals.integer("CLPV_GRID", options_.grid).integer("CLPV_LOCAL_X", group_);
   add_format_literals(literals, options_.format, options_.lanes);
   return literals;
 }
@@ -33,7 +30,7 @@ Literals Stencil::literals() const {
 void Stencil::launch(Kernel& kernel, int channels) const {
   const std::size_t n = options_.grid;
   kernel.launch({items_per_row(options_.grid, options_.lanes), n, n * static_cast<std::size_t>(channels)},
-                {options_.local[0], options_.local[1], 1});
+                {group_, 1, 1});
 }
 
 }  // namespace clpv

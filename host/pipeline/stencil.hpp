@@ -2,7 +2,6 @@
 // Launching kernels that serve every cell of a grid (propagate.cl, transmit.cl).
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "device/kernel.hpp"
@@ -16,15 +15,14 @@ class Stencil {
  public:
   Stencil(const Device& device, const StencilOptions& options);
 
-  int lanes() const { return options_.lanes; }
-  const std::array<std::size_t, 2>& local() const { return options_.local; }
-  /// CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X, CLPV_LOCAL_Y and the format's.
+  /// CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X and the format's.
   Literals literals() const;
   /// Once through the grid for each of `channels`, which are stacked along z.
   void launch(Kernel& kernel, int channels) const;
 
  private:
   StencilOptions options_;
+  std::size_t group_;  ///< work-items along x
 };
 
 }  // namespace clpv

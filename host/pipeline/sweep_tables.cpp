@@ -35,7 +35,7 @@ bool swept_in_place(const Basis& basis, const VolumeFormat& injected) {
 }
 
 std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected) {
-  const SweepWays ways = sweep_way_volumes();
+  const WayVolumes ways = way_volumes();
   const std::vector<SweepBin> bins = sweep_bins(1);
   std::vector<ClpvSweepBin> table;
   for (std::size_t b = 0; b < bins.size(); ++b) {

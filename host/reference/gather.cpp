@@ -91,23 +91,24 @@ std::vector<double> sample(const Volume& volume, int channel, const Around& arou
   return c;
 }
 
-/// M^T g(n): what irradiance is in each coefficient, per s^2.
-std::vector<double> gather_weights(const Basis& basis, const GatherForm& form, const LobeOptions& lobes,
+/// g(n): what irradiance is in each coefficient, per s^2.
+std::vector<double> gather_weights(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
                                    const glm::dvec3& normal) {
-  const bool looked_up = !form.integrates() && !form.projects();
-  const std::vector<double> f = looked_up ? evaluate(basis, lobes, -normal) : form.evaluate(-normal);
-  return form.matrix().transposed() * std::span<const double>(form.windowed(f));
+  std::vector<double> weights(static_cast<std::size_t>(basis.size()));
+  if (!has_faces(transport)) {
+    basis.cosine_integrals(-normal, weights);
+    return weights;
+  }
+  weights = evaluate(basis, lobes, -normal);
+  for (double& weight : weights) weight *= 4;
+  return weights;
 }
 
-/// E s^2 of one volume, clamped and floored.
-glm::dvec3 irradiance(const Volume& volume, const Around& around, const std::vector<double>& weights,
-                      const std::vector<double>& floor) {
+/// E s^2 of one volume, clamped.
+glm::dvec3 irradiance(const Volume& volume, const Around& around, const std::vector<double>& weights) {
   glm::dvec3 e(0);
-  for (int channel = 0; channel < 3; ++channel) {
-    const std::vector<double> c = sample(volume, channel, around);
-    const double least = std::max(0.0, dot(floor, c));
-    e[channel] = std::max(least, dot(weights, c));
-  }
+  for (int channel = 0; channel < 3; ++channel)
+    e[channel] = std::max(0.0, dot(weights, sample(volume, channel, around)));
   return e;
 }
 
@@ -123,12 +124,10 @@ double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double 
 
 }  // namespace
 
-glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOptions& options,
+glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
                   const glm::dvec3& normal) {
-  const std::vector<double> weights = gather_weights(basis, form, options.lobes, normal);
-  std::vector<double> floor = form.matrix().transposed() * std::span<const double>(form.mean());
-  for (double& weight : floor) weight *= options.floor;
+  const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
   glm::dvec3 e(0);
   double left = 1;
   for (const Cascade& cascade : cascades) {
@@ -140,22 +139,21 @@ glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOption
     const double area = double{grid.cell} * grid.cell;
     Around cells = around(point, options.grid);
     if (options.gather == Gathering::visible) hide(cells, point, options.grid, cascade.hidden);
-    e += share * left / area * irradiance(*cascade.accumulated, cells, weights, floor);
+    e += share * left / area * irradiance(*cascade.accumulated, cells, weights);
     left *= 1 - share;
   }
   return e;
 }
 
-std::vector<glm::dvec3> gather(const Basis& basis, const Transport& transport, const GatherOptions& options,
+std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                                const std::vector<Cascade>& cascades, const SurfaceImage& camera) {
-  const GatherForm form(basis, transport);
   std::vector<glm::dvec3> image(camera.depth.size(), glm::dvec3(0));
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
     const auto x = static_cast<double>(pixel % camera.view.width),
                y = static_cast<double>(pixel / camera.view.width);
-    image[pixel] = gather(basis, form, options, cascades, surface_position(camera.view, x, y, depth),
+    image[pixel] = gather(basis, transport, options, cascades, surface_position(camera.view, x, y, depth),
                           glm::dvec3(camera.normal[pixel]));
   }
   return image;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "basis/basis.hpp"
-#include "basis/gather_form.hpp"
 #include "basis/transport.hpp"
 #include "image/surface_image.hpp"
 #include "kernels/shared/grid.h"
@@ -25,11 +24,11 @@ struct Cascade {
 
 /// Irradiance [W/m^2] of red, green, blue that the cascades, finest first, put on a surface at `position` [m]
 /// with unit `normal`. As Gatherer, one surface at a time.
-glm::dvec3 gather(const Basis& basis, const GatherForm& form, const GatherOptions& options,
+glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position, const glm::dvec3& normal);
 
 /// The same for every pixel of what a camera sees, row 0 first; 0 where there is no surface.
-std::vector<glm::dvec3> gather(const Basis& basis, const Transport& transport, const GatherOptions& options,
+std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                                const std::vector<Cascade>& cascades, const SurfaceImage& camera);
 
 }  // namespace clpv::reference

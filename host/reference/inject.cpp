@@ -85,7 +85,6 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
       continue;
     }
     add(blocking, 0, corner, share, lobes(normal));
-    if (options.blocking == Blocking::two_sided) add(blocking, 0, corner, share, lobes(-normal));
   }
   return blocking;
 }
@@ -116,17 +115,7 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
     const std::vector<double> c = lobe(basis, lobes, vector(rsm.normal[pixel]), options.unit_flux_lobes);
     const glm::dvec3 point = grid_point(rsm, pixel, grid, true);
     for (int channel = 0; channel < 3; ++channel) {
-      const double intensity = flux[channel] / std::numbers::pi;
-      if (!options.trilinear) {
-        add(light, channel, glm::ivec3(glm::floor(point)), intensity, c);
-        continue;
-      }
-      const glm::ivec3 base(glm::floor(point - 0.5));
-      for (int corner = 0; corner < 8; ++corner) {
-        const glm::ivec3 cell = base + glm::ivec3(corner % 2, corner / 2 % 2, corner / 4);
-        const glm::dvec3 near = 1.0 - glm::abs(point - 0.5 - glm::dvec3(cell));
-        add(light, channel, cell, intensity * near.x * near.y * near.z, c);
-      }
+      add(light, channel, glm::ivec3(glm::floor(point)), flux[channel] / std::numbers::pi, c);
     }
   }
 }

@@ -2,7 +2,6 @@
 #include "reference/propagate.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,20 +46,16 @@ Plane transmittances(const Volume& geometry, const glm::ivec3& side, const std::
   return open;
 }
 
-/// The ways into a cell, each with what it lets through: `shares` is empty where nothing blocks, `shares[w]` where nothing
-/// blocks on that way.
+const FaceTransport& faces_of(const Transport& transport) {
+  return std::get<FaceTransport>(transport.scheme);
+}
+
+/// The ways into a cell, each with what it lets through; empty where nothing blocks.
 std::vector<Plane> shares_of(const Transport& transport, const Volume* geometry) {
   std::vector<Plane> shares;
   if (geometry == nullptr) return shares;
-  if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-    for (const Face& face : faces->faces)
-      shares.push_back(transmittances(*geometry, face.normal, face.blocked_by));
-    return shares;
-  }
-  for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
-    const bool blocks = neighbour.offset != glm::ivec3(0);
-    shares.push_back(blocks ? transmittances(*geometry, -neighbour.offset, neighbour.blocked_by) : Plane());
-  }
+  for (const Face& face : faces_of(transport).faces)
+    shares.push_back(transmittances(*geometry, face.normal, face.blocked_by));
   return shares;
 }
 
@@ -88,7 +83,7 @@ void add(const Plane& light, double factor, int channel, int i, Volume& to) {
 }
 
 void block(Plane& light, const std::vector<Plane>& shares, std::size_t way) {
-  if (shares.empty() || shares[way].empty()) return;
+  if (shares.empty()) return;
   for (std::size_t at = 0; at < light.size(); ++at) light[at] *= shares[way][at];
 }
 
@@ -106,28 +101,11 @@ void add_faces(const FaceTransport& scheme, const Volume& from, const std::vecto
   }
 }
 
-void add_operators(const OperatorTransport& scheme, const Volume& from, const std::vector<Plane>& shares,
-                   int channel, Volume& to) {
-  for (std::size_t w = 0; w < scheme.neighbours.size(); ++w) {
-    const OperatorTransport::Neighbour& neighbour = scheme.neighbours[w];
-    for (int i = 0; i < from.coefficients; ++i) {
-      Plane arrived = arriving(from, channel, neighbour.offset, neighbour.weights.row(i));
-      block(arrived, shares, w);
-      add(arrived, 1, channel, i, to);
-    }
-  }
-}
-
 Volume step(const Transport& transport, const Volume& travelling, const std::vector<Plane>& shares,
             bool clamp) {
   Volume next(travelling.n, travelling.coefficients, travelling.channels);
-  for (int channel = 0; channel < next.channels; ++channel) {
-    if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-      add_faces(*faces, travelling, shares, clamp, channel, next);
-    } else {
-      add_operators(std::get<OperatorTransport>(transport.scheme), travelling, shares, channel, next);
-    }
-  }
+  for (int channel = 0; channel < next.channels; ++channel)
+    add_faces(faces_of(transport), travelling, shares, clamp, channel, next);
   return next;
 }
 
@@ -162,26 +140,19 @@ std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
 
 std::array<double, 3> leaving(const Basis& basis, const Transport& transport, const Volume& travelling) {
   std::array<double, 3> lost{};
+  const FaceTransport& faces = faces_of(transport);
   const auto outside = [&](const glm::ivec3& p) { return !travelling.inside(p.x, p.y, p.z); };
   for_each_cell(travelling.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < travelling.channels; ++channel) {
-      double& sum = lost[channel];
-      std::optional<std::vector<double>> c;
-      const auto here = [&]() -> const std::vector<double>& {
-        return c ? *c : c.emplace(cell(travelling, channel, p));
-      };
-      if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-        for (const Face& face : faces->faces) {
-          if (!outside(p + face.travel)) continue;
-          const double flux = flux_through(face, here(), true);
-          for (int i = 0; i < basis.size(); ++i) {
-            sum += flux * faces->lobes(i, column_of(face.normal)) * basis.integrals()[i];
-          }
-        }
-      } else {
-        for (const auto& neighbour : std::get<OperatorTransport>(transport.scheme).neighbours) {
-          if (outside(p + neighbour.offset)) sum += basis.energy(neighbour.weights * here());
-        }
+      double& sum = lost[static_cast<std::size_t>(channel)];
+      std::vector<double> here;
+      for (const Face& face : faces.faces) {
+        if (!outside(p + face.travel)) continue;
+        if (here.empty()) here = cell(travelling, channel, p);
+        const double flux = flux_through(face, here, true);
+        for (int i = 0; i < basis.size(); ++i)
+          sum +=
+              flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[static_cast<std::size_t>(i)];
       }
     }
   });

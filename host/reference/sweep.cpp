@@ -57,7 +57,7 @@ class Sweep {
         for (int bin = 0; bin < kSweepBins; ++bin) sources_.at(channel, bin, p.x, p.y, p.z) = in[bin];
       }
     });
-    let_through(std::get<OperatorTransport>(transport.scheme));
+    let_through(std::get<std::vector<SweepWay>>(transport.scheme));
   }
 
   Volume direction(int bin, const SweepBin& of, int part) const {
@@ -99,9 +99,9 @@ class Sweep {
     return static_cast<std::size_t>(offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1));
   }
 
-  void let_through(const OperatorTransport& ways) {
+  void let_through(const std::vector<SweepWay>& ways) {
     open_.assign(27, Volume(n_, 1, 1));
-    for (const OperatorTransport::Neighbour& way : ways.neighbours) {
+    for (const SweepWay& way : ways) {
       Volume& open = open_[way_of(way.offset)];
       for_each_cell([&](const glm::ivec3& p) {
         open.at(0, 0, p.x, p.y, p.z) = cascade_.geometry == nullptr

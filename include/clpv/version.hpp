@@ -5,7 +5,7 @@
 
 namespace clpv {
 
-/// That of the library linked, as "0.2.0". What is kept between runs (references, tunings) is kept for one version.
+/// That of the library linked, as "0.2.0". What is kept between runs (references, programs) is kept for one version.
 std::string version();
 
 }  // namespace clpv

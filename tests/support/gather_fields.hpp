@@ -20,18 +20,6 @@ inline constexpr float kCell = 0.5f;    // of the finest cascade [m]
 inline constexpr double kFloat = 2e-6;  // relative: a dozen roundings of float32
 inline constexpr unsigned kPixels = 241;
 
-/// What E = 4 I(-n) / s^2 needs to know of a transport.
-inline Transport intensity_transport() {
-  return {};
-}
-
-inline Transport cosine_transport(const Matrix& k) {
-  Transport transport;
-  transport.gathers_cosine = true;
-  transport.gather = k;
-  return transport;
-}
-
 /// Grid `c`, its middle at the origin; each next cascade has cells twice as large.
 inline ClpvGrid grid_of(int c) {
   ClpvGrid grid{};
@@ -102,7 +90,7 @@ struct Both {
 };
 
 /// Gathers `image` from volumes of grid_of(0), grid_of(1), ... `hidden`: bytes as SceneSight keeps them, for what is visible.
-inline Both gather(const Basis& basis, const Transport& transport, GatherOptions options,
+inline Both gather(const Basis& basis, TransportKind transport, GatherOptions options,
                    const std::vector<reference::Volume>& full, const SurfaceImage& image,
                    const std::vector<std::uint8_t>& hidden = {}) {
   options.grid = kGrid;
