@@ -11,6 +11,7 @@
 #include "options/presets.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
