@@ -17,6 +17,7 @@
 #include "pipeline/shade.hpp"
 #include "pipeline/surface.hpp"
 #include "scene/scene.hpp"
+#include "scene/sky.hpp"
 
 namespace clpv {
 

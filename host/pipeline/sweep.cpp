@@ -103,7 +103,7 @@ double Sweeper::bytes(const SweepOptions& options) {
     if (options.bounces == Bounces::two) shells += static_cast<double>(shell_bytes(options, kFirstParts, c));
   }
   const double ways =
-      options.blocking ? static_cast<double>(options.parts.size()) * sweep_way_volumes().count() : 0;
+      options.blocking ? static_cast<double>(options.parts.size()) * way_volumes().count() : 0;
   const int lights = once ? 1 : (options.bounces == Bounces::two ? 2 : 3);
   return (3 * lights * kSweepBins + ways) * volume + most * 2 * plane * (sizeof(float) + number) + shells +
          Bouncer::bytes(options);
@@ -128,7 +128,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   if (options.blocking)
     ways_.emplace(session, volumes_.program("sweep_ways.cl", sweep_ways_text(basis, transport)),
                   "sweep_ways");
-  const std::size_t ways = options.blocking ? sweep_way_volumes().count() : 1;
+  const std::size_t ways = options.blocking ? way_volumes().count() : 1;
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     through_.push_back(volumes_.make(ways, "transmittance to sweep through"));
   passes_ = make_passes(options.parts);
