@@ -9,6 +9,7 @@
 
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
+#include "kernels/shared/light.h"
 #include "options/render_options.hpp"
 #include "pipeline/cached.hpp"
 #include "pipeline/frame_emission.hpp"
@@ -18,6 +19,7 @@
 #include "pipeline/surface.hpp"
 #include "scene/scene.hpp"
 #include "scene/sky.hpp"
+#include "volume/volume_format.hpp"
 
 namespace clpv {
 
@@ -88,5 +90,15 @@ class FrameLights {
   float scale_ = 1;
   unsigned epoch_ = 0;  ///< part of every key
 };
+
+/// A power of two; 1 for floats. Numbers of 16 bits end at 65504, lose digits below 6e-5, and lights may be given in lux:
+/// scaled, a cell of `coarsest_cell` [m] that holds all that the brightest light can send it has some 256 W/sr. Finer
+/// cascades hold a quarter each; what steps add stays below the end, and a million times less still has its digits.
+/// `other`: the most that all else sends through such a cell [W] (most_emitted).
+float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
+                  double other = 0);
+
+/// The light, so many times as bright.
+ClpvLight scaled(ClpvLight light, float scale);
 
 }  // namespace clpv
