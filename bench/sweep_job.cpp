@@ -67,7 +67,7 @@ Cost cost_of(const Sweeping& p) {
   const VolumeFormat& format = p.options.format;
   const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
   const int coefficients = p.basis->size(), kept = swept_basis()->size();
-  const double bins = kChannels * kSweepBins, ways = p.geometry ? sweep_way_count() : 0;
+  const double bins = kChannels * kSweepBins, ways = p.geometry ? way_volumes().count() : 0;
   const double swept = kChannels * p.directions(), sides = 2 * swept * n * n;
   const auto number = static_cast<double>(number_bytes(format));
   const double light =

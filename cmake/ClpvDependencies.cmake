@@ -39,6 +39,7 @@ find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
 find_path(NLOPT_INCLUDE_DIR nlopt.h REQUIRED)
 find_library(NLOPT_LIBRARY nlopt REQUIRED)
+find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 
 function(clpv_link_dependencies target)
   target_compile_definitions(${target} PUBLIC
@@ -49,4 +50,5 @@ function(clpv_link_dependencies target)
            spdlog::spdlog Threads::Threads
     PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} ${NLOPT_LIBRARY} embree)
   target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR} ${NLOPT_INCLUDE_DIR})
+  target_include_directories(${target} SYSTEM PRIVATE ${EIGEN_INCLUDE_DIR})
 endfunction()

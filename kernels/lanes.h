@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Eight pixels side by side, computed at once: a row of a tile. Explicit, since PoCL vectorises none of the work-items
-// of kernels as long as these.
+// Eight pixels side by side, computed at once: a row of a tile.
+//
+// PoCL vectorises work-items only in short kernels of straight-line code on named scalars, without arrays, branches and
+// float3 in memory. Such kernels are written so (coefficients.h, surface.h, volume/whole_groups.h); longer ones name their
+// eight lanes, and call nothing that PoCL does not expand in place, such as any(), floor() or log2().
 #ifndef CLPV_LANES_H
 #define CLPV_LANES_H
 
@@ -34,7 +37,7 @@ static inline void gather_rows(__global const float4* from, const uint8 at, Rows
   ((float8)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
             (rows).r7.c))
 
-// Whether a comparison holds in no lane. any() goes through them one by one on PoCL.
+// Whether a comparison holds in no lane.
 static inline bool none(const int8 lanes) {
   const long4 pairs = as_long4(lanes);
   return (pairs.x | pairs.y | pairs.z | pairs.w) == 0;

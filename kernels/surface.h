@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a view sees, pixel by pixel: depth, normal, colour; and where a pixel's surface is (kernels/shared/view.h).
-// Scalars throughout, float3 only to hand them over: CPU devices then vectorise across work-items.
+// Scalars throughout, float3 only to hand them over: work-items vectorise (lanes.h).
 // CLPV_SURFACE_PAPER 1: normals and colours as 8-bit normalised integers, the paper's RSM format; 0: as float4.
 #ifndef CLPV_SURFACE_H
 #define CLPV_SURFACE_H

@@ -59,7 +59,7 @@ static inline void surfaces(const ClpvView view, const Eight p, __global const f
 #if CLPV_SURFACE_PAPER
 typedef uchar Number;
 typedef uchar8 Numbers;
-// As convert_uchar8_sat(value + 0.5f), which is a call on PoCL.
+// As convert_uchar8_sat(value + 0.5f), expanded in place (lanes.h).
 static inline uchar8 clpv_bytes(const float8 value) {
   const float8 none = (float8)(0.0f), all = (float8)(255.0f);
   return convert_uchar8(convert_int8((value > none ? (value < all ? value : all) : none) + 0.5f));

@@ -8,6 +8,7 @@
 #ifndef CLPV_SWEEP_H
 #define CLPV_SWEEP_H
 
+#include "shared/sweep.h"
 #include "volume/numbers.h"
 
 #ifndef CLPV_INLINE
@@ -24,17 +25,15 @@
 #endif
 #endif
 
-#define CLPV_SWEEP_LINE 32
-#define CLPV_SWEEP_ROW ((CLPV_GRID + 7) / 8 * 8)
-#define CLPV_SWEEP_PLANE (CLPV_GRID * CLPV_SWEEP_ROW + CLPV_SWEEP_LINE)
-#define CLPV_SWEEP_VOLUME (CLPV_GRID * CLPV_SWEEP_PLANE + CLPV_SWEEP_LINE)
+#define CLPV_SWEEP_ROW CLPV_SWEEP_ROW_OF(CLPV_GRID)
+#define CLPV_SWEEP_PLANE CLPV_SWEEP_PLANE_OF(CLPV_GRID)
+#define CLPV_SWEEP_VOLUME CLPV_SWEEP_VOLUME_OF(CLPV_GRID)
 
 // A plane by itself, and one of a volume of which a finer cascade asks for cells beside the grid, have a border of one cell all
 // round.
-#define CLPV_SWEEP_FIRST 8  // from the start of a row to its first cell: rows of eight lanes stay aligned
-#define CLPV_SWEEP_PITCH (CLPV_SWEEP_ROW + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_LIVE ((CLPV_GRID + 2) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST)
-#define CLPV_BORDERED_VOLUME ((CLPV_GRID + 2) * CLPV_SWEEP_LIVE)
+#define CLPV_SWEEP_PITCH CLPV_SWEEP_PITCH_OF(CLPV_GRID)
+#define CLPV_SWEEP_LIVE CLPV_SWEEP_LIVE_OF(CLPV_GRID)
+#define CLPV_BORDERED_VOLUME CLPV_SWEEP_BORDERED_OF(CLPV_GRID)
 
 #if CLPV_LANES == 8
 #define CLPV_SWEEP_LOAD(from, at) CLPV_READ_ROW(from, at)

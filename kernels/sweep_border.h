@@ -24,16 +24,15 @@ CLPV_INLINE int clpv_side_at(const int swept, const int face, const int plane, c
   return side * CLPV_SWEEP_PITCH + 1 + at;
 }
 
-// Of a shell, each face is two layers of side x side cells; rows are whole eights, with room for one more. (i, j): row and column
-// of the face across planes, plane and column of that across rows, plane and row of that across columns.
-#define CLPV_SHELL_PITCH(shell) (((shell).side + 7) / 8 * 8 + 8)
+// Of a shell, (i, j): row and column of the face across planes, plane and column of that across rows, plane and row of that
+// across columns.
 // Of an axis: a shell is an argument by value, whose arrays are indexed by literals alone (region.h).
 #define CLPV_SHELL_FIRST(shell, axis) \
   ((axis) == 0 ? (shell).first[0] : ((axis) == 1 ? (shell).first[1] : (shell).first[2]))
 CLPV_INLINE int clpv_shell_at(const ClpvSweepShell shell, const int swept, const int face, const int layer, const int i,
                               const int j) {
-  const int pitch = CLPV_SHELL_PITCH(shell), numbers = 2 * shell.side * pitch + 8;
-  return (swept * 3 + face) * numbers + (layer * shell.side + i) * pitch + j;
+  return (swept * 3 + face) * CLPV_SWEEP_SHELL_FACE_OF(shell.side) +
+         (layer * shell.side + i) * CLPV_SWEEP_SHELL_PITCH_OF(shell.side) + j;
 }
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Filtered look-ups in the scene's textures (kernels/shared/mesh.h), eight at a time: sRGB decoded before filtering,
-// linear result. No floor() or log2(), which are calls on PoCL.
+// linear result.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
 

@@ -3,8 +3,7 @@
 //
 // In: geometry volume, samples at the cells' corners. Out: transmittance volume, a number a cell and way.
 // B is the mean over the corners of the face a way leads to, looked up against the light (docs/method.md, 'Propagation');
-// the generated CLPV_TRANSMITTANCE comes from host/pipeline/transmit.cpp. A work-item is a cell, or CLPV_LANES cells side
-// by side.
+// host/codegen/transmit_source.cpp generates CLPV_TRANSMITTANCE. A work-item is a cell, or CLPV_LANES cells side by side.
 #include "coefficients.h"
 #include "volume/geometry.h"
 #include "volume/transmittance.h"

@@ -53,7 +53,7 @@ static inline Vec clpv_to_point(const ClpvView view, const Real px, const Real p
   return vec_times(clpv_along(view, px, py), depth);
 }
 
-// The key (ClpvProjected) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite
+// The key (ClpvRasterTriangle) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite
 // where the plane is seen edge-on.
 static inline Vec clpv_key_plane(const ClpvView view, const Face face, const Real px, const Real py) {
   const Real right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);

@@ -10,7 +10,7 @@
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
-#include "pipeline/light_scale.hpp"
+#include "pipeline/frame_lights.hpp"
 #include "scene/load.hpp"
 #include "tests/support/moving_scene.hpp"
 

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <stdexcept>
 
 #include "options/presets.hpp"
+#include "pipeline/cached.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/load.hpp"
 #include "support/named_enum.hpp"
@@ -12,6 +14,22 @@
 
 namespace clpv::kept_frame_test {
 namespace {
+
+TEST(Cached, IsComputedForAnotherKey) {
+  Cached cached;
+  int computed = 0;
+  for (const CacheKey key : {0, 0, 7, 7, 0}) cached.update(key, [&] { ++computed; });
+  EXPECT_EQ(computed, 3) << "it holds what was computed last";
+}
+
+TEST(Cached, HoldsNothingAfterAFailure) {
+  Cached cached;
+  cached.update(1, [] {});
+  EXPECT_THROW(cached.update(2, [] { throw std::runtime_error("no memory"); }), std::runtime_error);
+  int computed = 0;
+  cached.update(1, [&] { ++computed; });
+  EXPECT_EQ(computed, 1);
+}
 
 using Passes = std::set<Pass>;
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Light as volumes of 16 bits hold it: neither lux nor candle light leaves their range.
-#include "pipeline/light_scale.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/frame_lights.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::light_scale_test {

@@ -9,10 +9,9 @@
 #include <cstring>
 #include <iterator>
 
+#include "support/array_files.hpp"
 #include "support/error.hpp"
-#include "support/npy.hpp"
 #include "support/progress.hpp"
-#include "support/vti.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::output_file_test {
@@ -118,62 +117,19 @@ TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(OutputFile, NpyComesBackAndHasNumPysHeader) {
+TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
   const std::vector<float> values{1, -2, 3.5f, 4, 5, 1e-30f};
   const std::size_t shape[] = {3, 1, 2}, line[] = {6};
   write_npy(folder_ / "a.npy", values, shape);
-  const NpyArray array = read_npy(folder_ / "a.npy");
-  EXPECT_EQ(array.values, values);
-  EXPECT_EQ(array.shape, std::vector<std::size_t>({3, 1, 2}));
   const std::string file = read_file(folder_ / "a.npy");
-  EXPECT_EQ((file.size() - values.size() * 4) % 64, 0u);
+  const std::size_t header = file.size() - values.size() * 4;
+  EXPECT_EQ(header % 64, 0u);
+  EXPECT_EQ(std::memcmp(file.data() + header, values.data(), values.size() * 4), 0);
   EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
   EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
+  EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]), header - 10);
   write_npy(folder_ / "b.npy", values, line);
   EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
-  EXPECT_EQ(read_npy(folder_ / "b.npy").shape, std::vector<std::size_t>({6}));
-}
-
-TEST_F(OutputFile, NpyRefusesWhatItCannotHold) {
-  const std::size_t shape[] = {4};
-  write_npy(folder_ / "a.npy", std::vector<float>(4), shape);
-  const std::string good = read_file(folder_ / "a.npy");
-  const auto refused = [&](std::string bytes) {
-    write_file(folder_ / "bad.npy", bytes);
-    message_of(ExitCode::bad_input, [&] { read_npy(folder_ / "bad.npy"); });
-  };
-  refused(good.substr(0, good.size() - 1));
-  refused(good.substr(0, 20));
-  refused("");
-  std::string doubles = good;
-  doubles.replace(good.find("<f4"), 3, "<f8");
-  refused(doubles);
-  std::string huge = good;
-  huge.replace(good.find("(4,), }             "), 20, "(999999999, 9999), }");
-  refused(huge);
-}
-
-// Found by fuzzing: memcpy from nowhere, though of no bytes, is undefined.
-TEST_F(OutputFile, NpyOfNothingIsAnArrayOfNothing) {
-  const std::size_t shape[] = {0, 3};
-  write_npy(folder_ / "none.npy", {}, shape);
-  const NpyArray array = read_npy(folder_ / "none.npy");
-  EXPECT_TRUE(array.values.empty());
-  EXPECT_EQ(array.shape, std::vector<std::size_t>({0, 3}));
-}
-
-// The standard library's regular expressions recurse once a character.
-TEST_F(OutputFile, NpyHeadersAsLongAsMayBeAreRead) {
-  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (",
-              file("\x93NUMPY\x01\x00\xff\xff", 10);
-  while (header.size() < 65500) header += "1, ";
-  header += "1,), }";
-  header.resize(65535, ' ');
-  const float one = 1;
-  file += header;
-  file.append(reinterpret_cast<const char*>(&one), sizeof one);
-  write_file(folder_ / "long.npy", file);
-  EXPECT_EQ(read_npy(folder_ / "long.npy").values, std::vector<float>{1});
 }
 
 TEST_F(OutputFile, VtiDescribesTheGridAndItsBytes) {

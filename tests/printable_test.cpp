@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Nothing that a stranger wrote moves a terminal's cursor: what is printed has no control characters.
-#include "support/printable.hpp"
-
 #include <gtest/gtest.h>
 
 #include "support/error.hpp"
-#include "support/xml.hpp"
+#include "support/text.hpp"
 
 namespace clpv::printable_test {
 namespace {

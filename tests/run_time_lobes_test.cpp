@@ -8,8 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "basis/table_kernel.hpp"
-#include "codegen/cell_macros.hpp"
+#include "basis/kernel_text.hpp"
+#include "codegen/linear_code.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/propagate.hpp"
 #include "support/error.hpp"

@@ -11,8 +11,8 @@
 #include <limits>
 #include <numbers>
 
+#include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/sky_light.hpp"
 #include "image/image.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/sky_sampler.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "pipeline/frame.hpp"
-#include "pipeline/light_scale.hpp"
+#include "pipeline/frame_lights.hpp"
 #include "pipeline/view.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "basis/face_transport.hpp"
 #include "support/error.hpp"
 #include "tests/support/every_basis.hpp"
 #include "tests/support/sphere_quadrature.hpp"

@@ -25,17 +25,8 @@ enum class Anew {
   nothing,     ///< what a camera costs that looks round among things and lights at rest
 };
 
-constexpr std::string_view name_of(Anew anew) {
-  switch (anew) {
-    case Anew::light:
-      return "light";
-    case Anew::everything:
-      return "everything";
-    case Anew::nothing:
-      return "nothing";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Anew> = name_list("light", "everything", "nothing");
 
 /// A camera that looks round to either side and sways, back where it began after kPathFrames.
 Camera on_path(Camera camera, int frame, double sway) {

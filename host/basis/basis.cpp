@@ -18,12 +18,6 @@ namespace {
 constexpr int kLeastBands = 2, kMostBands = 5;
 constexpr int kBinSides[] = {2, 4};  // bins along each edge of a cube's face
 
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
 void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
@@ -52,7 +46,7 @@ std::string Basis::lambda_text() const {
 }
 
 std::vector<double> Basis::evaluate(const glm::dvec3& w) const {
-  std::vector<double> b(static_cast<std::size_t>(size_));
+  std::vector<double> b(size_);
   evaluate(w, b);
   return b;
 }
@@ -66,7 +60,7 @@ double Basis::energy(std::span<const double> c) const {
 }
 
 std::vector<double> Basis::clamped_cosine(const glm::dvec3& d) const {
-  std::vector<double> alpha(static_cast<std::size_t>(size_));
+  std::vector<double> alpha(size_);
   cosine_integrals(d, alpha);
   return gram_inverse_ * alpha;
 }

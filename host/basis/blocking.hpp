@@ -4,11 +4,11 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <string_view>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -19,15 +19,8 @@ enum class Blocking {
   one_sided,  ///< N coefficients: A times the clamped cosine round n; blocks what meets its front (the paper)
 };
 
-constexpr std::string_view name_of(Blocking blocking) {
-  switch (blocking) {
-    case Blocking::areas:
-      return "areas";
-    case Blocking::one_sided:
-      return "one-sided";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Blocking> = name_list("areas", "one-sided");
 
 /// Whether a surfel is a lobe in the basis, or else numbers of its own.
 bool blocks_by_lobes(Blocking blocking);

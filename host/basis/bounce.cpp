@@ -33,7 +33,7 @@ Matrix arriving_flux() {
   for (int side = 0; side < kReflectingSides; ++side) {
     const int from = side ^ 1;  // light arrives the way that it would leave the opposite side
     for (int b = 0; b < kSweepBins; ++b) {
-      const SweepBin& bin = bins[static_cast<std::size_t>(b)];
+      const SweepBin& bin = bins[b];
       flux(side, b) = bin.solid_angle * cosine(bin, from);
     }
   }
@@ -46,8 +46,7 @@ Matrix leaving_light() {
   for (int side = 0; side < kReflectingSides; ++side) {
     double all = 0;
     for (const SweepBin& bin : bins) all += bin.solid_angle * cosine(bin, side);
-    for (int b = 0; b < kSweepBins; ++b)
-      light(b, side) = cosine(bins[static_cast<std::size_t>(b)], side) / all;
+    for (int b = 0; b < kSweepBins; ++b) light(b, side) = cosine(bins[b], side) / all;
   }
   return light;
 }

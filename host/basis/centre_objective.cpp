@@ -90,8 +90,7 @@ Alphas alphas_of(const CentreSet& set, const LobeAims& aims, const ZonalSeries& 
       alpha.push_back(cosine(glm::dot(set.centres[i], aim.direction), set.lambdas[i]));
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {
-        alphas.moment(i, j) +=
-            aim.weight * alpha[static_cast<std::size_t>(i)].value * alpha[static_cast<std::size_t>(j)].value;
+        alphas.moment(i, j) += aim.weight * alpha[i].value * alpha[j].value;
       }
     }
   }

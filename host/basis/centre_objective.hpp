@@ -5,9 +5,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "basis/clamped_cosine.hpp"
 #include "basis/lobe_aims.hpp"
 #include "basis/matrix.hpp"
-#include "basis/zonal_series.hpp"
 
 namespace clpv {
 

@@ -4,25 +4,16 @@
 
 #include <cstdint>
 #include <functional>
-#include <string_view>
 
 #include "basis/centre_objective.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
 /// How many lambdas a search finds.
 enum class SearchedLambdas { none, one, each };
-constexpr std::string_view name_of(SearchedLambdas lambdas) {
-  switch (lambdas) {
-    case SearchedLambdas::none:
-      return "none";
-    case SearchedLambdas::one:
-      return "one";
-    case SearchedLambdas::each:
-      return "each";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<SearchedLambdas> = name_list("none", "one", "each");
 
 struct CentreSearch {
   int centres = 8;  ///< 1 to kMostCentres

@@ -32,4 +32,20 @@ class CosineOfPoisson {
   std::vector<double> terms_;  ///< 4 pi a_2k lambda^2k
 };
 
+struct ZonalValue {
+  double value, by_t, by_mu;
+};
+
+class ZonalSeries {
+ public:
+  /// c_k, k = 0, 1, ...
+  explicit ZonalSeries(std::vector<double> coefficients) : coefficients_(std::move(coefficients)) {}
+
+  /// For t in [-1, 1] and mu in (0, 1); terms are summed until mu^k is below double's resolution.
+  ZonalValue operator()(double t, double mu) const;
+
+ private:
+  std::vector<double> coefficients_;
+};
+
 }  // namespace clpv

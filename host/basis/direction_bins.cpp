@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "basis/transport.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -47,7 +47,7 @@ DirectionBins::DirectionBins(int side) : side_(side), lines_(inner_lines(side)) 
   corners.insert(corners.begin(), -1);
   corners.push_back(1);
   const int patches_a_bin = kPatchesAlongFace / side;
-  std::vector<double> solid_angles(static_cast<std::size_t>(size_), 0.0);
+  std::vector<double> solid_angles(size_, 0.0);
   for (int face = 0; face < 6; ++face) {
     for (std::size_t v = 0; v < kPatchesAlongFace; ++v) {
       for (std::size_t u = 0; u < kPatchesAlongFace; ++u) {
@@ -55,13 +55,13 @@ DirectionBins::DirectionBins(int side) : side_(side), lines_(inner_lines(side)) 
             region(face, {corners[u], corners[u + 1]}, {corners[v], corners[v + 1]});
         const int bin =
             (face * side + static_cast<int>(v) / patches_a_bin) * side + static_cast<int>(u) / patches_a_bin;
-        solid_angles[static_cast<std::size_t>(bin)] += solid_angle(polygon);
+        solid_angles[bin] += solid_angle(polygon);
         add_patch(bin, polygon);
       }
     }
   }
   Matrix gram(size_, size_);
-  for (int i = 0; i < size_; ++i) gram(i, i) = solid_angles[static_cast<std::size_t>(i)];
+  for (int i = 0; i < size_; ++i) gram(i, i) = solid_angles[i];
   set_gram(std::move(gram), std::move(solid_angles));
 }
 
@@ -116,7 +116,7 @@ std::vector<glm::dvec3> DirectionBins::creases() const {
 }
 
 void DirectionBins::evaluate(const glm::dvec3& w, std::span<double> b) const {
-  const auto side = static_cast<std::size_t>(side_);
+  const std::size_t side = side_;
   const auto share = [&](double t, double n, std::size_t i) {
     const double above = i == 0 ? 1 : step(t - lines_[i - 1] * n);
     return above - (i + 1 == side ? 0 : step(t - lines_[i] * n));
@@ -126,16 +126,14 @@ void DirectionBins::evaluate(const glm::dvec3& w, std::span<double> b) const {
   for (int face = 0; face < 6; ++face) {
     const FaceAxes axes = axes_of(face);
     const double n = axes.sign * w[axes.n];
-    sum += of_face[static_cast<std::size_t>(face)] =
-        step(n - std::abs(w[axes.u])) * step(n - std::abs(w[axes.v]));
+    sum += of_face[face] = step(n - std::abs(w[axes.u])) * step(n - std::abs(w[axes.v]));
   }
   for (int face = 0; face < 6; ++face) {
     const FaceAxes axes = axes_of(face);
     const double n = axes.sign * w[axes.n];
     for (std::size_t i = 0; i < side * side; ++i) {
-      b[static_cast<std::size_t>(face) * side * side + i] = of_face[static_cast<std::size_t>(face)] / sum *
-                                                            share(w[axes.u], n, i % side) *
-                                                            share(w[axes.v], n, i / side);
+      b[static_cast<std::size_t>(face) * side * side + i] =
+          of_face[face] / sum * share(w[axes.u], n, i % side) * share(w[axes.v], n, i / side);
     }
   }
 }
@@ -148,7 +146,7 @@ void DirectionBins::cosine_integrals(const glm::dvec3& d, std::span<double> alph
     const double lit =
         std::clamp(t / patch.width + 0.5, 0.0, 1.0);  // the share of the patch above the horizon
     const double part = 0.5 * patch.width * lit * lit + std::max(0.0, t - 0.5 * patch.width);
-    alpha[static_cast<std::size_t>(patch.bin)] += part;
+    alpha[patch.bin] += part;
     sum += part;
   }
   for (double& value : alpha) value *= std::numbers::pi / sum;
@@ -175,7 +173,7 @@ std::string DirectionBins::kernel_basis() const {
     for (const auto& [letter, axis] : {std::pair{'u', axes.u}, {'v', axes.v}}) {
       for (int i = 0; i + 1 < side_; ++i) {
         text += fmt::format("  const float {}{}_{} = clpv_step(fma({}, n{}, {}));\n", letter, face, i,
-                            float_literal(-lines_[static_cast<std::size_t>(i)]), face, kNames[axis]);
+                            float_literal(-lines_[i]), face, kNames[axis]);
       }
     }
     const auto share = [&](char letter, int i) {
@@ -193,8 +191,8 @@ std::string DirectionBins::kernel_basis() const {
 // Eight bins at a time: a patch of each in turn. Evaluated one by one, patches take most of injection's time.
 std::string DirectionBins::kernel_cosine() const {
   constexpr int kLanes = 8;
-  std::vector<std::vector<Patch>> of_bin(static_cast<std::size_t>(size_));
-  for (const Patch& patch : patches_) of_bin[static_cast<std::size_t>(patch.bin)].push_back(patch);
+  std::vector<std::vector<Patch>> of_bin(size_);
+  for (const Patch& patch : patches_) of_bin[patch.bin].push_back(patch);
   std::string text =
       "static inline Coefficients clpv_cosine_integrals(const float x, const float y, const float z) {\n"
       "  const float8 none = (float8)(0.0f), whole = (float8)(1.0f);\n  float8 t, lit;\n";
@@ -208,7 +206,7 @@ std::string DirectionBins::kernel_cosine() const {
       const auto lanes = [&](auto value) {
         std::string numbers;
         for (int lane = 0; lane < kLanes; ++lane) {
-          const Patch& patch = of_bin[static_cast<std::size_t>(first + lane)][turn];
+          const Patch& patch = of_bin[first + lane][turn];
           numbers += fmt::format("{}{}", lane == 0 ? "" : ", ", float_literal(value(patch)));
         }
         return "(float8)(" + numbers + ")";

@@ -6,9 +6,43 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/literal.hpp"
+#include "basis/rotated_lobe.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
+namespace {
+
+std::string opening(const char* function, const TableName& name) {
+  return fmt::format(
+      "CLPV_INLINE Coefficients {}(const float x, const float y, const float z CLPV_AND_{}) {{\n"
+      "  Coefficients r;\n",
+      function, name.macro);
+}
+
+/// "centre . (x, y, z)" with the names of those three.
+std::string height(const glm::dvec3& centre, const std::vector<std::string>& names) {
+  const double factors[] = {centre.x, centre.y, centre.z};
+  return sum_of_products(factors, names);
+}
+
+/// What the table of that number, one after the other, holds for the height t, an expression.
+std::string entry(const std::string& t, std::size_t table, int table_size, const TableName& name) {
+  const double half = (table_size - 1) / 2.0;
+  const std::size_t first = table * static_cast<std::size_t>(table_size);
+  return fmt::format("CLPV_TABLE_READ({}, {}clamp((int)fma({}, {}, {}), 0, {}))", name.argument,
+                     first == 0 ? "" : fmt::format("{} + ", first), t, float_literal(half),
+                     float_literal(half + ZonalTable::kIndexBias), table_size - 1);
+}
+
+/// The rotation that takes +z to (x, y, z): rotation_to(), straight-line.
+constexpr const char* kRotation = R"(  const float square = fma(x, x, y * y);
+  const float k = z < 0.0f ? (1.0f - z) / square : 1.0f / (1.0f + z);
+  const int down = z < 0.0f && square == 0.0f;
+  const float xx = down ? 1.0f : fma(k * y, y, z), xy = down ? 0.0f : -k * x * y;
+  const float yy = down ? -1.0f : fma(k * x, x, z);
+)";
+
+}  // namespace
 
 std::string sum_of_products(std::span<const double> factors, const std::vector<std::string>& names) {
   double largest = 0;
@@ -30,6 +64,39 @@ std::string horner(std::span<const double> coefficients, const std::string& x) {
                                 : fmt::format("fma({}, {}, {})", x, text, float_literal(coefficients[i]));
   }
   return text;
+}
+
+std::string rotated_integrals_source(const Basis& basis, int table_size) {
+  const std::vector<double> upwards = basis.clamped_cosine({0, 0, 1});
+  const Parameters products = gram_parameters(basis);
+  std::string text = opening("clpv_rotated_integrals", {}) + kRotation;
+  for (int j = 0; j < basis.size(); ++j) {
+    const glm::dvec3& c = basis.centres()[j];
+    text += fmt::format("  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n",
+                        j, height(c, {"xx", "xy", "x"}), height(c, {"xy", "yy", "y"}),
+                        height(c, {"(-x)", "(-y)", "z"}));
+  }
+  for (int i = 0; i < basis.size(); ++i) {
+    for (int j = 0; j < basis.size(); ++j) {
+      const std::string t =
+          height(basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
+      const std::size_t table = products.of[i * basis.size() + j];
+      const std::string weight = float_literal(upwards[j]), value = entry(t, table, table_size, {});
+      text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
+                     : fmt::format("  r.c{0} = fma({1}, {2}, r.c{0});\n", i, weight, value);
+    }
+  }
+  return text + "  return r;\n}\n";
+}
+
+std::string table_basis_source(const Basis& basis, int table_size, const TableName& name) {
+  const Parameters lambdas = function_parameters(basis);
+  std::string text = opening("clpv_table_basis", name);
+  for (int i = 0; i < basis.size(); ++i) {
+    const std::string t = height(basis.centres()[i], {"x", "y", "z"});
+    text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.of[i], table_size, name));
+  }
+  return text + "  return r;\n}\n";
 }
 
 }  // namespace clpv

@@ -7,7 +7,7 @@
 
 #include "basis/basis.hpp"
 #include "support/error.hpp"
-#include "support/input_file.hpp"
+#include "support/json_schema.hpp"
 
 namespace clpv {
 namespace {
@@ -15,31 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
-
-json read_json(const std::string& path) {
-  std::error_code failed;
-  const auto bytes = std::filesystem::file_size(path, failed);
-  if (failed) throw Error(ExitCode::bad_input, "{}: cannot be read: {}", path, failed.message());
-  if (bytes > kMostBytes) {
-    throw Error(ExitCode::bad_input, "{}: {} bytes; a file of centres has at most {}", path, bytes,
-                kMostBytes);
-  }
-  const auto text = file_bytes(path, kMostBytes);
-  if (!text) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
-  try {
-    return json::parse(*text);
-  } catch (const json::exception& error) {
-    throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
-  }
-}
-
-// What a message quotes of a value: enough to recognise it.
-std::string quoted(const json& value) {
-  constexpr std::size_t kLength = 60;
-  if (value.is_structured()) return fmt::format("an {} of {}", value.type_name(), value.size());
-  const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  return text.size() <= kLength ? text : text.substr(0, kLength) + "...";
-}
 
 glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t index) {
   const auto refuse = [&](const std::string& place, const json& found) {
@@ -50,7 +25,7 @@ glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t i
   glm::dvec3 v;
   double largest = 0;
   for (int i = 0; i < 3; ++i) {
-    const json& number = value[static_cast<std::size_t>(i)];
+    const json& number = value[i];
     if (!number.is_number()) throw refuse(fmt::format("/{}", i), number);
     v[i] = number.get<double>();
     largest = std::max(largest, std::abs(v[i]));
@@ -113,7 +88,7 @@ std::string name_of(const json& file, const std::string& path) {
 }  // namespace
 
 std::unique_ptr<Basis> load_basis(const std::string& path, double lambda) {
-  const json file = read_json(path);
+  const json file = read_json(path, kMostBytes);
   if (!file.is_object()) {
     throw Error(ExitCode::bad_input, "{}: holds {}; allowed: an object", path, quoted(file));
   }

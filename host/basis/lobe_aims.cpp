@@ -10,6 +10,7 @@
 #include "basis/transport.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
+#include "support/json_schema.hpp"
 
 namespace clpv {
 namespace {
@@ -32,22 +33,12 @@ WeightedDirection weighted_direction(const json& entry, const std::string& path,
   }
   throw Error(ExitCode::bad_input,
               "{}: /weights/{} is {}; allowed: [x, y, z, weight], a direction and a weight above 0", path,
-              index, entry.dump(-1, ' ', true, json::error_handler_t::replace).substr(0, 60));
-}
-
-json parsed(const std::string& path) {
-  const auto text = file_bytes(path);
-  if (!text) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
-  try {
-    return json::parse(*text);
-  } catch (const json::exception& error) {
-    throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
-  }
+              index, quoted(entry));
 }
 
 /// |f - max(0, w . d)|^2 / |max(0, w . d)|^2; f is a projection, so that |f|^2 is what is taken off.
 double square_error(const Basis& basis, const glm::dvec3& d) {
-  std::vector<double> alpha(static_cast<std::size_t>(basis.size()));
+  std::vector<double> alpha(basis.size());
   basis.cosine_integrals(d, alpha);
   const std::vector<double> c = basis.clamped_cosine(d), product = basis.gram() * c;
   double square = kNorm;
@@ -69,7 +60,7 @@ LobeAims propagation_axes() {
 }
 
 LobeAims load_aims(const std::string& path) {
-  const json file = parsed(path);
+  const json file = read_json(path, kMostFileBytes);
   const auto found = file.is_object() ? file.find("weights") : file.end();
   if (found == file.end() || !found->is_array() || found->empty() || found->size() > kMostWeights) {
     throw Error(ExitCode::bad_input, "{}: /weights: allowed: an array of 1 to {} [x, y, z, weight]", path,

@@ -17,12 +17,6 @@ constexpr double kSpacing = kPi / 90;  // between starting points: finer than an
 constexpr double kResolution = 1e-7;   // rad: where the search stops
 constexpr int kMeanAxes = 2000;        // the mean then is good to three digits
 
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 // Unit direction of the largest f: the best of a grid of directions, then steps across it, ever smaller.
 glm::dvec3 highest(const std::function<double(const glm::dvec3&)>& f) {
   glm::dvec3 best(0, 0, 1);
@@ -81,7 +75,7 @@ double energy_after(const Basis& basis, const FaceTransport& transport, int step
     std::vector<double> through(kAxes.size(), 0.0);
     for (const Face& face : transport.faces) {
       const auto axis = std::find(kAxes.begin(), kAxes.end(), face.normal) - kAxes.begin();
-      through[static_cast<std::size_t>(axis)] += dot(face.flux, c);
+      through[axis] += dot(face.flux, c);
     }
     c = transport.lobes * through;
   }

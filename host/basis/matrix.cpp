@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "basis/matrix.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <limits>
+#include <numeric>
 
 #include "support/error.hpp"
 
@@ -11,54 +12,12 @@ namespace clpv {
 namespace {
 
 // Gram matrices reach condition numbers of 1e7: the wider type keeps A^-1 A = 1 to 1e-9 there.
-using Wide = long double;
+using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
-// Lower triangle L of A = L L^T, row by row.
-std::vector<Wide> cholesky(const Matrix& a) {
-  const int n = a.rows();
-  std::vector<Wide> lower(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
-  const auto at = [&](int i, int j) -> Wide& { return lower[static_cast<std::size_t>(i) * n + j]; };
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      Wide sum = a(i, j);
-      for (int k = 0; k < j; ++k) sum -= at(i, k) * at(j, k);
-      if (i != j) {
-        at(i, j) = sum / at(j, j);
-      } else if (sum > 0) {
-        at(i, i) = std::sqrt(sum);
-      } else {
-        throw Error(ExitCode::run_time, "matrix is not positive definite (pivot {} is {})", i,
-                    static_cast<double>(sum));
-      }
-    }
-  }
-  return lower;
-}
-
-// One Jacobi rotation that makes a(p, q) vanish.
-void rotate(Matrix& a, int p, int q) {
-  if (a(p, q) == 0) return;
-  const double theta = (a(q, q) - a(p, p)) / (2 * a(p, q));
-  const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
-  const double c = 1 / std::hypot(t, 1.0), s = t * c;
-  for (int k = 0; k < a.rows(); ++k) {
-    const double kp = a(k, p), kq = a(k, q);
-    a(k, p) = c * kp - s * kq;
-    a(k, q) = s * kp + c * kq;
-  }
-  for (int k = 0; k < a.rows(); ++k) {
-    const double pk = a(p, k), qk = a(q, k);
-    a(p, k) = c * pk - s * qk;
-    a(q, k) = s * pk + c * qk;
-  }
-}
-
-double largest_off_diagonal(const Matrix& a) {
-  double largest = 0;
-  for (int i = 0; i < a.rows(); ++i) {
-    for (int j = 0; j < i; ++j) largest = std::max(largest, std::abs(a(i, j)));
-  }
-  return largest;
+Wide widened(const Matrix& m) {
+  return Wide::NullaryExpr(m.rows(), m.columns(), [&](Eigen::Index i, Eigen::Index j) {
+    return static_cast<long double>(m(static_cast<int>(i), static_cast<int>(j)));
+  });
 }
 
 }  // namespace
@@ -82,66 +41,32 @@ Matrix Matrix::operator*(const Matrix& other) const {
 }
 
 std::vector<double> Matrix::operator*(std::span<const double> vector) const {
-  std::vector<double> r(static_cast<std::size_t>(rows_), 0.0);
-  for (int i = 0; i < rows_; ++i) {
-    for (int j = 0; j < columns_; ++j) {
-      r[static_cast<std::size_t>(i)] += (*this)(i, j) * vector[static_cast<std::size_t>(j)];
-    }
-  }
+  std::vector<double> r;
+  for (int i = 0; i < rows_; ++i) r.push_back(dot(row(i), vector));
   return r;
 }
 
-Matrix Matrix::transposed() const {
-  Matrix r(columns_, rows_);
-  for (int i = 0; i < rows_; ++i) {
-    for (int j = 0; j < columns_; ++j) r(j, i) = (*this)(i, j);
-  }
-  return r;
-}
-
-Matrix solve(const Matrix& a, const Matrix& b) {
-  const int n = a.rows();
-  const std::vector<Wide> lower = cholesky(a);
-  const auto l = [&](int i, int j) { return lower[static_cast<std::size_t>(i) * n + j]; };
-  Matrix r(n, b.columns());
-  std::vector<Wide> x(static_cast<std::size_t>(n));
-  for (int column = 0; column < b.columns(); ++column) {
-    for (int i = 0; i < n; ++i) {
-      Wide sum = b(i, column);
-      for (int k = 0; k < i; ++k) sum -= l(i, k) * x[static_cast<std::size_t>(k)];
-      x[static_cast<std::size_t>(i)] = sum / l(i, i);
-    }
-    for (int i = n - 1; i >= 0; --i) {
-      Wide sum = x[static_cast<std::size_t>(i)];
-      for (int k = i + 1; k < n; ++k) sum -= l(k, i) * x[static_cast<std::size_t>(k)];
-      x[static_cast<std::size_t>(i)] = sum / l(i, i);
-    }
-    for (int i = 0; i < n; ++i) r(i, column) = static_cast<double>(x[static_cast<std::size_t>(i)]);
-  }
-  return r;
+double dot(std::span<const double> a, std::span<const double> b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 Matrix inverse(const Matrix& a) {
-  return solve(a, Matrix::identity(a.rows()));
+  const Eigen::LLT<Wide> cholesky(widened(a));
+  if (cholesky.info() != Eigen::Success) {
+    throw Error(ExitCode::run_time, "a matrix of {} rows is not positive definite", a.rows());
+  }
+  const Wide x = cholesky.solve(Wide::Identity(a.rows(), a.rows()));
+  Matrix r(a.rows(), a.rows());
+  for (int i = 0; i < r.rows(); ++i) {
+    for (int j = 0; j < r.columns(); ++j) r(i, j) = static_cast<double>(x(i, j));
+  }
+  return r;
 }
 
 double condition_number(const Matrix& a) {
-  Matrix d = a;
-  const int n = d.rows();
-  double scale = 0;
-  for (int i = 0; i < n; ++i) scale = std::max(scale, std::abs(d(i, i)));
-  // Jacobi converges quadratically: a dozen sweeps serve any matrix of this size.
-  constexpr int kSweeps = 30;
-  for (int sweep = 0; sweep < kSweeps && largest_off_diagonal(d) > 1e-16 * scale; ++sweep) {
-    for (int p = 0; p < n; ++p) {
-      for (int q = p + 1; q < n; ++q) rotate(d, p, q);
-    }
-  }
-  double least = std::numeric_limits<double>::infinity(), greatest = 0;
-  for (int i = 0; i < n; ++i) {
-    least = std::min(least, d(i, i));
-    greatest = std::max(greatest, d(i, i));
-  }
+  const Eigen::SelfAdjointEigenSolver<Wide> solver(widened(a), Eigen::EigenvaluesOnly);
+  const auto& rising = solver.eigenvalues();
+  const auto least = static_cast<double>(rising(0)), greatest = static_cast<double>(rising(a.rows() - 1));
   return least > 0 ? greatest / least : std::numeric_limits<double>::infinity();
 }
 

@@ -28,7 +28,6 @@ class Matrix {
 
   Matrix operator*(const Matrix& other) const;  ///< sizes must fit
   std::vector<double> operator*(std::span<const double> vector) const;
-  Matrix transposed() const;
 
  private:
   std::size_t index(int row, int column) const {
@@ -39,10 +38,11 @@ class Matrix {
   std::vector<double> values_;
 };
 
-/// X with A X = B for a symmetric positive definite A, in extended precision: relative error 1e-19 times A's
-/// condition number plus a rounding. Throws Error(run_time) where A is not.
-Matrix solve(const Matrix& a, const Matrix& b);
-/// Inverse of a symmetric positive definite matrix. Throws Error(run_time) where it is not.
+/// Sum of a_i b_i, as many as `a` has.
+double dot(std::span<const double> a, std::span<const double> b);
+
+/// Inverse of a symmetric positive definite matrix, in extended precision: relative error 1e-19 times its condition number
+/// plus a rounding. Throws Error(run_time) where it is not one.
 Matrix inverse(const Matrix& a);
 /// Ratio of the largest to the smallest eigenvalue of a symmetric positive definite matrix.
 double condition_number(const Matrix& a);

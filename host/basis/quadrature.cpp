@@ -36,8 +36,8 @@ GaussRule gauss_rule() {
       slope = kOrder * (x * now - before) / (x * x - 1);
       x -= now / slope;
     }
-    rule.x[static_cast<std::size_t>(i)] = (1 - x) / 2;
-    rule.weight[static_cast<std::size_t>(i)] = 1 / ((1 - x * x) * slope * slope);
+    rule.x[i] = (1 - x) / 2;
+    rule.weight[i] = 1 / ((1 - x * x) * slope * slope);
   }
   return rule;
 }
@@ -61,7 +61,7 @@ std::vector<QuadratureNode> nodes_of(const Triangle& t) {
 
 // Integrals of what must come out right: b_i, b_i^2, and 1 / |w|_1.
 std::vector<double> probe(const Basis& basis, const std::vector<QuadratureNode>& nodes) {
-  const auto n = static_cast<std::size_t>(basis.size());
+  const std::size_t n = basis.size();
   std::vector<double> sums(2 * n + 1, 0.0), b(n);
   for (const QuadratureNode& node : nodes) {
     basis.evaluate(node.w, b);
@@ -106,7 +106,7 @@ class Refinement {
   }
 
   bool agree(const std::vector<double>& coarse, const std::vector<double>& fine) const {
-    const auto n = static_cast<std::size_t>(basis_.size());
+    const std::size_t n = basis_.size();
     for (std::size_t i = 0; i < coarse.size(); ++i) {
       const double size =
           i < 2 * n ? basis_.gram()(static_cast<int>(i % n), static_cast<int>(i % n)) : 4 * std::numbers::pi;

@@ -54,7 +54,7 @@ double ZonalTable::place(double t) const {
 }
 
 double ZonalTable::operator()(double t) const {
-  return values_[static_cast<std::size_t>(std::clamp(std::floor(place(t)), 0.0, size() - 1.0))];
+  return values_[std::clamp(std::floor(place(t)), 0.0, size() - 1.0)];
 }
 
 double ZonalTable::to_step(double t) const {

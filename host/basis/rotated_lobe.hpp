@@ -7,10 +7,10 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -19,15 +19,8 @@ enum class LobeKind {
   rotate,  ///< projected towards +z, turned to the axis
 };
 
-constexpr std::string_view name_of(LobeKind kind) {
-  switch (kind) {
-    case LobeKind::exact:
-      return "exact";
-    case LobeKind::rotate:
-      return "rotate";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<LobeKind> = name_list("exact", "rotate");
 
 /// How lobes and basis functions are come by. Matters to bases with centres alone.
 struct LobeOptions {

@@ -59,7 +59,7 @@ SphericalHarmonics::SphericalHarmonics(int bands) : bands_(bands) {
       functions_.push_back({l, m, p});
     }
   }
-  std::vector<double> integrals(static_cast<std::size_t>(size_), 0.0);
+  std::vector<double> integrals(size_, 0.0);
   integrals[0] = std::sqrt(4 * kPi);
   set_gram(Matrix::identity(size_), integrals);
 }
@@ -72,7 +72,7 @@ void SphericalHarmonics::evaluate(const glm::dvec3& w, std::span<double> b) cons
   }
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const Function& f = functions_[i];
-    const auto m = static_cast<std::size_t>(std::abs(f.order));
+    const std::size_t m = std::abs(f.order);
     b[i] = (f.order < 0 ? im[m] : re[m]) * value_of(f.polynomial, w.z);
   }
 }
@@ -94,7 +94,7 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
                         m, im, re);
   }
   for (int i = 0; i < size_; ++i) {
-    const Function& f = functions_[static_cast<std::size_t>(i)];
+    const Function& f = functions_[i];
     const double factor = cosine ? cosine_band(f.band) : 1;
     const int m = std::abs(f.order);
     // Q_lm is even or odd in z: a polynomial in z^2, times z where odd.

@@ -105,7 +105,7 @@ Srbf::Srbf(const std::string& name, const std::vector<glm::dvec3>& centres,
   Matrix gram(size_, size_);
   for (int i = 0; i < size_; ++i) {
     for (int j = 0; j < size_; ++j) {
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const std::size_t a = i, b = j;
       const double t = i == j ? 1 : glm::dot(centres_[a], centres_[b]);
       gram(i, j) = 4 * kPi * abel_poisson(t, lambdas_[a] * lambdas_[b]);
     }

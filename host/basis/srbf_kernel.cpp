@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "basis/kernel_text.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -20,16 +20,16 @@ struct Pair {
 
 std::vector<Pair> antipodal_pairs(const Basis& basis) {
   std::vector<Pair> pairs;
-  std::vector<bool> taken(static_cast<std::size_t>(basis.size()), false);
+  std::vector<bool> taken(basis.size(), false);
   for (int i = 0; i < basis.size(); ++i) {
-    if (taken[static_cast<std::size_t>(i)]) continue;
+    if (taken[i]) continue;
     Pair pair{i, -1};
     for (int j = i + 1; j < basis.size(); ++j) {
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const std::size_t a = i, b = j;
       const glm::dvec3 sum = basis.centres()[a] + basis.centres()[b];
       if (glm::dot(sum, sum) < 1e-24 && basis.lambdas()[a] == basis.lambdas()[b]) pair.opposite = j;
     }
-    if (pair.opposite >= 0) taken[static_cast<std::size_t>(pair.opposite)] = true;
+    if (pair.opposite >= 0) taken[pair.opposite] = true;
     pairs.push_back(pair);
   }
   return pairs;
@@ -37,14 +37,14 @@ std::vector<Pair> antipodal_pairs(const Basis& basis) {
 
 // "  const float t3 = w . xi_3;"
 std::string height_statement(const Basis& basis, int i) {
-  const glm::dvec3& xi = basis.centres()[static_cast<std::size_t>(i)];
+  const glm::dvec3& xi = basis.centres()[i];
   const double factors[] = {xi.x, xi.y, xi.z};
   return fmt::format("  const float t{} = {};\n", i, sum_of_products(factors, {"x", "y", "z"}));
 }
 
 std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs) {
   const auto value = [&](int i, int of, double sign) {
-    const double lambda = basis.lambdas()[static_cast<std::size_t>(i)];
+    const double lambda = basis.lambdas()[i];
     return fmt::format(
         "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c{0} = {4} * d{0} * d{0} * d{0};\n", i,
         float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
@@ -110,7 +110,7 @@ std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
   std::string text = std::string("static inline Coefficients clpv_cosine_integrals") + kOfDirection;
   for (const Pair& pair : pairs) {
     const int i = pair.centre;
-    const double lambda = basis.lambdas()[static_cast<std::size_t>(i)], slope = cosines.at(lambda).slope();
+    const double lambda = basis.lambdas()[i], slope = cosines.at(lambda).slope();
     text += height_statement(basis, i) + even_part(chebyshev[lambda], i);
     text += fmt::format("  r.c{0} = fma({1}, t{0}, even{0});\n", i, float_literal(slope));
     if (pair.opposite >= 0) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "basis/sweep.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -119,17 +120,17 @@ Matrix bin_means(const Basis& basis) {
     for (const QuadratureNode& node : nodes_of(piece)) {
       const std::vector<double> in = bins.evaluate(node.w), b = basis.evaluate(node.w);
       for (int bin = 0; bin < kSweepBins; ++bin) {
-        const double weight = node.weight * in[static_cast<std::size_t>(bin)];
+        const double weight = node.weight * in[bin];
         if (weight == 0) continue;
-        total[static_cast<std::size_t>(bin)] += weight;
-        for (int i = 0; i < basis.size(); ++i) sums(bin, i) += weight * b[static_cast<std::size_t>(i)];
+        total[bin] += weight;
+        for (int i = 0; i < basis.size(); ++i) sums(bin, i) += weight * b[i];
       }
     }
   }
   constexpr double kNone = 1e-14;  // of a bin that a function does not reach
   for (int bin = 0; bin < kSweepBins; ++bin) {
     for (double& mean : sums.row(bin)) {
-      mean /= total[static_cast<std::size_t>(bin)];
+      mean /= total[bin];
       if (std::abs(mean) < kNone) mean = 0;
     }
   }
@@ -159,9 +160,7 @@ Matrix swept_projection() {
   for (const QuadratureNode& node : quadrature(bins, octants())) {
     const std::vector<double> in = bins.evaluate(node.w), y = harmonics->evaluate(node.w);
     for (int j = 0; j < projection.rows(); ++j) {
-      for (int bin = 0; bin < kSweepBins; ++bin)
-        projection(j, bin) +=
-            node.weight * y[static_cast<std::size_t>(j)] * in[static_cast<std::size_t>(bin)];
+      for (int bin = 0; bin < kSweepBins; ++bin) projection(j, bin) += node.weight * y[j] * in[bin];
     }
   }
   return projection;
@@ -179,6 +178,33 @@ std::vector<SweepWay> sweep_ways() {
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     if (offset != glm::ivec3(0)) ways.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
+  }
+  return ways;
+}
+
+namespace {
+
+int way_number(const glm::ivec3& offset) {
+  const int place = (offset.x + 1) + 3 * (offset.y + 1) + 9 * (offset.z + 1);
+  return place - (place > 13 ? 1 : 0);  // 13 is the cell itself
+}
+
+}  // namespace
+
+int WayVolumes::volume(int axis, const glm::ivec3& offset) const {
+  int before = 0;
+  for (int i = 0; i < axis; ++i) before += static_cast<int>(across[i].size());
+  return before +
+         static_cast<int>(std::ranges::find(across[axis], way_number(offset)) - across[axis].begin());
+}
+
+WayVolumes way_volumes() {
+  WayVolumes ways;
+  for (const SweepBin& bin : sweep_bins(1)) {
+    std::vector<int>& across = ways.across[bin.axis];
+    for (const glm::ivec3& offset : bin.offset) {
+      if (std::ranges::find(across, way_number(offset)) == across.end()) across.push_back(way_number(offset));
+    }
   }
   return ways;
 }

@@ -69,4 +69,14 @@ void close_diagonals(std::vector<SweepWay>& ways, double power);
 /// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them.
 std::vector<SweepWay> sweep_ways();
 
+/// Volumes of the transmittance of ways that sweep_ways.cl writes: for each axis, x's first, those that directions across it use.
+struct WayVolumes {
+  std::array<std::vector<int>, 3> across;  ///< numbers of sweep_ways()
+
+  int count() const { return static_cast<int>(across[0].size() + across[1].size() + across[2].size()); }
+  /// The number of the volume that holds the way from `offset` for directions across `axis`.
+  int volume(int axis, const glm::ivec3& offset) const;
+};
+WayVolumes way_volumes();
+
 }  // namespace clpv

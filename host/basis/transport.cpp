@@ -1,11 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "basis/transport.hpp"
 
-#include "basis/face_transport.hpp"
+#include <cmath>
+#include <numbers>
+
+#include "basis/quadrature.hpp"
 #include "basis/sweep.hpp"
 #include "support/named_enum.hpp"
 
 namespace clpv {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Face face_of(const glm::ivec3& travel, const glm::ivec3& normal) {
+  const bool far = travel == normal;
+  Face face{travel, normal, {}, far ? far_solid_angle() : side_solid_angle(), {}, {}};
+  // Centre of the face: 3/2 k, or k + a/2.
+  face.direction = glm::normalize(far ? glm::dvec3(travel) : glm::dvec3(2 * travel + normal));
+  return face;
+}
+
+// The face as seen from the source's centre; the neighbour's centre is `travel`, its edge 1.
+SphericalPolygon cone_of(const Face& face) {
+  const glm::dvec3 centre = glm::dvec3(face.travel) + 0.5 * glm::dvec3(face.normal);
+  const glm::dvec3 u(face.normal.y, face.normal.z, face.normal.x),
+      v(face.normal.z, face.normal.x, face.normal.y);
+  SphericalPolygon corners;
+  for (const auto& [s, t] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
+    corners.push_back(glm::normalize(centre + 0.5 * (s * u + t * v)));
+  }
+  return corners;
+}
+
+std::vector<double> integral_over(const Basis& basis, const SphericalPolygon& cone) {
+  std::vector<double> sum(static_cast<std::size_t>(basis.size()), 0.0), b(sum.size());
+  for (const QuadratureNode& node : quadrature(basis, {cone})) {
+    basis.evaluate(node.w, b);
+    for (std::size_t i = 0; i < b.size(); ++i) sum[i] += node.weight * b[i];
+  }
+  return sum;
+}
+
+std::vector<double> sample_of(const Basis& basis, const LobeOptions& lobes, const Face& face) {
+  std::vector<double> b = evaluate(basis, lobes, face.direction);
+  for (double& value : b) value *= face.solid_angle;
+  return b;
+}
+
+}  // namespace
 
 const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0), glm::ivec3(0, 1, 0),
                                       glm::ivec3(0, -1, 0), glm::ivec3(0, 0, 1),  glm::ivec3(0, 0, -1)};
@@ -53,6 +96,37 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
       break;
   }
   look_up_blockers(transport, basis);
+  return transport;
+}
+
+// 4 atan(1 / (6 sqrt(11/4))) = 4 asin(1/10).
+double far_solid_angle() {
+  return 4 * std::asin(0.1);
+}
+double side_solid_angle() {
+  return (4 * kPi / 6 - far_solid_angle()) / 4;
+}
+
+FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeOptions& lobes) {
+  FaceTransport transport;
+  for (const glm::ivec3& travel : kAxes) {
+    transport.faces.push_back(face_of(travel, travel));
+    for (const glm::ivec3& normal : kAxes) {
+      if (normal != travel && normal != -travel) transport.faces.push_back(face_of(travel, normal));
+    }
+  }
+  for (Face& face : transport.faces) {
+    face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face)) : sample_of(basis, lobes, face);
+  }
+  const Lobes lobe_round(basis, lobes);
+  transport.lobes = Matrix(basis.size(), static_cast<int>(kAxes.size()));
+  for (std::size_t a = 0; a < kAxes.size(); ++a) {
+    const std::vector<double> lobe = lobe_round(glm::dvec3(kAxes[a]));
+    const double carried = flux == FaceFlux::exact ? basis.energy(lobe) : kPi;
+    for (int i = 0; i < basis.size(); ++i) {
+      transport.lobes(i, static_cast<int>(a)) = lobe[i] / carried;
+    }
+  }
   return transport;
 }
 

@@ -5,13 +5,14 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "basis/transport.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -51,17 +52,8 @@ constexpr bool has_faces(TransportKind kind) {
   return kind == TransportKind::sampled || kind == TransportKind::exact;
 }
 
-constexpr std::string_view name_of(TransportKind kind) {
-  switch (kind) {
-    case TransportKind::sampled:
-      return "sampled";
-    case TransportKind::exact:
-      return "exact";
-    case TransportKind::sweep:
-      return "sweep";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<TransportKind> = name_list("sampled", "exact", "sweep");
 
 struct Transport {
   TransportKind kind = TransportKind::sampled;
@@ -82,5 +74,17 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
 
 /// The six axes in the order used everywhere: +x -x +y -y +z -z.
 extern const std::array<glm::ivec3, 6> kAxes;
+
+enum class FaceFlux {
+  sampled,  ///< Omega_f b(w_f): the paper's, the face's centre stands for all of it
+  exact,    ///< integrals of b over the face's cone; lobes of unit flux
+};
+
+FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeOptions& lobes);
+
+/// Solid angles of the far face and of each of the four side faces of a neighbour, seen from the source's
+/// centre [sr].
+double far_solid_angle();
+double side_solid_angle();
 
 }  // namespace clpv

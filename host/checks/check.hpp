@@ -3,6 +3,7 @@
 // tests run.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,13 @@ struct CheckResult {
   double allowed = 0;   ///< tolerance(stage)
   std::string place;  ///< where the worst error is, with both values: "cell 3,4,5 channel 0: 0.25, twin 0.26"
   bool passed() const { return worst <= allowed; }  // false for NaN too
+  /// Takes an error that is the worst so far, and from `where` its place. A NaN is worse than any number, and stays.
+  template <typename Where>
+  void take(double error, const Where& where) {
+    if (std::isnan(worst) || error <= worst) return;
+    worst = error;
+    place = where();
+  }
 };
 
 using CheckResults = std::vector<CheckResult>;

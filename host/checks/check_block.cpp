@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/block.hpp"
 #include "reference/block.hpp"
@@ -26,14 +26,12 @@ CheckResult check_one(Session& session, const Scene& scene, const Blocked& twin,
   CheckResult result{"block", format_name(format), 0, tolerance_in("block", format), {}};
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double share = found[at];
-    const double outside = std::max({0.0, twin.least.values[at] - share, share - twin.most.values[at]});
-    if (outside <= result.worst && !std::isnan(share)) continue;
-    result.worst = std::isnan(share) ? share : outside;
-    const std::size_t n = kGrid + 1;
-    result.place =
-        fmt::format("corner {},{},{} axis {}: {}, twin {} to {}", at % n, at / n % n, at / n / n % n,
-                    at / n / n / n, share, twin.least.values[at], twin.most.values[at]);
-    if (std::isnan(share)) break;
+    const double outside = std::max(twin.least.values[at] - share, share - twin.most.values[at]);
+    result.take(outside, [&] {
+      const std::size_t n = kGrid + 1;
+      return fmt::format("corner {},{},{} axis {}: {}, twin {} to {}", at % n, at / n % n, at / n / n % n,
+                         at / n / n / n, share, twin.least.values[at], twin.most.values[at]);
+    });
   }
   return result;
 }

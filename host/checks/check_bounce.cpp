@@ -12,7 +12,7 @@
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
 #include "checks/check.hpp"
-#include "checks/check_light.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/sweep.hpp"

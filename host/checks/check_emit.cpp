@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/emit.hpp"
 #include "reference/emit.hpp"
@@ -50,13 +50,13 @@ CheckResult check_scene(Session& session, const Scene& scene, const std::string&
     const double off = glm::length(flux - wanted.flux) - 2 * wanted.doubt;
     const double places = glm::length(glm::dvec3(found.position[i]) - wanted.position) / 10 +
                           glm::length(glm::dvec3(found.normal[i]) - wanted.normal);
-    const double error = std::max({0.0, off / largest, places});
-    if (error <= result.worst && !std::isnan(error)) continue;
-    result.worst = error;
-    result.place =
-        fmt::format("point {} of {}: flux {:.6g} {:.6g} {:.6g}, twin {:.6g} {:.6g} {:.6g}; off by {:.2g}", i,
-                    twin.size(), flux.x, flux.y, flux.z, wanted.flux.x, wanted.flux.y, wanted.flux.z, places);
-    if (std::isnan(error)) break;
+    const auto where = [&] {
+      return fmt::format(
+          "point {} of {}: flux {:.6g} {:.6g} {:.6g}, twin {:.6g} {:.6g} {:.6g}; off by {:.2g}", i,
+          twin.size(), flux.x, flux.y, flux.z, wanted.flux.x, wanted.flux.y, wanted.flux.z, places);
+    };
+    result.take(off / largest, where);
+    result.take(places, where);
   }
   return result;
 }

@@ -9,7 +9,7 @@
 
 #include "basis/sweep.hpp"
 #include "checks/check.hpp"
-#include "checks/check_surfaces.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"

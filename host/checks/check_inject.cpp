@@ -9,7 +9,7 @@
 #include <random>
 
 #include "checks/check.hpp"
-#include "checks/check_surfaces.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"
@@ -113,7 +113,7 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
                      rotated ? tolerance("inject-rotated") : tolerance_in("inject", options.format),
                      {}};
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
-  const auto size = static_cast<std::size_t>(twin.coefficients);
+  const std::size_t size = twin.coefficients;
   const bool areas = twin.channels == 1 && !blocks_by_lobes(options.blocking);
   double largest = 0;
   WorstError worst;
@@ -129,7 +129,7 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
       }
       largest = std::max(largest, std::abs(wanted));
       if (!worst.take(std::abs(found - wanted), cell)) continue;
-      const auto n = static_cast<std::size_t>(twin.n);
+      const std::size_t n = twin.n;
       result.place = fmt::format("cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, twin {:.7g}",
                                  cell % n, cell / n % n, cell / n / n, channel, w.x, w.y, w.z, found, wanted);
     }

@@ -34,7 +34,7 @@ Volume random_light(const Basis& basis, int n, std::mt19937& random) {
     for (int channel = 0; channel < 3; ++channel) {
       const double power = 1 + uniform(random);
       for (int i = 0; i < basis.size(); ++i)
-        volume.at(channel, i, x, y, z) = static_cast<float>(power * lobe[static_cast<std::size_t>(i)]);
+        volume.at(channel, i, x, y, z) = static_cast<float>(power * lobe[i]);
     }
   }
   return volume;
@@ -53,8 +53,7 @@ Volume random_blockers(const Basis& basis, const Transport& transport, int n, st
         const double cover = std::max(0.0, 1.5 * uniform(random));
         const std::vector<double> lobe = basis.clamped_cosine(d);
         for (int i = 0; i < numbers; ++i) {
-          const auto k = static_cast<std::size_t>(i);
-          const double share = blocks_by_lobes(transport.blocking) ? lobe[k] : std::abs(d[i]);
+          const double share = blocks_by_lobes(transport.blocking) ? lobe[i] : std::abs(d[i]);
           volume.at(0, i, x, y, z) = static_cast<float>(cover * share);
         }
       }

@@ -179,10 +179,8 @@ class Comparison {
   }
 
   void keep(double error, std::size_t at) {
-    if (error <= values_.worst || std::isnan(values_.worst)) return;
-    values_.worst = error;
     const unsigned width = twin_.image.view.width;
-    values_.place = fmt::format("pixel {},{}: {}", at % width, at / width, found_);
+    values_.take(error, [&] { return fmt::format("pixel {},{}: {}", at % width, at / width, found_); });
   }
 
   const Rasterized& twin_;

@@ -7,7 +7,7 @@
 
 #include "basis/bounce.hpp"
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/reflect.hpp"
 #include "reference/reflect.hpp"
@@ -27,14 +27,11 @@ CheckResult check_one(Session& session, const Scene& scene, const Reflected& twi
   CheckResult result{"reflect", format_name(format), 0, tolerance_in("reflect", format), {}};
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double wanted = twin.areas.values[at], doubt = twin.doubt.values[at];
-    const double error = std::max(0.0, std::abs(found[at] - wanted) - doubt);
-    if (error <= result.worst && !std::isnan(error)) continue;
-    result.worst = error;
-    const std::size_t n = kGrid, cell = at % (n * n * n), plane = at / (n * n * n);
-    result.place =
-        fmt::format("cell {},{},{} side {} channel {}: {:.6g}, twin {:.6g}", cell % n, cell / n % n,
-                    cell / n / n, plane % kReflectingSides, plane / kReflectingSides, found[at], wanted);
-    if (std::isnan(error)) break;
+    result.take(std::abs(found[at] - wanted) - doubt, [&] {
+      const std::size_t n = kGrid, cell = at % (n * n * n), plane = at / (n * n * n);
+      return fmt::format("cell {},{},{} side {} channel {}: {:.6g}, twin {:.6g}", cell % n, cell / n % n,
+                         cell / n / n, plane % kReflectingSides, plane / kReflectingSides, found[at], wanted);
+    });
   }
   return result;
 }

@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "checks/check.hpp"
-#include "checks/check_triangles.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/see.hpp"
 #include "reference/see.hpp"
@@ -33,12 +33,11 @@ CheckResults check_see(Session& session) {
     const unsigned bits = found[kCascade * bytes + point];
     const auto wrong =
         static_cast<std::uint8_t>((twin.least[point] & ~bits) | (bits & ~unsigned{twin.most[point]}));
-    if (std::popcount(wrong) <= result.worst) continue;
-    result.worst = std::popcount(wrong);
-    const std::size_t cube = point / 64, n = kGrid;
-    result.place =
-        fmt::format("cube {},{},{} point {}: {:08b}, twin {:08b} to {:08b}", cube % n, cube / n % n,
-                    cube / n / n, point % 64, bits, twin.least[point], twin.most[point]);
+    result.take(std::popcount(wrong), [&] {
+      const std::size_t cube = point / 64, n = kGrid;
+      return fmt::format("cube {},{},{} point {}: {:08b}, twin {:08b} to {:08b}", cube % n, cube / n % n,
+                         cube / n / n, point % 64, bits, twin.least[point], twin.most[point]);
+    });
   }
   return {result};
 }

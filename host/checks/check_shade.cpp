@@ -5,7 +5,7 @@
 #include <random>
 
 #include "checks/check.hpp"
-#include "checks/check_surfaces.hpp"
+#include "checks/check_inputs.hpp"
 #include "pipeline/shade.hpp"
 #include "reference/shade.hpp"
 #include "support/named_enum.hpp"

@@ -56,9 +56,9 @@ CheckResults check_sizes(Session& session) {
   CheckResult result{"sizes", "shared structs", 0, tolerance("sizes"), {}};
   for (std::size_t i = 0; i < count; ++i) {
     const double error = device[i] > kHost[i].bytes ? device[i] - kHost[i].bytes : kHost[i].bytes - device[i];
-    if (error <= result.worst) continue;
-    result.worst = error;
-    result.place = fmt::format("{}: {} bytes, host {}", kHost[i].name, device[i], kHost[i].bytes);
+    result.take(error, [&] {
+      return fmt::format("{}: {} bytes, host {}", kHost[i].name, device[i], kHost[i].bytes);
+    });
   }
   return {result};
 }

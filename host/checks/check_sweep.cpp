@@ -9,7 +9,7 @@
 
 #include "basis/sweep.hpp"
 #include "checks/check.hpp"
-#include "checks/check_light.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/sweep.hpp"
@@ -45,8 +45,7 @@ Sky uneven_sky() {
   Sky sky;
   sky.width = 5, sky.height = 4, sky.rotation = 0.7;
   sky.texels.assign(20, glm::vec3(0));
-  for (int i = 0; i < 12; ++i)
-    sky.texels[static_cast<std::size_t>(i)] = glm::vec3(i % 4, i % 3, 0.3f * static_cast<float>(i));
+  for (int i = 0; i < 12; ++i) sky.texels[i] = glm::vec3(i % 4, i % 3, 0.3f * static_cast<float>(i));
   return sky;
 }
 constexpr float kSkyScale = 0.5f;

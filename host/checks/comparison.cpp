@@ -10,7 +10,7 @@ Comparison compare_volumes(std::span<const float> found, std::span<const double>
       twin.size(), [&](std::size_t i) { return static_cast<double>(found[i]); },
       [&](std::size_t i) { return twin[i]; });
   if (worst.value == 0) return {};
-  const auto side = static_cast<std::size_t>(n);
+  const std::size_t side = n;
   const std::size_t at = worst.at;
   return {worst.value, fmt::format("cell {},{},{} plane {}: {:.7g}, twin {:.7g}", at % side, at / side % side,
                                    at / side / side % side, at / side / side / side, found[at], twin[at])};

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "support/xml.hpp"
+#include "support/text.hpp"
 
 namespace clpv::reference {
 namespace {

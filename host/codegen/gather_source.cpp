@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "basis/table_kernel.hpp"
-#include "codegen/cell_macros.hpp"
+#include "basis/kernel_text.hpp"
+#include "codegen/linear_code.hpp"
 
 namespace clpv {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "basis/table_kernel.hpp"
-#include "codegen/cell_macros.hpp"
-#include "support/literal.hpp"
+#include "basis/kernel_text.hpp"
+#include "codegen/linear_code.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Generated text and tables of the kernels that sweep (kernels/sweep*.cl).
+// Generated text of the kernels that sweep and bounce (kernels/sweep*.cl, kernels/bounce.cl).
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/sweep.hpp"
 #include "codegen/linear_code.hpp"
-#include "kernels/shared/sweep.h"
-#include "volume/volume_format.hpp"
 
 namespace clpv {
 
@@ -28,19 +24,9 @@ std::string sweep_ways_text(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
 CountedText sweep_collect_text();
 
-/// Of a grid (kernels/sweep.h): numbers in a volume of planes, in a plane by itself, and in a volume with a border.
-std::size_t sweep_volume_numbers(int grid);
-std::size_t sweep_plane_numbers(int grid);
-std::size_t sweep_bordered_numbers(int grid);
-/// Volumes that sweep_ways.cl writes.
-int sweep_way_count();
-
-/// Whether injected light can be swept from where it lies: it is the bins' means, row by row. So are those across z alone; rows of
-/// those across x lie along y there, and of planes across y each lies in another page of memory (1.25 times the time).
-bool swept_in_place(const Basis& basis, const VolumeFormat& injected);
-/// `injected`: where light is swept from, if swept_in_place(); none: all of it from volumes of planes.
-std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected = {});
-/// `coarser_parts`: of the next coarser cascade; 0: there is none.
-std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);
+/// For bounce.cl: coefficients of six sides, Swept of 24 bins, clpv_arriving and clpv_leaving.
+std::string bounce_source_text();
+/// For sweep_collect.cl of all bounces: Sides, and Sides clpv_arriving(Swept).
+std::string arriving_source_text();
 
 }  // namespace clpv

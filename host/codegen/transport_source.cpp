@@ -5,14 +5,14 @@
 
 #include <array>
 
-#include "codegen/cell_macros.hpp"
+#include "codegen/linear_code.hpp"
 
 namespace clpv {
 namespace {
 
 int axis_index(const glm::ivec3& axis) {
   for (int i = 0; i < 6; ++i) {
-    if (kAxes[static_cast<std::size_t>(i)] == axis) return i;
+    if (kAxes[i] == axis) return i;
   }
   return -1;
 }
@@ -39,29 +39,26 @@ Matrix half_face_rows(const FaceTransport& faces, State source) {
   const int n = static_cast<int>(faces.faces.front().flux.size());
   Matrix rows(static_cast<int>(faces.faces.size()), n);
   for (int f = 0; f < rows.rows(); ++f) {
-    for (int i = 0; i < n; ++i)
-      rows(f, i) = 0.5 * faces.faces[static_cast<std::size_t>(f)].flux[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i) rows(f, i) = 0.5 * faces.faces[f].flux[i];
   }
   return source == State::fluxes ? rows * faces.lobes : rows;
 }
 
-void generate_faces(Generated& out, const Basis& basis, const FaceTransport& faces, const StepForm& form) {
+void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& form) {
   const Matrix rows = half_face_rows(faces, form.source);
-  const Mirrors mirrors = form.source == State::fluxes ? mirrors_of_fluxes() : mirrors_of(basis);
   std::array<std::string, 6> through;
   through.fill("0.0f");
   for (int k = 0; k < 6; ++k) {
-    const glm::ivec3 travel = kAxes[static_cast<std::size_t>(k)];
+    const glm::ivec3 travel = kAxes[k];
     Matrix five(5, rows.columns());
     for (int f = 0; f < 5; ++f)
       std::copy(rows.row(5 * k + f).begin(), rows.row(5 * k + f).end(), five.row(f).begin());
     const auto fluxes = form.functions_at_run_time
                             ? std::vector<std::string>(5)
-                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
-                                                 mirrors.across(axis_of(travel)));
+                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()));
     for (int f = 0; f < 5; ++f) {
       const int way = 5 * k + f;
-      const std::string& half = fluxes[static_cast<std::size_t>(f)];
+      const std::string& half = fluxes[f];
       std::string flux =
           out.arrive.name(form.functions_at_run_time ? fmt::format("clpv_flux_through(a{}, at[{}])", k, way)
                                                      : fmt::format("{0} + fabs({0})", half),
@@ -72,8 +69,7 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
         out.gains.push_back(flux);
         continue;
       }
-      std::string& sum =
-          through[static_cast<std::size_t>(axis_index(faces.faces[static_cast<std::size_t>(way)].normal))];
+      std::string& sum = through[axis_index(faces.faces[way].normal)];
       if (!form.blocking) {
         sum = out.arrive.add(sum, flux);
       } else if (sum == "0.0f") {
@@ -92,25 +88,17 @@ void generate_faces(Generated& out, const Basis& basis, const FaceTransport& fac
   if (form.target == State::fluxes) {
     out.gains = received;
   } else {
-    out.gains = out.arrive.product(faces.lobes, received,
-                                   {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
+    out.gains = out.arrive.product(faces.lobes, received);
   }
 }
 
 std::string expand_function(const FaceTransport& faces, const Basis& basis, State target) {
-  std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target sum) {\n";
   if (target == State::coefficients) {
-    text += "  Coefficients r;\n";
-    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = sum.c{0};\n", i);
+    std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target a) {\n  Coefficients r;\n";
+    for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = a.c{0};\n", i);
     return text + "  return r;\n}\n";
   }
-  LinearCode code;
-  const auto values = code.product(faces.lobes, fields("sum", 6),
-                                   {mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)});
-  text += code.text() + "  Coefficients r;\n";
-  for (int i = 0; i < basis.size(); ++i)
-    text += fmt::format("  r.c{} = {};\n", i, values[static_cast<std::size_t>(i)]);
-  return text + "  return r;\n}\n";
+  return LinearCode().function("Coefficients", "clpv_expand", "Target", faces.lobes);
 }
 
 std::string arrive_macro(const Generated& out) {
@@ -126,7 +114,7 @@ std::string arrive_macro(const Generated& out) {
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
   const auto& faces = std::get<FaceTransport>(transport.scheme);
   Generated out;
-  generate_faces(out, basis, faces, form);
+  generate_faces(out, faces, form);
   TransportSource result;
   result.source_count = form.source == State::fluxes ? 6 : basis.size();
   result.target_count = form.target == State::fluxes ? 6 : basis.size();

@@ -11,8 +11,8 @@
 #include "basis/lobe_quality.hpp"
 #include "basis/srbf.hpp"
 #include "commands/drawing.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
-#include "support/npy.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {

@@ -5,24 +5,17 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "basis/centre_search.hpp"
 #include "commands/basis_table.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
 /// Clamped cosines that a search is for, where no file says so.
 enum class SearchedCosines { all, axes };
-constexpr std::string_view name_of(SearchedCosines cosines) {
-  switch (cosines) {
-    case SearchedCosines::all:
-      return "all";
-    case SearchedCosines::axes:
-      return "axes";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<SearchedCosines> = name_list("all", "axes");
 
 struct BasisSearchOptions {
   std::optional<int> centres;  ///< none: no search

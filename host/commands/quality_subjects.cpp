@@ -7,8 +7,8 @@
 
 #include "commands/tracing_options.hpp"
 #include "scene/load.hpp"
-#include "support/cache_folder.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/log.hpp"
 
 namespace clpv {

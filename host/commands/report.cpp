@@ -19,8 +19,8 @@
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/input.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
-#include "support/npy.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
 

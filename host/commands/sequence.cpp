@@ -2,7 +2,6 @@
 // clpv sequence: a scene that moves, frame by frame into a folder, and into a film.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 
 #include "commands/choices.hpp"
@@ -14,6 +13,7 @@
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -24,14 +24,12 @@ constexpr int kMostFrames = 1000000;
 constexpr double kMostFramesPerSecond = 1000;
 
 double parse_rate(const std::string& text) {
-  double rate = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  const bool number = error == std::errc{} && end == text.data() + text.size();
-  if (!number || !(rate > 0 && rate <= kMostFramesPerSecond)) {  // NaN is in no range
+  const auto rate = parse_number<double>(text);
+  if (!rate || !(*rate > 0 && *rate <= kMostFramesPerSecond)) {  // NaN is in no range
     throw Error(ExitCode::usage, "--fps: found '{}', allowed: more than 0, up to {}", text,
                 kMostFramesPerSecond);
   }
-  return rate;
+  return *rate;
 }
 
 /// What can be known to be wrong before the scene is read.

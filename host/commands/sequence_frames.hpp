@@ -4,25 +4,18 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 #include "commands/render_request.hpp"
 #include "device/device.hpp"
 #include "image/tone_map.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
 enum class FrameFormat : unsigned { exr, png };
 
-constexpr std::string_view name_of(FrameFormat format) {
-  switch (format) {
-    case FrameFormat::exr:
-      return "exr";
-    case FrameFormat::png:
-      return "png";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
 
 /// DIR/frame-0000.exr and so on.
 std::filesystem::path frame_file(const std::filesystem::path& folder, int frame, FrameFormat format);

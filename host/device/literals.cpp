@@ -2,7 +2,7 @@
 #include "device/literals.hpp"
 
 #include "support/error.hpp"
-#include "support/literal.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 

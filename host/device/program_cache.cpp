@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "device/program_cache.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <system_error>
 
-#include "support/cache_folder.hpp"
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
 #include "support/log.hpp"
+#include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
@@ -21,14 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 
 // "clpv", then the version of the layout below: anything else in a file makes it worthless.
-constexpr std::string_view kMagic = "clpv program 1\n";
+constexpr std::string_view kMagic = "clpv program 2\n";
 constexpr std::string_view kSuffix = ".program";
 
-/// FNV-1a. Names files and finds damage; telling keys apart is left to comparing them.
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  return hash;
+/// Names files and finds damage; telling keys apart is left to comparing them.
+std::uint64_t hash_of(std::string_view bytes) {
+  return Fingerprint().add(bytes).value();
 }
 
 /// A file's contents: magic, key, binary, each with its length, then the hash of all before it.
@@ -40,7 +35,7 @@ std::string pack(const std::string& key, const ProgramCache::Binary& binary) {
   };
   append(key.data(), key.size());
   append(binary.data(), binary.size());
-  const std::uint64_t hash = fnv1a(bytes);
+  const std::uint64_t hash = hash_of(bytes);
   return bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
 }
 
@@ -66,17 +61,11 @@ std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::st
   if (bytes.size() < kMagic.size() + sizeof hash || !bytes.starts_with(kMagic)) return std::nullopt;
   std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
   bytes.remove_suffix(sizeof hash);
-  if (fnv1a(bytes) != hash) return std::nullopt;
+  if (hash_of(bytes) != hash) return std::nullopt;
   bytes.remove_prefix(kMagic.size());
   std::string_view stored_key, binary;
   if (!take_sized(bytes, stored_key) || !take_sized(bytes, binary) || stored_key != key) return std::nullopt;
   return ProgramCache::Binary(binary.begin(), binary.end());
-}
-
-/// A name beside `file` that no other process or thread writes to.
-fs::path name_beside(const fs::path& file) {
-  static std::atomic<unsigned> count{0};
-  return fs::path(file) += fmt::format(".{}.{}.new", ::getpid(), count++);
 }
 
 }  // namespace
@@ -98,7 +87,7 @@ std::string ProgramCache::key(const Device& device, const std::string& options, 
 }
 
 fs::path ProgramCache::file_of(const std::string& key) const {
-  return folder_ / fmt::format("{:016x}{}", fnv1a(key), kSuffix);
+  return folder_ / fmt::format("{:016x}{}", hash_of(key), kSuffix);
 }
 
 std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) const {
@@ -116,22 +105,12 @@ std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) c
 }
 
 bool ProgramCache::store(const std::string& key, const Binary& binary) const {
-  const fs::path file = file_of(key);
-  const fs::path beside = name_beside(file);
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (!error) {
-    const std::string bytes = pack(key, binary);
-    std::ofstream out(beside, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) error = std::make_error_code(std::errc::io_error);
-  }
-  if (!error) fs::rename(beside, file, error);
-  if (error) {
-    spdlog::debug("{}: cannot keep a compiled program: {}", file.string(), error.message());
-    std::error_code ignored;
-    fs::remove(beside, ignored);
+  std::error_code failed;  // told by write_file()
+  fs::create_directories(folder_, failed);
+  try {
+    write_file(file_of(key), pack(key, binary));
+  } catch (const Error& error) {
+    spdlog::debug("a compiled program is not kept: {}", error.what());
     return false;
   }
   drop_oldest();

@@ -5,14 +5,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <utility>
 
 #include "device/cl_error.hpp"
 #include "device/compile_notice.hpp"
 #include "device/kernel.hpp"
+#include "support/fingerprint.hpp"
 #include "support/log.hpp"
+#include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
@@ -55,9 +55,8 @@ void dump(const ProgramSource& source, const std::string& text) {
   const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
   if (folder == nullptr || *folder == '\0') return;
   const std::filesystem::path file =
-      std::filesystem::path(folder) / fmt::format("{:016x}.{}", std::hash<std::string>{}(text), source.file);
-  std::ofstream out(file, std::ios::binary);
-  if (!(out << text)) throw Error(ExitCode::run_time, "CLPV_PROGRAM_DUMP: cannot write {}", file.string());
+      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), source.file);
+  write_file(file, text);
 }
 
 }  // namespace

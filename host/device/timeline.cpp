@@ -21,13 +21,13 @@ void Timeline::end(cl::CommandQueue& queue) {
   if (!events_valid_) {
     queue.finish();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started_;
-    entries_[static_cast<std::size_t>(current_)].wall_ms += elapsed.count();
+    entries_[current_].wall_ms += elapsed.count();
   }
   current_ = -1;
 }
 
 void Timeline::add(const cl::Event& event) {
-  if (current_ >= 0 && events_valid_) entries_[static_cast<std::size_t>(current_)].events.push_back(event);
+  if (current_ >= 0 && events_valid_) entries_[current_].events.push_back(event);
 }
 
 std::vector<StageTime> Timeline::times() const {

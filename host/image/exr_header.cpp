@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "support/little_endian.hpp"
-#include "support/refuse.hpp"
+#include "support/error.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 namespace {

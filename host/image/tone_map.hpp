@@ -3,25 +3,16 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <string_view>
 
 #include "image/image.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
 enum class ToneMap { none, reinhard, aces };
 
-constexpr std::string_view name_of(ToneMap curve) {
-  switch (curve) {
-    case ToneMap::none:
-      return "none";
-    case ToneMap::reinhard:
-      return "reinhard";
-    case ToneMap::aces:
-      return "aces";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<ToneMap> = name_list("none", "reinhard", "aces");
 
 /// The tone curve on linear colour, into [0,1].
 /// none: clamped. reinhard: E. Reinhard et al. 2002, eq. 3, L/(1+L) on the luminance, then clamped.

@@ -3,52 +3,27 @@
 // Those that a basis knows are beside it: TransportKind, Blocking, LobeKind. Knows no OpenCL.
 #pragma once
 
-#include <string_view>
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
 enum class PresetName { best, paper };
 
-constexpr std::string_view name_of(PresetName preset) {
-  switch (preset) {
-    case PresetName::best:
-      return "best";
-    case PresetName::paper:
-      return "paper";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<PresetName> = name_list("best", "paper");
 
 /// How volumes lie in memory, as kernels/volume/ has them. `image`: a 3-D image of RGBA texels, four coefficients each;
 /// `aos`: the coefficients of a sample side by side; `soa`: a plane of samples a channel and coefficient; `tiled`: blocks
 /// of 8 samples along x by all coefficients.
 enum class Layout { image, aos, soa, tiled };
 
-constexpr std::string_view name_of(Layout layout) {
-  switch (layout) {
-    case Layout::image:
-      return "image";
-    case Layout::aos:
-      return "aos";
-    case Layout::soa:
-      return "soa";
-    case Layout::tiled:
-      return "tiled";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Layout> = name_list("image", "aos", "soa", "tiled");
 
 enum class Storage { float32, float16 };
 
-constexpr std::string_view name_of(Storage storage) {
-  switch (storage) {
-    case Storage::float32:
-      return "float";
-    case Storage::float16:
-      return "half";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Storage> = name_list("float", "half");
 
 struct VolumeFormat {
   Layout layout = Layout::soa;
@@ -61,15 +36,8 @@ struct VolumeFormat {
 /// (docs/method.md, 'Propagation').
 enum class State { coefficients, fluxes };
 
-constexpr std::string_view name_of(State state) {
-  switch (state) {
-    case State::coefficients:
-      return "coefficients";
-    case State::fluxes:
-      return "fluxes";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<State> = name_list("coefficients", "fluxes");
 
 /// Where propagation's lobes are made.
 enum class LobeTime {
@@ -77,41 +45,20 @@ enum class LobeTime {
   kernel,  ///< made from each face's normal, read from memory, and rotated ones from a table
 };
 
-constexpr std::string_view name_of(LobeTime time) {
-  switch (time) {
-    case LobeTime::host:
-      return "host";
-    case LobeTime::kernel:
-      return "kernel";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<LobeTime> = name_list("host", "kernel");
 
 /// How stages come by the values of SRBF functions.
 enum class Evaluation { exact, table };
 
-constexpr std::string_view name_of(Evaluation evaluation) {
-  switch (evaluation) {
-    case Evaluation::exact:
-      return "exact";
-    case Evaluation::table:
-      return "table";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Evaluation> = name_list("exact", "table");
 
 /// What kernels read look-up tables as.
 enum class TableStorage { buffer, image };
 
-constexpr std::string_view name_of(TableStorage storage) {
-  switch (storage) {
-    case TableStorage::buffer:
-      return "buffer";
-    case TableStorage::image:
-      return "image";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<TableStorage> = name_list("buffer", "image");
 
 /// What blocks light on its way.
 enum class Blockers {
@@ -119,15 +66,8 @@ enum class Blockers {
   seen,   ///< the surfels that lights' maps and the camera see
 };
 
-constexpr std::string_view name_of(Blockers blockers) {
-  switch (blockers) {
-    case Blockers::scene:
-      return "scene";
-    case Blockers::seen:
-      return "seen";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Blockers> = name_list("scene", "seen");
 
 /// Which of the eight cells round a point light a surface.
 enum class Gathering {
@@ -135,15 +75,8 @@ enum class Gathering {
   visible,  ///< those that the scene's triangles do not hide from it
 };
 
-constexpr std::string_view name_of(Gathering gathering) {
-  switch (gathering) {
-    case Gathering::all:
-      return "all";
-    case Gathering::visible:
-      return "visible";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Gathering> = name_list("all", "visible");
 
 /// How far off a surface it looks volumes up [cells]: half a cell, so that it is not lit by those behind it; closer where
 /// those are told apart.
@@ -160,19 +93,8 @@ constexpr double usual_gather_offset(Gathering gathering) {
 /// Directions that light is swept along: 24 bins in so many parts (basis/sweep.hpp).
 enum class Directions { of24, of96, of216, of384 };
 
-constexpr std::string_view name_of(Directions directions) {
-  switch (directions) {
-    case Directions::of24:
-      return "24";
-    case Directions::of96:
-      return "96";
-    case Directions::of216:
-      return "216";
-    case Directions::of384:
-      return "384";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Directions> = name_list("24", "96", "216", "384");
 
 /// Parts of a bin along each of its edges.
 constexpr int parts_of(Directions directions) {
@@ -182,28 +104,12 @@ constexpr int parts_of(Directions directions) {
 /// Surfaces between a light and the surface seen.
 enum class Bounces { one, two, all };
 
-constexpr std::string_view name_of(Bounces bounces) {
-  switch (bounces) {
-    case Bounces::one:
-      return "1";
-    case Bounces::two:
-      return "2";
-    case Bounces::all:
-      return "all";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Bounces> = name_list("1", "2", "all");
 
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
 
-constexpr std::string_view name_of(RsmFormat format) {
-  switch (format) {
-    case RsmFormat::float32:
-      return "float";
-    case RsmFormat::paper:
-      return "paper";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<RsmFormat> = name_list("float", "paper");
 
 }  // namespace clpv

@@ -2,9 +2,8 @@
 // What an image can show of a frame.
 #pragma once
 
-#include <string_view>
-
 #include "kernels/shared/shade.h"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -24,24 +23,8 @@ constexpr bool shows_sky(Show show) {
   return show == Show::full || show == Show::direct;
 }
 
-constexpr std::string_view name_of(Show show) {
-  switch (show) {
-    case Show::full:
-      return "full";
-    case Show::direct:
-      return "direct";
-    case Show::indirect:
-      return "indirect";
-    case Show::irradiance:
-      return "irradiance";
-    case Show::albedo:
-      return "albedo";
-    case Show::normal:
-      return "normal";
-    case Show::depth:
-      return "depth";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "irradiance", "albedo", "normal",
+                                               "depth");
 
 }  // namespace clpv

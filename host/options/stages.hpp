@@ -3,7 +3,7 @@
 // the benchmarks. A new one that is not everywhere it must be does not compile.
 #pragma once
 
-#include <string_view>
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -24,35 +24,9 @@ enum class Stage {
   shade
 };
 
-constexpr std::string_view name_of(Stage stage) {
-  switch (stage) {
-    case Stage::sizes:
-      return "sizes";
-    case Stage::rasterize:
-      return "rasterize";
-    case Stage::emit:
-      return "emit";
-    case Stage::inject:
-      return "inject";
-    case Stage::block:
-      return "block";
-    case Stage::reflect:
-      return "reflect";
-    case Stage::propagate:
-      return "propagate";
-    case Stage::sweep:
-      return "sweep";
-    case Stage::bounce:
-      return "bounce";
-    case Stage::see:
-      return "see";
-    case Stage::gather:
-      return "gather";
-    case Stage::shade:
-      return "shade";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "inject", "block", "reflect",
+                                                "propagate", "sweep", "bounce", "see", "gather", "shade");
 
 /// A part of a frame with a time of its own: a stage, or what it does for one purpose. `whole`: what a benchmark times as
 /// one, whatever it launches.
@@ -72,36 +46,9 @@ enum class Pass {
   whole,
 };
 
-constexpr std::string_view name_of(Pass pass) {
-  switch (pass) {
-    case Pass::rasterize_camera:
-      return "rasterize-camera";
-    case Pass::rasterize_shadow:
-      return "rasterize-shadow";
-    case Pass::rasterize_rsm:
-      return "rasterize-rsm";
-    case Pass::emit:
-      return "emit";
-    case Pass::inject_light:
-      return "inject-light";
-    case Pass::inject_geometry:
-      return "inject-geometry";
-    case Pass::block:
-      return "block";
-    case Pass::reflect:
-      return "reflect";
-    case Pass::propagate:
-      return "propagate";
-    case Pass::see:
-      return "see";
-    case Pass::gather:
-      return "gather";
-    case Pass::shade:
-      return "shade";
-    case Pass::whole:
-      return "whole";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow", "rasterize-rsm",
+                                               "emit", "inject-light", "inject-geometry", "block", "reflect",
+                                               "propagate", "see", "gather", "shade", "whole");
 
 }  // namespace clpv

@@ -3,11 +3,10 @@
 
 #include <dlfcn.h>
 
-#include <charconv>
 #include <cstdlib>
-#include <string_view>
 
 #include "support/error.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -17,11 +16,7 @@ constexpr const char* kModule = "clpv_mpi.so";  // found by the program's RUNPAT
 /// A number of the environment; nothing where there is none.
 std::optional<int> number(const char* variable) {
   const char* text = std::getenv(variable);
-  if (text == nullptr) return std::nullopt;
-  const std::string_view all = text;
-  int value = 0;
-  const auto [end, error] = std::from_chars(all.data(), all.data() + all.size(), value);
-  return error == std::errc{} && end == all.data() + all.size() ? std::optional(value) : std::nullopt;
+  return text == nullptr ? std::nullopt : parse_number<int>(text);
 }
 
 }  // namespace

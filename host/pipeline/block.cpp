@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/block.hpp"
 
-#include "codegen/cell_macros.hpp"
+#include "codegen/linear_code.hpp"
 #include "kernels/shared/block.h"
 
 namespace clpv {

@@ -25,9 +25,6 @@ class SceneBlocker {
   /// Overwrites `geometry`: grid + 1 samples a side, 3 numbers, one channel.
   void block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry);
 
-  /// Next time all is made anew.
-  void forget() { masks_.forget(); }
-
   /// Of its masks.
   static std::size_t bytes(int grid, int cascades);
 

@@ -2,7 +2,7 @@
 #include "pipeline/bounce.hpp"
 
 #include "basis/bounce.hpp"
-#include "codegen/bounce_source.hpp"
+#include "codegen/sweep_source.hpp"
 
 namespace clpv {
 namespace {

@@ -20,36 +20,35 @@ bool moves(const Scene& scene, std::uint32_t triangle) {
 }  // namespace
 
 FrameEmission::FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers)
-    : session_(session), scene_(scene), triangles_(emissive_triangles(scene)), emitter_(session, buffers) {
+    : session_(session),
+      scene_(scene),
+      buffers_(buffers),
+      triangles_(emissive_triangles(scene)),
+      emitter_(session, buffers) {
   moving_ = std::ranges::any_of(triangles_, [&](std::uint32_t t) { return moves(scene, t); });
 }
 
-double FrameEmission::most(double cell, const MadeOf& triangles) {
-  MadeOf wanted = MadeOf().add(cell);
-  if (moving_) wanted.add(triangles);
-  measured_.update(wanted, [&] { most_ = most_emitted(scene_, triangles_, cell); });
+double FrameEmission::most(double cell) {
+  measured_.update(Fingerprint().add(cell).add(instant()).value(),
+                   [&] { most_ = most_emitted(scene_, triangles_, cell); });
   return most_;
 }
 
-void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, const MadeOf& triangles, float scale) {
-  MadeOf wanted;
+void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, float scale, unsigned epoch) {
+  Fingerprint wanted;
   for (const ClpvGrid& grid : grids) wanted.add(grid.origin).add(grid.cell);
-  if (moving_) wanted.add(triangles);
-  planned_.update(wanted, [&] { plan_ = plan_emission(scene_, triangles_, grids); });
+  planned_.update(wanted.add(instant()).value(), [&] { plan_ = plan_emission(scene_, triangles_, grids); });
   if (plan_.coarsened > coarsened_) {
     spdlog::warn("emissive surfaces: points {} times as far apart as usual, so that there are at most {}",
                  1 << plan_.coarsened, kMostEmittedPoints);
     coarsened_ = plan_.coarsened;
   }
-  Fingerprint print;
-  print.add(plan_.parts);
   scale_ = scale;
-  made_of_ = MadeOf().add(print.value()).add(scale);
-  if (moving_) made_of_.add(triangles);
+  key_ = Fingerprint().add(plan_.parts).add(scale).add(instant()).add(epoch).value();
 }
 
 void FrameEmission::emit() {
-  emitted_.update(made_of_, [&] {
+  emitted_.update(key_, [&] {
     const StageScope scope(session_, {Pass::emit});
     emitter_.emit(plan_, scale_);
   });

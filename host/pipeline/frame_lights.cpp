@@ -2,44 +2,94 @@
 #include "pipeline/frame_lights.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "pipeline/frame_volumes.hpp"
-#include "pipeline/light_scale.hpp"
 #include "pipeline/view.hpp"
+#include "scene/light_kind.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv {
+namespace {
+
+constexpr double kFull = 256;         // [W/sr] of a full cell, stored
+constexpr double kMostDoubling = 60;  // of a light so weak that floats end first
+
+/// The most that a light sends through a cell [W].
+double most_flux(const ClpvLight& light, double cell) {
+  const double brightest = *std::max_element(light.intensity, light.intensity + 3);
+  switch (kind_of(light)) {
+    case LightKind::directional:
+      return brightest * (cell * cell);
+    case LightKind::spot:
+    case LightKind::point:
+      break;
+  }
+  return brightest * (4 * std::numbers::pi);
+}
+
+}  // namespace
 
 FrameLights::FrameLights(Session& session, const Scene& scene, const SceneBuffers& buffers,
                          Rasterizer& rasterizer, const RenderOptions& options)
-    : session_(session), scene_(scene), buffers_(buffers), rasterizer_(rasterizer), options_(options) {}
+    : session_(session),
+      scene_(scene),
+      buffers_(buffers),
+      rasterizer_(rasterizer),
+      options_(options),
+      brightest_sky_(scene.sky ? scene.sky->brightest() : 0) {
+  if (emits(scene)) emission_.emplace(session, scene, buffers);
+}
+
+void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& grids) {
+  find_lights(camera);
+  find_scale(grids.back());
+  for (Lit& lit : lights_) {
+    lit.shadow.light = lit.light;
+    lit.shadow.views = shadow_views(lit.light, buffers_.bounds, options_.shadow_size);
+    lit.rsms.resize(injected_volumes(options_));
+    lit.wanted.clear();
+    for (const ClpvGrid& grid : grids) {
+      std::vector<ClpvView> views = rsm_views(lit.light, grid, buffers_.bounds, options_.rsm_size);
+      const CacheKey key = key_of(scaled(lit.light, scale_), views);
+      lit.wanted.push_back({std::move(views), key});
+    }
+  }
+  if (emission_) emission_->prepare(grids, scale_, epoch_);
+}
 
 /// Buffers are kept as long as the same lights shine.
-void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& grids, const MadeOf& triangles,
-                          double other) {
-  grids_ = grids;
-  triangles_ = triangles;
+void FrameLights::find_lights(const Camera& camera) {
   const std::vector<Light> shining = scene_.lights_for(camera);
   if (lights_.size() != shining.size() || lit_by_ != camera.light) lights_.clear();
   lit_by_ = camera.light;
   lights_.resize(shining.size());
-  std::vector<ClpvLight> all;
   for (std::size_t i = 0; i < shining.size(); ++i) {
     const auto found = std::ranges::find(scene_.lights, shining[i].name, &Light::name);
-    Lit& lit = lights_[i];
-    lit.light = lit.shadow.light = shining[i].data;
-    lit.index = static_cast<int>(found - scene_.lights.begin());
-    lit.shadow.views = shadow_views(lit.light, buffers_.bounds, options_.shadow_size);
-    lit.rsms.resize(static_cast<std::size_t>(injected_volumes(options_)));
-    all.push_back(lit.light);
+    lights_[i].light = shining[i].data;
+    lights_[i].index = static_cast<int>(found - scene_.lights.begin());
   }
-  scale_ = light_scale(options_.format(), all, grids_.back().cell, other);
+}
+
+void FrameLights::find_scale(const ClpvGrid& coarsest) {
+  const double cell = double{coarsest.cell};
+  double other = emission_ ? emission_->most(cell) : 0;
+  other += std::numbers::pi * double{brightest_sky_} * cell * cell;
+  std::vector<ClpvLight> all;
+  for (const Lit& lit : lights_) all.push_back(lit.light);
+  scale_ = light_scale(options_.format(), all, coarsest.cell, other);
+}
+
+CacheKey FrameLights::key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const {
+  return Fingerprint().add(light).add(views).add(buffers_.runs->instant()).add(epoch_).value();
 }
 
 void FrameLights::rasterize_shadows() {
-  const auto texels =
-      static_cast<std::size_t>(options_.shadow_size) * static_cast<std::size_t>(options_.shadow_size);
+  const std::size_t texels = std::size_t(options_.shadow_size) * options_.shadow_size;
   for (Lit& lit : lights_) {
-    lit.shadow_kept.update(MadeOf().add(lit.shadow.views).add(triangles_), [&] {
+    // Shadows are of the views alone, however bright the light is.
+    lit.shadow_cached.update(key_of({}, lit.shadow.views), [&] {
       const StageScope scope(session_, {Pass::rasterize_shadow, {}, lit.index});
       lit.shadow.depths.resize(lit.shadow.views.size());
       for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
@@ -48,19 +98,6 @@ void FrameLights::rasterize_shadows() {
       }
     });
   }
-}
-
-/// Views that do not follow a cascade are the same for all of them.
-std::size_t FrameLights::slot(const Lit& lit, int cascade) const {
-  return rsm_follows_cascade(lit.light) && lit.rsms.size() > 1 ? static_cast<std::size_t>(cascade) : 0;
-}
-
-FrameLights::Wanted FrameLights::wanted_rsms(const Lit& lit, int cascade) const {
-  Wanted wanted{
-      rsm_views(lit.light, grids_[static_cast<std::size_t>(cascade)], buffers_.bounds, options_.rsm_size),
-      {}};
-  wanted.made_of.add(scaled(lit.light, scale_)).add(wanted.views).add(triangles_);
-  return wanted;
 }
 
 void FrameLights::rasterize(const Lit& lit, const std::vector<ClpvView>& views,
@@ -74,21 +111,33 @@ void FrameLights::rasterize(const Lit& lit, const std::vector<ClpvView>& views,
   }
 }
 
+std::size_t FrameLights::slot(const Lit& lit, int cascade) {
+  return rsm_follows_cascade(lit.light) && lit.rsms.size() > 1 ? cascade : 0;
+}
+
 void FrameLights::rasterize_rsms(int cascade) {
   for (Lit& lit : lights_) {
-    const Wanted wanted = wanted_rsms(lit, cascade);
     Rsms& rsms = lit.rsms[slot(lit, cascade)];
-    rsms.kept.update(wanted.made_of, [&] {
+    rsms.cached.update(lit.wanted[cascade].key, [&] {
       const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
-      rasterize(lit, wanted.views, rsms.surfaces);
+      rasterize(lit, lit.wanted[cascade].views, rsms.surfaces);
     });
   }
 }
 
-MadeOf FrameLights::rsms_made_of(int cascade) const {
-  MadeOf all;
-  for (const Lit& lit : lights_) all.add(wanted_rsms(lit, cascade).made_of);
-  return all;
+void FrameLights::update_sources(int cascade) {
+  rasterize_rsms(cascade);
+  if (emission_) emission_->emit();
+}
+
+CacheKey FrameLights::rsms_key(int cascade) const {
+  Fingerprint all;
+  for (const Lit& lit : lights_) all.add(lit.wanted[cascade].key);
+  return all.value();
+}
+
+CacheKey FrameLights::sources_key(int cascade) const {
+  return Fingerprint().add(rsms_key(cascade)).add(emission_ ? emission_->key() : 0).value();
 }
 
 std::vector<const Surface*> FrameLights::rsms(int cascade) const {
@@ -99,17 +148,30 @@ std::vector<const Surface*> FrameLights::rsms(int cascade) const {
   return all;
 }
 
+std::vector<const Surface*> FrameLights::sources(int cascade) const {
+  std::vector<const Surface*> all = rsms(cascade);
+  if (emission_) all.push_back(&emission_->points());
+  return all;
+}
+
 std::vector<ShadowedLight> FrameLights::shadowed() const {
   std::vector<ShadowedLight> all;
   for (const Lit& lit : lights_) all.push_back(lit.shadow);
   return all;
 }
 
-void FrameLights::forget() {
-  for (Lit& lit : lights_) {
-    lit.shadow_kept.forget();
-    for (Rsms& rsms : lit.rsms) rsms.kept.forget();
-  }
+float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
+                  double other) {
+  double flux = other;
+  for (const ClpvLight& light : lights) flux += most_flux(light, static_cast<double>(coarsest_cell));
+  if (format.storage != Storage::float16 || !(flux > 0)) return 1;
+  const double doublings = std::floor(std::log2(kFull * std::numbers::pi / flux));
+  return static_cast<float>(std::exp2(std::clamp(doublings, -kMostDoubling, kMostDoubling)));
+}
+
+ClpvLight scaled(ClpvLight light, float scale) {
+  for (float& component : light.intensity) component *= scale;
+  return light;
 }
 
 }  // namespace clpv

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "codegen/gather_source.hpp"
-#include "pipeline/tile_rows.hpp"
+#include "pipeline/surface.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -87,29 +87,19 @@ void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& g
   if (volumes.size() != grids.size()) {
     throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades", volumes.size(), grids.size());
   }
-  for (const Volume* volume : volumes) {
-    const VolumeShape& shape = volume->shape();
-    if (shape.n != options_.grid || shape.coefficients != coefficients_ || shape.channels != 3) {
-      throw Error(ExitCode::run_time,
-                  "gather: volume of {}^3 cells, {} coefficients, {} channels; made for {}^3, {}, 3", shape.n,
-                  shape.coefficients, shape.channels, options_.grid, coefficients_);
-    }
-    if (volume->format() != options_.format) {
-      throw Error(ExitCode::run_time, "gather: a volume of {}; made for {}", format_name(volume->format()),
-                  format_name(options_.format));
-    }
-  }
+  for (const Volume* volume : volumes)
+    clpv::require_fit(*volume, {options_.grid, coefficients_, 3}, options_.format, "gathering");
 }
 
 void Gatherer::reserve(std::size_t cascades) {
   session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
   if (!packs()) return;
-  const auto n = static_cast<std::size_t>(options_.grid), pairs = static_cast<std::size_t>(pairs_);
+  const std::size_t n = options_.grid, pairs = pairs_;
   session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
 }
 
 void Gatherer::pack(const Volume& volume, std::size_t slot) {
-  const auto n = static_cast<std::size_t>(options_.grid);
+  const std::size_t n = options_.grid;
   pack_->set(volume.memory(), packed_, static_cast<cl_uint>(slot * n * n * n));
   stencil_.launch(*pack_, 1);
 }

@@ -26,20 +26,6 @@ std::size_t block_count(std::size_t texels) {
   return (texels + length - 1) / length;
 }
 
-void require_fit(const Volume& volume, const VolumeShape& wanted, const VolumeFormat& format,
-                 const char* what) {
-  const VolumeShape& found = volume.shape();
-  if (volume.format() != format) {
-    throw Error(ExitCode::run_time, "{} volume of {}, injection is made for {}", what,
-                format_name(volume.format()), format_name(format));
-  }
-  if (found != wanted) {
-    throw Error(ExitCode::run_time,
-                "{} volume has {}^3 x {} x {} values, injection is made for {}^3 x {} x {}", what, found.n,
-                found.coefficients, found.channels, wanted.n, wanted.coefficients, wanted.channels);
-  }
-}
-
 }  // namespace
 
 Injector::Injector(Session& session, const Basis& basis, const InjectOptions& options)
@@ -126,14 +112,14 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
 }
 
 void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
-  require_fit(light, {options_.grid, basis_.size(), 3}, options_.format, "light");
+  require_fit(light, {options_.grid, basis_.size(), 3}, options_.format, "injection of light");
   inject(Kind::light, rsm, grid, 1, light);
 }
 
 void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride) {
   if (stride < 1) throw Error(ExitCode::usage, "inject: stride {} is not at least 1", stride);
   require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1}, options_.format,
-              "geometry");
+              "injection of blockers");
   inject(Kind::geometry, surface, grid, stride, geometry);
 }
 

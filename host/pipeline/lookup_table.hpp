@@ -7,8 +7,8 @@
 #include <string>
 
 #include "basis/basis.hpp"
+#include "basis/kernel_text.hpp"
 #include "basis/rotated_lobe.hpp"
-#include "basis/table_kernel.hpp"
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "options/choices.hpp"

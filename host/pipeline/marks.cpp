@@ -12,10 +12,11 @@ namespace {
 constexpr double kReach = 0.51;
 // Bases are as many grids apart, and stay while a cascade moves that far.
 constexpr int kGridsApart = 4;
+constexpr std::size_t kGroup = 64;
 
 /// Where a grid stands. Its first cell is at least two grids from the base along each axis, so that no number of a cell near
 /// it is negative.
-ClpvRegion region_of(const ClpvGrid& grid) {
+ClpvRegion place_of(const ClpvGrid& grid) {
   ClpvRegion place{};
   place.cell = grid.cell;
   const double n = grid.n, apart = kGridsApart * n, cell = grid.cell;
@@ -69,7 +70,7 @@ bool meet(const Bounds& a, const Bounds& b) {
 }  // namespace
 
 std::size_t MarksShape::words_a_cascade() const {
-  const auto along = static_cast<std::size_t>(cells);
+  const std::size_t along = cells;
   return along * along * along * words;
 }
 
@@ -98,14 +99,10 @@ cl_uint TriangleMarks::slot(std::size_t cascade) const {
   return static_cast<cl_uint>(std::min(cascade, states_.size() - 1));
 }
 
-void TriangleMarks::forget() {
-  for (std::optional<State>& state : states_) state.reset();
-}
-
 /// Makes room for what is to be marked: none where all is as it was.
 std::optional<ClpvRegion> TriangleMarks::prepare(std::size_t cascade, const ClpvGrid& grid) {
   std::optional<State>& state = states_[slot(cascade)];
-  const ClpvRegion place = region_of(grid);
+  const ClpvRegion place = place_of(grid);
   const ClpvRegion region = state ? stale(*state, place) : whole(place);
   state.reset();  // should anything below throw
   if (region.boxes > 0) {
@@ -182,8 +179,8 @@ void TriangleMarks::add_box(ClpvRegion& region, const ClpvBox& box) const {
 /// Moves what stays, and clears what is made anew.
 void TriangleMarks::clear(std::size_t cascade, const ClpvRegion& region) {
   const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
-  const auto along = static_cast<std::size_t>(shape_.cells);
-  const cl::NDRange cells(along, along, along), group(kMarkGroup, 1, 1);
+  const std::size_t along = shape_.cells;
+  const cl::NDRange cells(along, along, along), group(kGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(marks_, bytes, from);
   if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
     move_.set(region, marks_, slot(cascade), spare_).launch(cells, group);

@@ -62,9 +62,6 @@ class TriangleMarks {
   /// Which of `MarksShape::cascades` a cascade's are.
   cl_uint slot(std::size_t cascade) const;
 
-  /// Next time all is made anew.
-  void forget();
-
  private:
   struct State {  ///< what a cascade's marks are of
     ClpvRegion place;

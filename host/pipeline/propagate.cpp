@@ -115,7 +115,7 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   const Volume* source = &volumes.injected;
   Form* last = nullptr;
   for (int step = 1; step <= iterations; ++step) {
-    const Volume& target = *travelling_[static_cast<std::size_t>(step % 2)];
+    const Volume& target = *travelling_[step % 2];
     last = &form(step == 1, blocks && reads_transmittance(step));
     const auto run = [&](const Volume& so_far, const Volume& next) {
       run_step(*last, step == 1, *source, target, so_far, next);

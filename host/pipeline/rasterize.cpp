@@ -5,7 +5,7 @@
 
 #include "kernels/shared/raster.h"
 #include "kernels/shared/region.h"
-#include "pipeline/tile_rows.hpp"
+#include "pipeline/surface.hpp"
 #include "pipeline/view.hpp"
 
 namespace clpv {

@@ -2,7 +2,7 @@
 #include "pipeline/reflect.hpp"
 
 #include "basis/bounce.hpp"
-#include "codegen/cell_macros.hpp"
+#include "codegen/linear_code.hpp"
 #include "kernels/shared/reflect.h"
 
 namespace clpv {
@@ -10,13 +10,14 @@ namespace {
 
 static_assert(kReflectingSides == CLPV_SIDES);
 
-constexpr unsigned kMostReflectors = 1u << 18;  // a launch
+constexpr std::size_t kGroup = 64;
+constexpr unsigned kMostTriangles = 1u << 18;  // a launch
 
-MarksShape sides_shape(int grid) {
+MarksShape shape_of(int grid) {
   return {grid, grid, CLPV_SIDES * CLPV_SIDE_WORDS, 1};
 }
 
-ProgramSource reflect_program(const SceneBuffers& scene, int grid) {
+ProgramSource triangles_program(const SceneBuffers& scene, int grid) {
   ProgramSource source{"reflect.cl", {}, {}};
   source.literals.integer("CLPV_GRID", grid)
       .flag("CLPV_MASKED", scene.masked)
@@ -25,7 +26,7 @@ ProgramSource reflect_program(const SceneBuffers& scene, int grid) {
   return source;
 }
 
-ProgramSource reflect_shares_program(int grid, const VolumeFormat& format) {
+ProgramSource shares_program(int grid, const VolumeFormat& format) {
   ProgramSource source{"reflect_shares.cl", {}, coefficient_macros(kReflectingSides)};
   source.literals.integer("CLPV_GRID", grid).real("CLPV_EDGE_LOSS", edge_loss());
   add_format_literals(source.literals, format);
@@ -35,16 +36,16 @@ ProgramSource reflect_shares_program(int grid, const VolumeFormat& format) {
 }  // namespace
 
 std::size_t SceneReflector::bytes(int grid) {
-  return marks_bytes(sides_shape(grid));
+  return marks_bytes(shape_of(grid));
 }
 
 SceneReflector::SceneReflector(Session& session, const SceneBuffers& scene, int grid, int cascades,
                                const VolumeFormat& format)
     : scene_(scene),
       grid_(grid),
-      sides_(session, scene, sides_shape(grid), kMostReflectors, "sides of triangles that reflect"),
-      triangles_(session, reflect_program(scene, grid), "reflect_triangles"),
-      shares_(session, reflect_shares_program(grid, format), "reflect_shares") {
+      sides_(session, scene, shape_of(grid), kMostTriangles, "sides of triangles that reflect"),
+      triangles_(session, triangles_program(scene, grid), "reflect_triangles"),
+      shares_(session, shares_program(grid, format), "reflect_shares") {
   for (int c = 0; c < cascades; ++c) {
     reflectors_.push_back(
         std::make_unique<Volume>(session, VolumeShape{grid, kReflectingSides, 3}, "reflectors", format));
@@ -54,8 +55,8 @@ SceneReflector::SceneReflector(Session& session, const SceneBuffers& scene, int 
 void SceneReflector::reflect(std::size_t cascade, const ClpvGrid& grid) {
   sides_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, sides_.buffer());
   shares_.set(sides_.buffer(), reflectors_[cascade]->memory());
-  const auto cells = static_cast<std::size_t>(grid_);
-  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMarkGroup, 1, 1));
+  const std::size_t cells = grid_;
+  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kGroup, 1, 1));
 }
 
 }  // namespace clpv

@@ -31,9 +31,6 @@ class SceneReflector {
   /// kReflectingSides numbers, three channels.
   const Volume& reflectors(std::size_t cascade) const { return *reflectors_[cascade]; }
 
-  /// Next time all is made anew.
-  void forget() { sides_.forget(); }
-
   /// Of what is counted, whatever the number of cascades: that of one is made anew from all triangles near it.
   static std::size_t bytes(int grid);
 

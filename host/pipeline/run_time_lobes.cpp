@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "basis/table_kernel.hpp"
+#include "basis/kernel_text.hpp"
 #include "codegen/inject_source.hpp"
 #include "support/error.hpp"
 

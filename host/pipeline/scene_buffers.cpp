@@ -150,7 +150,9 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
 }
 
 void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) {
-  for (const Part& part : buffers.runs->move(scene)) {
+  const std::vector<Part> changed = buffers.runs->move(scene);
+  if (changed.empty()) return;
+  for (const Part& part : changed) {
     session.write(buffers.vertices, std::span(scene.vertices).subspan(part.first_vertex, part.vertices),
                   part.first_vertex);
     session.write(buffers.triangles, std::span(scene.triangles).subspan(part.first_triangle, part.triangles),

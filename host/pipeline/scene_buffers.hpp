@@ -34,6 +34,7 @@ struct SceneBuffers {
 SceneBuffers upload_scene(Session& session, const Scene& scene);
 
 /// Brings `buffers`, made of the same scene at another instant, to the one it shows now: its moving parts and its bounds.
+/// TriangleRuns::instant() is the version of what they hold.
 void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers);
 
 }  // namespace clpv

@@ -27,9 +27,6 @@ class SceneSight {
   /// bytes() a cascade, finest first.
   const Buffer& hidden() const { return hidden_.buffer(); }
 
-  /// Next time all is made anew.
-  void forget() { hidden_.forget(); }
-
   /// Of one cascade; and of so many, with what it takes to make them.
   static std::size_t bytes(int grid);
   static std::size_t bytes(int grid, int cascades);

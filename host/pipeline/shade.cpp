@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pipeline/tile_rows.hpp"
+#include "pipeline/surface.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -28,7 +28,7 @@ Literals Stencil::literals() const {
 }
 
 void Stencil::launch(Kernel& kernel, int channels) const {
-  const auto n = static_cast<std::size_t>(options_.grid);
+  const std::size_t n = options_.grid;
   kernel.launch({items_per_row(options_.grid, options_.lanes), n, n * static_cast<std::size_t>(channels)},
                 {group_, 1, 1});
 }

@@ -8,6 +8,7 @@
 
 #include "device/session.hpp"
 #include "image/surface_image.hpp"
+#include "kernels/shared/raster.h"
 #include "kernels/shared/view.h"
 #include "options/choices.hpp"
 
@@ -37,5 +38,14 @@ SurfaceImage read_surface(Session& session, const Surface& surface);
 /// Fields of `image` that are empty stay undefined on the device; emissive is made where it is not empty.
 Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format = RsmFormat::float32,
                        float colour_scale = 1);
+
+inline unsigned tiles_along(unsigned pixels) {
+  return (pixels + CLPV_TILE - 1) / CLPV_TILE;
+}
+inline cl::NDRange rows_of_tiles(const ClpvView& view) {
+  return {tiles_along(view.width), view.height};
+}
+/// Rows differ in work: small groups even it out between cores.
+inline const cl::NDRange kTileRow(8, 1);
 
 }  // namespace clpv

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "basis/bounce.hpp"
+#include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/bounce_source.hpp"
-#include "codegen/sky_light.hpp"
 #include "codegen/sweep_source.hpp"
 #include "pipeline/cascade.hpp"
+#include "pipeline/sweep_tables.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -26,11 +26,16 @@ std::size_t directions_of(int parts) {
   return kSweepBins * squared(parts);
 }
 
+/// Of a plane by itself.
+std::size_t plane_numbers(int grid) {
+  return CLPV_SWEEP_LIVE_OF(std::size_t(grid));
+}
+
 /// The coarser cells that a finer cascade's border is made of, `offset` finer cells from the coarser grid's least corner.
 ClpvSweepShell shell_of(int grid, const std::array<int, 3>& offset) {
   const auto lower = [](int u) { return (u - 1) >> 1; };  // of the two coarser cells round a finer one
   ClpvSweepShell shell{};
-  shell.side = (grid + 1) / 2 + 3;
+  shell.side = CLPV_SWEEP_SHELL_SIDE_OF(grid);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     shell.first[axis] = lower(offset[axis] - 1);
     shell.layers[2 * axis] = lower(offset[axis] - 1);
@@ -39,15 +44,11 @@ ClpvSweepShell shell_of(int grid, const std::array<int, 3>& offset) {
   return shell;
 }
 
-std::size_t shell_numbers(int grid) {
-  const auto side = static_cast<std::size_t>((grid + 1) / 2 + 3);
-  return 2 * side * ((side + 7) / 8 * 8 + 8) + 8;
-}
-
 /// Of what a cascade keeps for the next finer one.
 std::size_t shell_bytes(const SweepOptions& options, int parts, std::size_t cascade) {
   if (cascade == 0) return sizeof(float);
-  return 3 * 3 * directions_of(parts) * shell_numbers(options.grid) * number_bytes(options.format);
+  const std::size_t side = CLPV_SWEEP_SHELL_SIDE_OF(options.grid);
+  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_SHELL_FACE_OF(side) * number_bytes(options.format);
 }
 
 bool within(const ClpvSweepShell& shell, int grid) {
@@ -92,8 +93,8 @@ ProgramSource sky_program(const SweepOptions& options, int parts) {
 
 double Sweeper::bytes(const SweepOptions& options) {
   const auto number = static_cast<double>(number_bytes(options.format));
-  const auto volume = static_cast<double>(sweep_volume_numbers(options.grid)) * number;
-  const auto plane = static_cast<double>(sweep_plane_numbers(options.grid));
+  const auto volume = static_cast<double>(SweepVolumes::bytes(options.grid, options.format));
+  const auto plane = static_cast<double>(plane_numbers(options.grid));
   const bool once = options.bounces == Bounces::one;
   double most = 0, shells = 0;
   for (std::size_t c = 0; c < options.parts.size(); ++c) {
@@ -101,7 +102,8 @@ double Sweeper::bytes(const SweepOptions& options) {
     shells += static_cast<double>(shell_bytes(options, options.parts[c], c));
     if (options.bounces == Bounces::two) shells += static_cast<double>(shell_bytes(options, kFirstParts, c));
   }
-  const double ways = options.blocking ? static_cast<double>(options.parts.size()) * sweep_way_count() : 0;
+  const double ways =
+      options.blocking ? static_cast<double>(options.parts.size()) * way_volumes().count() : 0;
   const int lights = once ? 1 : (options.bounces == Bounces::two ? 2 : 3);
   return (3 * lights * kSweepBins + ways) * volume + most * 2 * plane * (sizeof(float) + number) + shells +
          Bouncer::bytes(options);
@@ -115,19 +117,18 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       in_place_(options.bounces == Bounces::one && swept_in_place(basis, options.format)),
       source_(session, source_program(volumes_, basis, in_place_), "sweep_source"),
       collect_(session, volumes_.program("sweep_collect.cl", sweep_collect_text().text), "sweep_collect") {
-  const std::size_t plane = sweep_plane_numbers(options.grid) * sizeof(float);
+  const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t swept = 3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
   const std::optional<VolumeFormat> swept_from = in_place_ ? std::optional(options.format) : std::nullopt;
   bins_ = session.upload(sweep_bin_table(options.grid, swept_from), "bins to sweep");
   light_ = volumes_.make(3 * kSweepBins, "light to sweep, and swept");
   live_ = zeroed_buffer(session, (whole_bins() ? 1 : 2) * swept * plane, "planes being swept");
-  border_ =
-      zeroed_buffer(session, 2 * swept * sweep_plane_numbers(options.grid) * number_bytes(options.format),
-                    "light at the border");
+  border_ = zeroed_buffer(session, 2 * swept * plane_numbers(options.grid) * number_bytes(options.format),
+                          "light at the border");
   if (options.blocking)
     ways_.emplace(session, volumes_.program("sweep_ways.cl", sweep_ways_text(basis, transport)),
                   "sweep_ways");
-  const auto ways = static_cast<std::size_t>(options.blocking ? sweep_way_count() : 1);
+  const std::size_t ways = options.blocking ? way_volumes().count() : 1;
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     through_.push_back(volumes_.make(ways, "transmittance to sweep through"));
   passes_ = make_passes(options.parts);
@@ -198,7 +199,7 @@ void Sweeper::let_in(Passes& passes, const Sky& sky) {
 
 /// Where planes of odd number begin: the one before the first is of them.
 std::size_t Sweeper::before_first(const Pass& pass) const {
-  return whole_bins() ? 0 : 3 * directions_of(pass.parts) * sweep_plane_numbers(options_.grid);
+  return whole_bins() ? 0 : 3 * directions_of(pass.parts) * plane_numbers(options_.grid);
 }
 
 void Sweeper::let_sky_in(Pass& pass, float cell) {
@@ -246,7 +247,7 @@ void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const C
     return;
   }
   if (!lit) let_nothing_in(pass);
-  const auto n = static_cast<std::size_t>(options_.grid);
+  const std::size_t n = options_.grid;
   for (int plane = 0; plane < options_.grid; ++plane) {
     set(plane);
     pass.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});
@@ -255,7 +256,7 @@ void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const C
 
 /// Where planes are swept one by one: a work-item finds what comes in beside its cell.
 void Sweeper::let_nothing_in(const Pass& pass) {
-  const std::size_t planes = 3 * directions_of(pass.parts) * sweep_plane_numbers(options_.grid);
+  const std::size_t planes = 3 * directions_of(pass.parts) * plane_numbers(options_.grid);
   session_.fill_zero(border_, 2 * planes * number_bytes(options_.format));
   session_.fill_zero(live_, 2 * planes * sizeof(float));
 }

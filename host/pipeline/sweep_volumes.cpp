@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "codegen/sweep_source.hpp"
+#include "kernels/shared/sweep.h"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -33,17 +33,17 @@ ProgramSource SweepVolumes::program(const char* file, std::string generated) con
 }
 
 void SweepVolumes::launch(Kernel& kernel, int channels) const {
-  const auto tiles = static_cast<std::size_t>((grid_ + tile_ - 1) / tile_);
+  const std::size_t tiles = (grid_ + tile_ - 1) / tile_;
   const auto slices = static_cast<std::size_t>(grid_) * static_cast<std::size_t>(channels);
   kernel.launch({tiles, tiles, slices}, {tile_ == 1 ? std::min(tiles, kRowGroup) : 1, 1, 1});
 }
 
 std::size_t SweepVolumes::bytes(int grid, const VolumeFormat& format) {
-  return sweep_volume_numbers(grid) * number_bytes(format);
+  return CLPV_SWEEP_VOLUME_OF(std::size_t(grid)) * number_bytes(format);
 }
 
 std::size_t SweepVolumes::bordered_bytes(int grid, const VolumeFormat& format) {
-  return sweep_bordered_numbers(grid) * number_bytes(format);
+  return CLPV_SWEEP_BORDERED_OF(std::size_t(grid)) * number_bytes(format);
 }
 
 Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
@@ -52,7 +52,7 @@ Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
 
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  const std::size_t numbers = count * sweep_volume_numbers(grid_);
+  const std::size_t numbers = count * CLPV_SWEEP_VOLUME_OF(std::size_t(grid_));
   if (numbers > kMost)
     throw Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what, numbers,
                 kMost);

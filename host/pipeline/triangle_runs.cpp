@@ -59,18 +59,20 @@ void TriangleRuns::bound_runs(const Scene& scene, std::size_t first, std::size_t
 
 std::vector<Part> TriangleRuns::move(const Scene& scene) {
   std::vector<Part> changed;
-  moved_.clear();
-  ++instant_;
+  std::vector<Bounds> moved;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     const Part& part = scene.moving[i];
     const std::uint64_t print = print_of(scene, part);
     if (print == moving_[i].print) continue;
     const Bounds now = part_bounds(scene, part);
-    if (part.triangles > 0) moved_.push_back(about(moving_[i].bounds, now));
+    if (part.triangles > 0) moved.push_back(about(moving_[i].bounds, now));
     moving_[i] = {now, print};
     bound_runs(scene, part.first_triangle, part.triangles);
     changed.push_back(part);
   }
+  if (changed.empty()) return changed;
+  moved_ = std::move(moved);
+  ++instant_;
   return changed;
 }
 

@@ -29,6 +29,8 @@ class TriangleRuns {
   /// How often something has moved, and the boxes in which something did the last time.
   unsigned instant() const { return instant_; }
   const std::vector<Bounds>& moved() const { return moved_; }
+  /// As if everything had moved: what follows no single step is computed from all triangles.
+  void forget() { instant_ += 2; }
 
   /// Numbers of the runs of whose bounds `wanted` is true, in their order.
   template <typename Wanted>

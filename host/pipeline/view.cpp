@@ -169,8 +169,7 @@ std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Boun
   for (int side = 0; side < 6; ++side) {
     glm::dvec3 forward(0);
     forward[side / 2] = side % 2 == 0 ? 1 : -1;
-    views[static_cast<std::size_t>(side)] =
-        perspective_light_view(light_axes(forward), light, 1, size, bounds);
+    views[side] = perspective_light_view(light_axes(forward), light, 1, size, bounds);
   }
   return views;
 }

@@ -24,9 +24,7 @@ struct Masks {
   int n;
   std::vector<Mask> bits;
   explicit Masks(int corners) : n(corners), bits(static_cast<std::size_t>(3 * corners * corners * corners)) {}
-  Mask& at(int axis, const glm::ivec3& c) {
-    return bits[static_cast<std::size_t>(((axis * n + c.z) * n + c.y) * n + c.x)];
-  }
+  Mask& at(int axis, const glm::ivec3& c) { return bits[((axis * n + c.z) * n + c.y) * n + c.x]; }
 };
 
 /// A triangle seen along an axis: corners (u, v) in samples, depth in cells.
@@ -100,15 +98,10 @@ class Rasters {
     const double depth =
         seen.depth[0] + w1 * (seen.depth[1] - seen.depth[0]) + w2 * (seen.depth[2] - seen.depth[0]);
     const auto [nearest, farthest] = std::minmax({seen.depth[0], seen.depth[1], seen.depth[2]});
-    bool sure = within > kHair;
-    const Triangle& t = scene_.triangles[triangle];
-    const Material& material = scene_.materials[t.material];
-    if ((material.flags & CLPV_MATERIAL_MASKED) != 0) {
-      const double x = std::clamp(w1, 0.0, 1.0), y = std::clamp(w2, 0.0, 1 - x);
-      const double above = materials_.alpha({triangle, glm::vec2(x, y)}) - material.alpha_cutoff;
-      if (above < -kAlphaHair) return;
-      sure = sure && above > kAlphaHair;
-    }
+    const double x = std::clamp(w1, 0.0, 1.0), y = std::clamp(w2, 0.0, 1 - x);
+    const double solid = materials_.solidity({triangle, glm::vec2(x, y)});
+    if (solid < -kAlphaHair) return;
+    const bool sure = within > kHair && solid > kAlphaHair;
     // Steep triangles err most in depth where rounding moves the sample.
     const double steep = std::min((farthest - nearest), kHair * std::max(1.0, slope(seen, area)));
     const double clamped = std::clamp(depth, nearest, farthest), hair = kHair / kSamples + steep;

@@ -36,7 +36,7 @@ struct Piece {
 class Glow {
  public:
   Glow(const Scene& scene, const Materials& materials, std::uint32_t triangle)
-      : scene_(scene), materials_(materials), index_(triangle) {
+      : materials_(materials), index_(triangle) {
     const Triangle& t = scene.triangles[triangle];
     first_ = glm::dvec3(position(scene.vertices[t.vertex[0]]));
     to_second_ = glm::dvec3(position(scene.vertices[t.vertex[1]])) - first_;
@@ -56,7 +56,7 @@ class Glow {
         std::numbers::pi * twice / 2 * piece.edge * piece.edge / static_cast<double>(looks.size());
     for (const Piece& look : looks) {
       const glm::dvec3 there = flux * seen(look);
-      const double solid = solidity(look.middle());
+      const double solid = materials_.solidity({index_, glm::vec2(look.middle())});
       if (solid >= 0) point.flux += there;
       if (std::abs(solid) < kAlphaHair) point.doubt += std::max({there.x, there.y, there.z});
     }
@@ -70,14 +70,6 @@ class Glow {
         materials_.emissive({index_, glm::vec2(look.middle())}, {reach * to_second_, reach * to_third_}));
   }
 
-  /// How far above the alpha cutoff; much where there is none.
-  double solidity(const glm::dvec2& weights) const {
-    const Material& material = scene_.materials[scene_.triangles[index_].material];
-    if ((material.flags & CLPV_MATERIAL_MASKED) == 0) return 1;
-    return double{materials_.alpha({index_, glm::vec2(weights)})} - double{material.alpha_cutoff};
-  }
-
-  const Scene& scene_;
   const Materials& materials_;
   std::uint32_t index_;
   glm::dvec3 first_, to_second_, to_third_, across_;

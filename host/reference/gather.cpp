@@ -35,7 +35,7 @@ Around around(const glm::dvec3& at, int n) {
   for (std::size_t corner = 0; corner < 8; ++corner) {
     found.weight[corner] = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const Between& b = axes[static_cast<std::size_t>(axis)];
+      const Between& b = axes[axis];
       const bool upper = (corner >> axis & 1) != 0;
       found.cell[corner][axis] = upper ? b.upper : b.lower;
       found.weight[corner] *= upper ? b.t : 1 - b.t;
@@ -50,14 +50,13 @@ constexpr double kLeastSeen = 1.0 / 64.0;  // of all weight; where less is seen 
 /// How much of each cell is seen from a point: bits of the points of its cube, trilinearly.
 std::array<double, 8> seen_from(const glm::dvec3& t, const std::uint8_t* points) {
   std::array<Between, 3> axes;
-  for (int axis = 0; axis < 3; ++axis)
-    axes[static_cast<std::size_t>(axis)] = between(kPoints * t[axis] - 0.5, kPoints);
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = between(kPoints * t[axis] - 0.5, kPoints);
   std::array<double, 8> seen{};
   for (int i = 0; i < 8; ++i) {
     int point = 0;
     double weight = 1;
     for (int axis = 2; axis >= 0; --axis) {
-      const Between& b = axes[static_cast<std::size_t>(axis)];
+      const Between& b = axes[axis];
       const bool upper = (i >> axis & 1) != 0;
       point = kPoints * point + (upper ? b.upper : b.lower);
       weight *= upper ? b.t : 1 - b.t;
@@ -82,12 +81,11 @@ void hide(Around& around, const glm::dvec3& at, int n, const std::uint8_t* hidde
 
 /// Coefficients of a channel.
 std::vector<double> sample(const Volume& volume, int channel, const Around& around) {
-  std::vector<double> c(static_cast<std::size_t>(volume.coefficients), 0.0);
+  std::vector<double> c(volume.coefficients, 0.0);
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const glm::ivec3& cell = around.cell[corner];
     for (int i = 0; i < volume.coefficients; ++i) {
-      c[static_cast<std::size_t>(i)] +=
-          around.weight[corner] * volume.value(channel, i, cell.x, cell.y, cell.z);
+      c[i] += around.weight[corner] * volume.value(channel, i, cell.x, cell.y, cell.z);
     }
   }
   return c;
@@ -104,12 +102,6 @@ std::vector<double> gather_weights(const Basis& basis, TransportKind transport, 
   weights = evaluate(basis, lobes, -normal);
   for (double& weight : weights) weight *= 4;
   return weights;
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 /// E s^2 of one volume, clamped.

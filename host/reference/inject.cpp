@@ -70,7 +70,7 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
                    const InjectOptions& options, int stride) {
   const Lobes lobes(basis, options.lobes);
   Volume blocking(static_cast<int>(grid.n) + 1, blocking_size(options.blocking, basis), 1);
-  const auto every = static_cast<std::size_t>(stride);
+  const std::size_t every = stride;
   for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
     const bool taken =
         pixel % surface.view.width % every == every / 2 && pixel / surface.view.width % every == every / 2;

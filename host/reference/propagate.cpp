@@ -11,9 +11,8 @@ namespace clpv::reference {
 namespace {
 
 std::vector<double> cell(const Volume& volume, int channel, const glm::ivec3& p) {
-  std::vector<double> c(static_cast<std::size_t>(volume.coefficients));
-  for (int i = 0; i < volume.coefficients; ++i)
-    c[static_cast<std::size_t>(i)] = volume.value(channel, i, p.x, p.y, p.z);
+  std::vector<double> c(volume.coefficients);
+  for (int i = 0; i < volume.coefficients; ++i) c[i] = volume.value(channel, i, p.x, p.y, p.z);
   return c;
 }
 
@@ -56,7 +55,7 @@ Plane arriving(const Volume& from, int channel, const glm::ivec3& travel, std::s
   const int n = from.n, first = std::max(0, travel.x), last = n + std::min(0, travel.x);
   Plane sum(static_cast<std::size_t>(n) * n * n, 0.0);
   for (int i = 0; i < from.coefficients; ++i) {
-    const double weight = weights[static_cast<std::size_t>(i)];
+    const double weight = weights[i];
     if (weight == 0) continue;
     for (int z = std::max(0, travel.z); z < n + std::min(0, travel.z); ++z) {
       for (int y = std::max(0, travel.y); y < n + std::min(0, travel.y); ++y) {
@@ -124,9 +123,8 @@ Propagation propagate(const Transport& transport, const Volume& injected, const 
 std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
   std::array<double, 3> sum{};
   for (int channel = 0; channel < volume.channels; ++channel) {
-    for_each_cell(volume.n, [&](const glm::ivec3& p) {
-      sum[static_cast<std::size_t>(channel)] += basis.energy(cell(volume, channel, p));
-    });
+    for_each_cell(volume.n,
+                  [&](const glm::ivec3& p) { sum[channel] += basis.energy(cell(volume, channel, p)); });
   }
   return sum;
 }

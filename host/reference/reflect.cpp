@@ -16,7 +16,10 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kReflectHair = 4e-3;  // [samples], [cells / 8]: what float32 may decide either way
+constexpr int kSamples = 8;          // of a face along each axis
+constexpr double kSeam = 1.0 / 256;  // [samples] outside an edge that still count
+constexpr double kHair = 4e-3;       // [samples], [cells / 8]: what float32 may decide either way
+constexpr double kAlphaHair = 0.03;  // as in block.cpp
 
 /// What is counted of a cell's side.
 struct Side {
@@ -126,7 +129,7 @@ class Sides {
       double share = static_cast<double>(side.covered.count()) / whole, unsure = side.unsure / whole;
       for (int other = 0; other < kReflectingSides; ++other) {
         if (other / 2 == side_number / 2) continue;
-        const Side& across = sides_[static_cast<std::size_t>(cell * kReflectingSides + other)];
+        const Side& across = sides_[cell * kReflectingSides + other];
         share *= 1 - edge_loss() * static_cast<double>(across.covered.count()) / whole;
         unsure += across.unsure / whole;
       }
@@ -144,8 +147,7 @@ class Sides {
     glm::ivec3 cell;
     cell[(facing.axis() + 1) % 3] = i, cell[(facing.axis() + 2) % 3] = j, cell[facing.axis()] = k;
     const int number = (cell.z * n_ + cell.y) * n_ + cell.x;
-    return sides_[static_cast<std::size_t>(number * kReflectingSides + 2 * facing.axis() +
-                                           (facing.up() ? 0 : 1))];
+    return sides_[number * kReflectingSides + 2 * facing.axis() + (facing.up() ? 0 : 1)];
   }
 
   void add(std::uint32_t triangle, const Facing& facing) {
@@ -166,30 +168,23 @@ class Sides {
   void look(std::uint32_t triangle, const Facing& facing, int u, int v, std::map<int, Row>& rows) const {
     const glm::dvec2 at = (glm::dvec2(u, v) + 0.5) / double{kSamples};
     const double within = facing.inside(at);
-    if (within < -kReflectHair) return;
-    const double solid = solidity(triangle, facing.weights(at));
+    if (within < -kHair) return;
+    const double solid = materials_.solidity({triangle, on_triangle(facing.weights(at))});
     if (solid < -kAlphaHair) return;
     const auto [nearest, farthest] = facing.depths();
     const glm::dvec2 slope = facing.slope();
-    const double steep = kReflectHair * (1 + std::abs(slope.x) + std::abs(slope.y));
+    const double steep = kHair * (1 + std::abs(slope.x) + std::abs(slope.y));
     const double depth = std::clamp(facing.depth(at), nearest, farthest);
-    const int first = static_cast<int>(
-        std::floor(std::clamp(depth - steep, nearest - kReflectHair, farthest + kReflectHair)));
-    const int last = static_cast<int>(
-        std::floor(std::clamp(depth + steep, nearest - kReflectHair, farthest + kReflectHair)));
-    const bool sure = within > kReflectHair && solid > kAlphaHair && first == last;
+    const int first =
+        static_cast<int>(std::floor(std::clamp(depth - steep, nearest - kHair, farthest + kHair)));
+    const int last =
+        static_cast<int>(std::floor(std::clamp(depth + steep, nearest - kHair, farthest + kHair)));
+    const bool sure = within > kHair && solid > kAlphaHair && first == last;
     for (int k = first; k <= last; ++k) {
       Row& row = rows[k];
       row.unsure = row.unsure || !sure;
       if (within >= 0 && solid >= 0 && k == static_cast<int>(std::floor(depth))) row.columns.push_back(u);
     }
-  }
-
-  /// How far above the alpha cutoff; anything where there is none.
-  double solidity(std::uint32_t triangle, const glm::dvec2& weights) const {
-    const Material& material = scene_.materials[scene_.triangles[triangle].material];
-    if ((material.flags & CLPV_MATERIAL_MASKED) == 0) return 1;
-    return materials_.alpha({triangle, on_triangle(weights)}) - material.alpha_cutoff;
   }
 
   static glm::vec2 on_triangle(const glm::dvec2& weights) {

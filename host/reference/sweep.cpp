@@ -7,8 +7,8 @@
 #include <glm/glm.hpp>
 #include <variant>
 
+#include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/sky_light.hpp"
 #include "reference/transmit.hpp"
 
 namespace clpv::reference {
@@ -49,27 +49,25 @@ class Sweep {
         sources_(n_, kSweepBins, 3) {
     const Matrix means = bin_means(basis);
     const Volume& from = *cascade.injected;
-    for_each_cell(n_, [&](const glm::ivec3& p) {
-      std::vector<double> c(static_cast<std::size_t>(basis.size()));
+    for_each_cell([&](const glm::ivec3& p) {
+      std::vector<double> c(basis.size());
       for (int channel = 0; channel < 3; ++channel) {
-        for (int i = 0; i < basis.size(); ++i)
-          c[static_cast<std::size_t>(i)] = from.value(channel, i, p.x, p.y, p.z);
+        for (int i = 0; i < basis.size(); ++i) c[i] = from.value(channel, i, p.x, p.y, p.z);
         const std::vector<double> in = means * std::span<const double>(c);
-        for (int bin = 0; bin < kSweepBins; ++bin)
-          sources_.at(channel, bin, p.x, p.y, p.z) = in[static_cast<std::size_t>(bin)];
+        for (int bin = 0; bin < kSweepBins; ++bin) sources_.at(channel, bin, p.x, p.y, p.z) = in[bin];
       }
     });
     let_through(std::get<std::vector<SweepWay>>(transport.scheme));
   }
 
   Volume direction(int bin, const SweepBin& of, int part) const {
-    const SweepDirection& d = of.directions[static_cast<std::size_t>(part)];
+    const SweepDirection& d = of.directions[part];
     Volume field(n_, 1, 3);
-    for_each_cell(n_, [&](const glm::ivec3& along) {
+    for_each_cell([&](const glm::ivec3& along) {
       glm::ivec3 p;  // upstream ones first
       const std::array<int, 3> order = {of.axis, of.v, of.u};
       for (int i = 0; i < 3; ++i) {
-        const int axis = order[static_cast<std::size_t>(i)], step = along[2 - i];
+        const int axis = order[i], step = along[2 - i];
         p[axis] = of.sign[axis] > 0 ? step : n_ - 1 - step;
       }
       for (int channel = 0; channel < 3; ++channel) {
@@ -88,6 +86,15 @@ class Sweep {
   }
 
  private:
+  template <typename Visit>
+  void for_each_cell(Visit visit) const {
+    for (int z = 0; z < n_; ++z) {
+      for (int y = 0; y < n_; ++y) {
+        for (int x = 0; x < n_; ++x) visit(glm::ivec3(x, y, z));
+      }
+    }
+  }
+
   static std::size_t way_of(const glm::ivec3& offset) {
     return static_cast<std::size_t>(offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1));
   }
@@ -96,7 +103,7 @@ class Sweep {
     open_.assign(27, Volume(n_, 1, 1));
     for (const SweepWay& way : ways) {
       Volume& open = open_[way_of(way.offset)];
-      for_each_cell(n_, [&](const glm::ivec3& p) {
+      for_each_cell([&](const glm::ivec3& p) {
         open.at(0, 0, p.x, p.y, p.z) = cascade_.geometry == nullptr
                                            ? 1
                                            : transmitted(*cascade_.geometry, p, -way.offset, way.blocked_by);
@@ -109,8 +116,7 @@ class Sweep {
     if (beyond_.cascade == nullptr) {
       if (beyond_.sky.empty()) return 0;
       const double edge = double{cascade_.grid.cell};
-      return beyond_.sky[static_cast<std::size_t>(bin * cascade_.parts * cascade_.parts + part)][channel] *
-             edge * edge * d.flux;
+      return beyond_.sky[bin * cascade_.parts * cascade_.parts + part][channel] * edge * edge * d.flux;
     }
     const ClpvGrid &fine = cascade_.grid, &coarse = beyond_.cascade->grid;
     glm::dvec3 at;
@@ -119,10 +125,10 @@ class Sweep {
       at[axis] = (centre - coarse.origin[axis]) / coarse.cell - 0.5;
     }
     const int parts = beyond_.cascade->parts, from = coarser_part(part, cascade_.parts, parts);
-    const SweepBin& of = (*beyond_.bins)[static_cast<std::size_t>(bin)];
+    const SweepBin& of = (*beyond_.bins)[bin];
     const double edge = double{fine.cell} / coarse.cell;
-    return edge * edge * d.flux / of.directions[static_cast<std::size_t>(from)].flux *
-           sampled((*beyond_.fields)[static_cast<std::size_t>(bin * parts * parts + from)], channel, at);
+    return edge * edge * d.flux / of.directions[from].flux *
+           sampled((*beyond_.fields)[bin * parts * parts + from], channel, at);
   }
 
   SweptCascade cascade_;
@@ -137,7 +143,7 @@ Volume collect(const std::vector<SweepBin>& bins, const Fields& fields) {
   const int n = fields.front().n;
   Volume sums(n, kSweepBins, 3);
   for (int bin = 0; bin < kSweepBins; ++bin) {
-    const SweepBin& of = bins[static_cast<std::size_t>(bin)];
+    const SweepBin& of = bins[bin];
     const std::size_t parts = of.directions.size();
     for (std::size_t part = 0; part < parts; ++part) {
       const SweepDirection& d = of.directions[part];
@@ -168,7 +174,7 @@ std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
     Fields fields;
     for (int bin = 0; bin < kSweepBins; ++bin) {
       for (int part = 0; part < cascades[c].parts * cascades[c].parts; ++part)
-        fields.push_back(sweep.direction(bin, bins[static_cast<std::size_t>(bin)], part));
+        fields.push_back(sweep.direction(bin, bins[bin], part));
     }
     results[c] = collect(bins, fields);
     coarser = std::move(fields);

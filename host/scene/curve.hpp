@@ -6,8 +6,9 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <span>
-#include <string_view>
 #include <vector>
+
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -18,17 +19,8 @@ enum class Interpolation : unsigned {
   cubic_spline,  ///< Hermite's cubic, by the value and the tangents of each key
 };
 
-constexpr std::string_view name_of(Interpolation interpolation) {
-  switch (interpolation) {
-    case Interpolation::linear:
-      return "LINEAR";
-    case Interpolation::step:
-      return "STEP";
-    case Interpolation::cubic_spline:
-      return "CUBICSPLINE";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<Interpolation> = name_list("LINEAR", "STEP", "CUBICSPLINE");
 
 /// Before the first key and after the last one it stands still.
 struct Curve {

@@ -12,7 +12,7 @@
 #include "scene/bounds.hpp"
 #include "scene/gltf_schema.hpp"
 #include "support/error.hpp"
-#include "support/little_endian.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 namespace {

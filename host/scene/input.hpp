@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "support/refuse.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 

@@ -8,7 +8,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/deform.hpp"
-#include "support/refuse.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 namespace {

@@ -3,8 +3,6 @@
 // means is switched over without a default, so that a new one does not compile until it means something everywhere.
 #pragma once
 
-#include <string_view>
-
 #include "kernels/shared/light.h"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
@@ -17,17 +15,8 @@ enum class LightKind : unsigned {
   point = CLPV_LIGHT_POINT,
 };
 
-constexpr std::string_view name_of(LightKind kind) {
-  switch (kind) {
-    case LightKind::directional:
-      return "directional";
-    case LightKind::spot:
-      return "spot";
-    case LightKind::point:
-      return "point";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<LightKind> = name_list("directional", "spot", "point");
 
 /// Throws Error(bad_input) for a number that is no kind.
 inline LightKind kind_of(const ClpvLight& light) {

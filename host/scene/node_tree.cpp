@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "support/refuse.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 namespace {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/bounds.hpp"
+#include "support/error.hpp"
 #include "support/named_enum.hpp"
-#include "support/refuse.hpp"
 
 namespace clpv {
 namespace {

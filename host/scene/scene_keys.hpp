@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "scene/curve.hpp"
 #include "support/json_schema.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -20,17 +20,8 @@ enum class KeyInterpolation : unsigned {
   smooth,  ///< by cubic splines without a jump of speed, at rest at the first key and at the last
 };
 
-constexpr std::string_view name_of(KeyInterpolation interpolation) {
-  switch (interpolation) {
-    case KeyInterpolation::linear:
-      return "linear";
-    case KeyInterpolation::step:
-      return "step";
-    case KeyInterpolation::smooth:
-      return "smooth";
-  }
-  return {};
-}
+template <>
+inline constexpr auto kNames<KeyInterpolation> = name_list("linear", "step", "smooth");
 
 /// The quantities that may move, of an entry of that list.
 struct KeyedList {

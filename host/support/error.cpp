@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "support/error.hpp"
 
-#include "support/printable.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 
 // Here, where all messages pass: many have words of files, names and keys that a stranger chose.
 Error::Error(ExitCode code, const std::string& message)
     : std::runtime_error(printable(message)), code_(code) {}
+
+void refuse(const std::string& file, std::string_view place, std::string_view found,
+            std::string_view allowed) {
+  throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place, place.empty() ? "" : ": ",
+              found, allowed);
+}
 
 }  // namespace clpv

@@ -22,8 +22,9 @@ class Fingerprint {
   requires std::is_trivially_copyable_v<T> Fingerprint& add(const std::vector<T>& values) {
     return add(std::as_bytes(std::span(values)));
   }
+  /// The same.
   template <typename T>
-  requires(std::is_arithmetic_v<T> || std::is_array_v<T>) Fingerprint& add(const T& value) {
+  requires(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>) Fingerprint& add(const T& value) {
     return add(std::as_bytes(std::span(&value, 1)));
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/input_file.hpp"
 
+#include <cstdlib>
 #include <fstream>
 
 namespace clpv {
@@ -16,6 +17,12 @@ std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t most)
   std::string bytes(static_cast<std::size_t>(size), '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) return std::nullopt;
   return bytes;
+}
+
+std::optional<fs::path> user_cache_folder() {
+  if (const char* home = std::getenv("XDG_CACHE_HOME"); home && *home) return fs::path(home) / "clpv";
+  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/clpv";
+  return std::nullopt;
 }
 
 }  // namespace clpv

@@ -4,11 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "support/error.hpp"
-#include "support/refuse.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 
@@ -51,14 +52,6 @@ Rule index(std::string place, std::string into) {
 }  // namespace rule
 
 namespace {
-
-std::string found_value(const json& value) {
-  constexpr std::size_t kShown = 60;
-  if (value.is_array()) return fmt::format("an array of {}", value.size());
-  if (value.is_object()) return "an object";
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-  return text.size() > kShown ? text.substr(0, kShown) + "..." : text;
-}
 
 std::size_t list_size(const json& document, const std::string& place) {
   const json::json_pointer pointer(place);
@@ -181,11 +174,11 @@ class Checker {
 
   void check(const json& value) const {
     if (obeys(rule_, value, into_size_)) return;
-    std::string found = found_value(value);
+    std::string found = quoted(value);
     if (rule_.shape == Shape::vector && value.is_array() && value.size() == rule_.size) {
       const auto wrong =
           std::find_if_not(value.begin(), value.end(), [&](const json& v) { return in_range(rule_, v); });
-      found += " with " + found_value(*wrong);
+      found += " with " + quoted(*wrong);
     }
     refuse(file_, place(), found, allowed_values(rule_, into_size_));
   }
@@ -229,6 +222,28 @@ void check_rules(const json& document, std::span<const Rule> rules, const std::s
 
 void check_no_other_keys(const json& document, std::span<const Rule> rules, const std::string& file) {
   check_keys(document, "", "", rules, file);
+}
+
+json read_json(const std::string& path, std::uintmax_t most) {
+  std::error_code failed;
+  const auto bytes = std::filesystem::file_size(path, failed);
+  if (failed) throw Error(ExitCode::bad_input, "{}: cannot be read: {}", path, failed.message());
+  if (bytes > most) throw Error(ExitCode::bad_input, "{}: {} bytes; allowed: at most {}", path, bytes, most);
+  const auto text = file_bytes(path, most);
+  if (!text) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
+  try {
+    return json::parse(*text);
+  } catch (const json::exception& error) {
+    throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
+  }
+}
+
+std::string quoted(const json& value) {
+  constexpr std::size_t kShown = 60;
+  if (value.is_array()) return fmt::format("an array of {}", value.size());
+  if (value.is_object()) return "an object";
+  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() > kShown ? text.substr(0, kShown) + "..." : text;
 }
 
 std::string pointer_to(const std::string& parent, const std::string& key) {

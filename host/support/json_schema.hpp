@@ -51,6 +51,12 @@ void check_rules(const nlohmann::json& document, std::span<const Rule> rules, co
 void check_no_other_keys(const nlohmann::json& document, std::span<const Rule> rules,
                          const std::string& file);
 
+/// A file of JSON, of at most `most` bytes. Throws Error(bad_input) where it cannot be read, is longer, or is no JSON.
+nlohmann::json read_json(const std::string& path, std::uintmax_t most);
+
+/// What a message quotes of a value: enough to recognise it.
+std::string quoted(const nlohmann::json& value);
+
 /// A JSON pointer one level further down; '~' and '/' of the key escaped.
 std::string pointer_to(const std::string& parent, const std::string& key);
 

@@ -4,7 +4,7 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
-#include "support/printable.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {

@@ -1,58 +1,61 @@
 // SPDX-License-Identifier: MIT
 // Enumerations whose values have names: the one place where text becomes such a value, and a value text.
 //
-// An enumeration counts from 0 without gaps and has beside it
-//   constexpr std::string_view name_of(E value)
-// as a switch without default, so that the compiler tells of a value without a name; {} after it, for what is none.
+// An enumeration counts from 0 without gaps and has beside it its names in their order:
+//   template <>
+//   inline constexpr auto kNames<Layout> = name_list("image", "aos", "soa", "tiled");
 #pragma once
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <array>
-#include <concepts>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "support/error.hpp"
-
 namespace clpv {
 
 template <typename E>
-concept NamedEnum = std::is_enum_v<E> && requires(E value) {
-  { name_of(value) } -> std::same_as<std::string_view>;
-};
+inline constexpr std::array<std::string_view, 0> kNames{};
+
+template <typename... Names>
+constexpr auto name_list(const Names&... names) {
+  return std::array<std::string_view, sizeof...(Names)>{names...};
+}
+
+template <typename E>
+concept NamedEnum = std::is_enum_v<E> &&(kNames<E>.size() > 0);
+
+/// Empty for what is no value.
+template <NamedEnum E>
+constexpr std::string_view name_of(E value) {
+  const auto i = static_cast<std::size_t>(value);
+  return i < kNames<E>.size() ? kNames<E>[i] : std::string_view{};
+}
 
 /// All values, in their order.
 template <NamedEnum E>
 constexpr auto values_of() {
-  constexpr std::size_t count = [] {
-    std::size_t n = 0;
-    while (!name_of(static_cast<E>(n)).empty()) ++n;
-    return n;
-  }();
-  std::array<E, count> values{};
-  for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<E>(i);
+  std::array<E, kNames<E>.size()> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<E>(i);
   return values;
 }
 
 /// Their names, in the same order.
 template <NamedEnum E>
 std::vector<std::string> names_of() {
-  std::vector<std::string> names;
-  for (const E value : values_of<E>()) names.emplace_back(name_of(value));
-  return names;
+  return {kNames<E>.begin(), kNames<E>.end()};
 }
 
-/// The value of that name. Throws Error(usage) for another: "layout: found 'planes', allowed: image|aos|soa|tiled".
+/// The place of a name in a list. Throws Error(usage) where it is not there: "layout: found 'planes', allowed:
+/// image|aos|soa|tiled".
+std::size_t place_of_name(std::string_view what, std::string_view name,
+                          std::span<const std::string_view> allowed);
+
+/// The value of that name; throws as place_of_name().
 template <NamedEnum E>
 E named(std::string_view what, std::string_view name) {
-  for (const E value : values_of<E>()) {
-    if (name_of(value) == name) return value;
-  }
-  throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", what, name, fmt::join(names_of<E>(), "|"));
+  return static_cast<E>(place_of_name(what, name, kNames<E>));
 }
 
 }  // namespace clpv

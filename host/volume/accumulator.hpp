@@ -7,11 +7,27 @@
 #include <utility>
 #include <vector>
 
+#include "device/kernel.hpp"
 #include "device/session.hpp"
-#include "volume/convert.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
+
+/// Planes (`soa`, the image's own storage) beside image volumes of one shape.
+class PlaneStage {
+ public:
+  PlaneStage(Session& session, const VolumeShape& shape, Storage storage);
+
+  Volume& planes() { return planes_; }
+  void take(const Volume& image);  ///< planes become what the image holds
+  void give(Volume& image);        ///< and the other way round
+
+ private:
+  void launch(Kernel& kernel, const Volume& from, const Volume& to) const;
+
+  Volume planes_;
+  Kernel from_image_, to_image_;
+};
 
 /// Lets launches add to what volumes hold. Buffers are added to in place. An image cannot be both read and written by
 /// one launch (OpenCL 1.2): what adds to all its cells writes a spare image, which then changes places with it, and what

@@ -24,7 +24,7 @@ void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit
 }
 
 std::size_t host_numbers(const VolumeShape& shape) {
-  const auto n = static_cast<std::size_t>(shape.n);
+  const std::size_t n = shape.n;
   return n * n * n * static_cast<std::size_t>(shape.coefficients) * static_cast<std::size_t>(shape.channels);
 }
 
@@ -130,6 +130,20 @@ void Volume::write(Session& session, const std::vector<float>& values) {
     for_each_number(format_, shape_,
                     [&](std::size_t to, std::size_t from) { numbers[to] = values.at(from); });
     write_stored(session, numbers.data());
+  }
+}
+
+void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFormat& format,
+                 const char* what) {
+  if (volume.format() != format) {
+    throw Error(ExitCode::run_time, "{} is made for volumes of {}, not {}", what, format_name(format),
+                format_name(volume.format()));
+  }
+  const VolumeShape& found = volume.shape();
+  if (found != shape) {
+    throw Error(ExitCode::run_time, "{} is made for volumes of {}^3 x {} x {} values, not {}^3 x {} x {}",
+                what, shape.n, shape.coefficients, shape.channels, found.n, found.coefficients,
+                found.channels);
   }
 }
 

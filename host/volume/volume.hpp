@@ -43,4 +43,8 @@ class Volume {
   Image3D image_;
 };
 
+/// Throws Error(run_time) where `volume` is of another shape or format than `what` is made for.
+void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFormat& format,
+                 const char* what);
+
 }  // namespace clpv

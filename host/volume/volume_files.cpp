@@ -3,14 +3,13 @@
 
 #include <array>
 
-#include "support/npy.hpp"
-#include "support/vti.hpp"
+#include "support/array_files.hpp"
 
 namespace clpv {
 
 void write_volume_npy(const std::filesystem::path& path, const std::vector<float>& values, int cells,
                       int coefficients) {
-  const auto n = static_cast<std::size_t>(cells);
+  const std::size_t n = cells;
   const std::array<std::size_t, 5> shape{3, static_cast<std::size_t>(coefficients), n, n, n};
   write_npy(path, values, shape);
 }
@@ -18,7 +17,7 @@ void write_volume_npy(const std::filesystem::path& path, const std::vector<float
 void write_volume_vti(const std::filesystem::path& path, const std::vector<float>& values,
                       const ClpvGrid& grid, int coefficients) {
   const std::size_t cells = static_cast<std::size_t>(grid.n) * grid.n * grid.n;
-  const auto components = static_cast<std::size_t>(coefficients);
+  const std::size_t components = coefficients;
   // A .vti keeps a cell's components together; volumes keep a component's cells together.
   std::array<std::vector<float>, 3> channels;
   for (std::size_t c = 0; c < 3; ++c) {

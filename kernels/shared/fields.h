@@ -8,6 +8,7 @@
 // clang-format off
 #define CLPV_EACH_SHARED(SIZE, OFFSET)                                                             \
   SIZE(ClpvGrid) OFFSET(ClpvGrid, origin) OFFSET(ClpvGrid, cell) OFFSET(ClpvGrid, n)               \
+    OFFSET(ClpvGrid, middle)                                                                       \
   SIZE(ClpvLight) OFFSET(ClpvLight, position) OFFSET(ClpvLight, kind) OFFSET(ClpvLight, direction) \
     OFFSET(ClpvLight, range) OFFSET(ClpvLight, intensity) OFFSET(ClpvLight, cone_scale)            \
     OFFSET(ClpvLight, cone_offset)                                                                 \
@@ -29,6 +30,8 @@
   SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)               \
     OFFSET(ClpvSweepBin, column_sign) OFFSET(ClpvSweepBin, plane_axis)                             \
     OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, ways)    \
+    OFFSET(ClpvSweepBin, injected) OFFSET(ClpvSweepBin, source) OFFSET(ClpvSweepBin, channel)      \
+    OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)                                          \
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
     OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \
   SIZE(ClpvSweepShell) OFFSET(ClpvSweepShell, first) OFFSET(ClpvSweepShell, side)                  \

@@ -35,4 +35,20 @@ typedef struct {
 
 #define CLPV_SIZEOF_SWEEP_SHELL 40
 
+// How a sweep's numbers lie in memory (kernels/sweep.h), for a grid of n cells along each axis: numbers of a row, of a plane
+// and a volume of planes; and of a row, a plane and a volume with a border of one cell all round.
+#define CLPV_SWEEP_LINE 32  // between planes, and volumes
+#define CLPV_SWEEP_FIRST 8  // from the start of a row to its first cell: rows of eight lanes stay aligned
+#define CLPV_SWEEP_ROW_OF(n) (((n) + 7) / 8 * 8)
+#define CLPV_SWEEP_PLANE_OF(n) ((n)*CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_LINE)
+#define CLPV_SWEEP_VOLUME_OF(n) ((n)*CLPV_SWEEP_PLANE_OF(n) + CLPV_SWEEP_LINE)
+#define CLPV_SWEEP_PITCH_OF(n) (CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_FIRST)
+#define CLPV_SWEEP_LIVE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
+#define CLPV_SWEEP_BORDERED_OF(n) (((n) + 2) * CLPV_SWEEP_LIVE_OF(n))
+
+// A shell has faces of two layers of side x side cells; rows are whole eights, with room for one more.
+#define CLPV_SWEEP_SHELL_SIDE_OF(n) (((n) + 1) / 2 + 3)
+#define CLPV_SWEEP_SHELL_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
+#define CLPV_SWEEP_SHELL_FACE_OF(side) (2 * (side)*CLPV_SWEEP_SHELL_PITCH_OF(side) + 8)
+
 #endif

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A file of a compiled program, with a right hash put on where the first byte is odd: taken whole or not at all, never an
 // error. What is taken must be what the file says.
-#include <cstring>
 #include <string>
 
 #include "device/program_cache.hpp"
+#include "support/fingerprint.hpp"
 #include "support/log.hpp"
 #include "tests/fuzz/fuzz.hpp"
-
-namespace {
-
-/// FNV-1a, as a file ends with it.
-std::uint64_t hash_of(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  return hash;
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clpv;
@@ -26,8 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   std::string bytes(fuzz::text_of(data + 1, size - 1));
   if (data[0] & 1) {
-    bytes.insert(0, "clpv program 1\n");
-    const std::uint64_t hash = hash_of(bytes);
+    bytes.insert(0, "clpv program 2\n");
+    const std::uint64_t hash = Fingerprint().add(std::string_view(bytes)).value();
     bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
   }
   const ProgramCache cache(fuzz::folder().path());

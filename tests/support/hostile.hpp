@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/printable.hpp"
+#include "support/text.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::test {

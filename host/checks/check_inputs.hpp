@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
-// What the checks of the camera's stages share: surfaces to look at, and images held against the twin's.
+// Random inputs that checks share (surfaces, triangles, volumes), and how images and volumes compare.
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <random>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "checks/check.hpp"
 #include "pipeline/surface.hpp"
+#include "reference/volume.hpp"
+#include "scene/scene.hpp"
 
 namespace clpv::reference {
 
@@ -27,5 +31,19 @@ CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vect
 /// Whether single precision may read another entry than double: in looking up `direction`, or in turning a lobe there
 /// or to where it points away from. False where no table is used.
 bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm::dvec3& direction);
+
+/// Triangles in and round a grid of nine cells of half a metre from (-2.5, 0.5, 1) on: specks, some of some cells, others
+/// far larger than the grid, one without area, some along an axis, and a third of them with holes.
+Scene triangle_soup();
+
+/// Light in a third of the cells, of any sign, as bases with negative lobes leave it.
+Volume random_light(const Basis& basis, int n, std::mt19937& random);
+
+/// `numbers` a corner, in [0, 1].
+Volume random_blockers(int numbers, int n, std::mt19937& random);
+
+/// `result`, or the greatest difference of a cascade over the largest value where that is more.
+void compare_cascade(const std::vector<float>& found, const Volume& twin, std::size_t cascade,
+                     CheckResult& result);
 
 }  // namespace clpv::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// VTK image data (.vti) with values in cells: for ParaView.
+// Arrays of float32 as files: NumPy's .npy, and VTK image data (.vti) for ParaView.
 #pragma once
 
 #include <array>
@@ -8,6 +8,11 @@
 #include <string>
 
 namespace clpv {
+
+/// Writes a .npy of version 1.0, little endian, in C order: the last index varies fastest. `values` has as many elements as
+/// the shape's product. Throws Error(run_time).
+void write_npy(const std::filesystem::path& path, std::span<const float> values,
+               std::span<const std::size_t> shape);
 
 /// One array of values, one tuple a cell: values[cell * components + k], cells with x varying fastest, then
 /// y, z.

@@ -1,21 +1,43 @@
 // SPDX-License-Identifier: MIT
-#include "support/vti.hpp"
+#include "support/array_files.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <cstdint>
 #include <stdexcept>
 
 #include "support/output_file.hpp"
-#include "support/xml.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
 
+constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
+constexpr std::size_t kPreamble = kMagic.size() + 2;  // then the header's length, 16 bits
+constexpr std::size_t kAlignment = 64;                // of the data, asked by the format
+
 }  // namespace
+
+void write_npy(const std::filesystem::path& path, std::span<const float> values,
+               std::span<const std::size_t> shape) {
+  std::size_t count = 1;
+  for (const std::size_t extent : shape) count *= extent;
+  if (count != values.size()) throw std::logic_error("write_npy: the shape does not fit the values");
+  // A tuple of one needs its comma.
+  std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}{}), }}",
+                                   fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
+  const std::size_t used = kPreamble + header.size() + 1;
+  header.append((kAlignment - used % kAlignment) % kAlignment, ' ').push_back('\n');
+  std::string file(kMagic);
+  file.push_back(static_cast<char>(header.size() & 0xff));
+  file.push_back(static_cast<char>(header.size() >> 8));
+  file += header;
+  file.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  write_file(path, file);
+}
 
 void write_vti(const std::filesystem::path& path, const VtiGrid& grid, std::span<const VtiArray> arrays) {
   const auto& n = grid.cells;

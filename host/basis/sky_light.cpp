@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "codegen/sky_light.hpp"
+#include "basis/sky_light.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ int points_of(int cells, int least) {
 }  // namespace
 
 std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
-  const auto count = static_cast<std::size_t>(kSweepBins * parts * parts);
+  const std::size_t count = kSweepBins * parts * parts;
   std::vector<glm::dvec3> sums(count, glm::dvec3(0));
   std::vector<double> angles(count, 0);
   const int across = points_of(sky.width, kPoints), down = points_of(sky.height, kPoints / 2);
@@ -36,10 +36,10 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
     const double up = (top + bottom) / 2, out = std::sqrt(1 - up * up);
     const double angle = 2 * std::numbers::pi / columns * (top - bottom);
     for (int x = 0; x < columns; ++x) {
-      const glm::dvec2& turn = turns[static_cast<std::size_t>(x)];
+      const glm::dvec2& turn = turns[x];
       const SweepPart to = part_along(-glm::dvec3(out * turn.x, up, out * turn.y), parts);
-      const auto i = static_cast<std::size_t>(to.bin * parts * parts + to.part);
-      const auto texel = static_cast<std::size_t>(y / down * sky.width + x / across);
+      const std::size_t i = to.bin * parts * parts + to.part;
+      const std::size_t texel = y / down * sky.width + x / across;
       sums[i] += angle * glm::dvec3(sky.texels[texel]);
       angles[i] += angle;
     }
@@ -49,7 +49,7 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
   glm::dvec3 mean(0);
   for (const glm::dvec3& sum : sums) mean += sum / (4 * std::numbers::pi);
   const std::vector<SweepBin> bins = sweep_bins(parts);
-  const auto of_bin = static_cast<std::size_t>(parts * parts);
+  const std::size_t of_bin = parts * parts;
   for (std::size_t i = 0; i < count; ++i)
     sums[i] = mean + (sums[i] - angles[i] * mean) / bins[i / of_bin].directions[i % of_bin].solid_angle;
   return sums;
@@ -58,7 +58,7 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
 std::vector<float> swept_sky(const Sky& sky, int parts) {
   const std::vector<glm::dvec3> means = sky_means(sky, parts);
   const std::vector<SweepBin> bins = sweep_bins(parts);
-  const auto of_bin = static_cast<std::size_t>(parts * parts);
+  const std::size_t of_bin = parts * parts;
   std::vector<float> light;
   for (std::size_t b = 0; b < bins.size(); ++b) {
     for (int channel = 0; channel < 3; ++channel) {

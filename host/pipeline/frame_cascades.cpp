@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame_cascades.hpp"
+
+#include <algorithm>
+
+#include "pipeline/frame_volumes.hpp"
+#include "support/fingerprint.hpp"
+
+namespace clpv {
+
+FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
+                             const RenderOptions& options, const Basis& basis, const Basis* swept,
+                             const Transport& transport, FrameLights& lights)
+    : session_(session),
+      scene_(scene),
+      buffers_(buffers),
+      options_(options),
+      lights_(lights),
+      injector_(session, basis, inject_options(options, transport.unit_flux_lobes)),
+      injected_(volumes(injected_volumes(options), light_shape(options, basis), "injected light")),
+      accumulated_(
+          volumes(options.cascades, light_shape(options, swept ? *swept : basis), "accumulated light")),
+      geometry_(volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
+      ways_(options.cascades),
+      seen_(options.cascades),
+      reflected_(options.cascades),
+      keys_(options.cascades) {
+  if (swept) {
+    sweeper_.emplace(session, basis, transport, sweep_options(options));
+    if (scene.sky) sweeper_->let_in(*scene.sky);
+  } else {
+    propagator_.emplace(session, basis, transport, propagate_options(options));
+  }
+  if (!geometry_.empty() && !blocked_by_view(options))
+    blocker_.emplace(session, buffers, options.grid, options.cascades, options.format());
+  if (options.bounces != Bounces::one)
+    reflector_.emplace(session, buffers, options.grid, options.cascades, options.format());
+  if (options.gather == Gathering::visible) sight_.emplace(session, buffers, options.grid, options.cascades);
+}
+
+std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,
+                                                                const char* what) const {
+  std::vector<CachedVolume> made(count);
+  for (CachedVolume& each : made)
+    each.volume = std::make_unique<Volume>(session_, shape, what, options_.format());
+  return made;
+}
+
+FrameCascades::CachedVolume& FrameCascades::of_cascade(std::vector<CachedVolume>& volumes,
+                                                       std::size_t cascade) {
+  return volumes[std::min(cascade, volumes.size() - 1)];
+}
+
+const Volume* FrameCascades::geometry(std::size_t cascade) {
+  return geometry_.empty() ? nullptr : of_cascade(geometry_, cascade).volume.get();
+}
+
+void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface& camera) {
+  grids_ = grids;
+  camera_ = &camera;
+  if (scene_.sky) sweeper_->scale_sky(lights_.scale());
+  for (std::size_t cascade = grids_.size(); cascade-- > 0;) keys_[cascade] = keys_of(cascade);
+}
+
+FrameCascades::Keys FrameCascades::keys_of(std::size_t cascade) const {
+  const ClpvGrid& grid = grids_[cascade];
+  const int c = static_cast<int>(cascade);
+  // Where in a cascade the eye is matters to gathering alone.
+  const CacheKey place = Fingerprint().add(grid.origin).add(grid.cell).value();
+  Keys keys;
+  keys.triangles = Fingerprint().add(place).add(buffers_.runs->instant()).value();
+  keys.injected = Fingerprint().add(place).add(lights_.sources_key(c)).value();
+  if (!geometry_.empty()) keys.geometry = keys.triangles;
+  if (!geometry_.empty() && !blocker_)
+    keys.geometry = Fingerprint().add(keys.triangles).add(lights_.rsms_key(c)).add(camera_->view).value();
+  // All bounces depend on what blocks.
+  keys.reflected = Fingerprint().add(keys.triangles).add(keys.geometry).value();
+  Fingerprint accumulated;
+  accumulated.add(keys.injected).add(keys.geometry);
+  if (reflector_) accumulated.add(keys.reflected);
+  // A sweep takes light at its border from the next coarser cascade, and keeps what the next finer one will take.
+  if (sweeper_) accumulated.add(sweeper_->shell(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
+  if (sweeper_ && cascade + 1 < keys_.size()) accumulated.add(keys_[cascade + 1].accumulated);
+  keys.accumulated = accumulated.value();
+  return keys;
+}
+
+void FrameCascades::inject(std::size_t cascade) {
+  CachedVolume& injected = of_cascade(injected_, cascade);
+  injected.cached.update(keys_[cascade].injected, [&] {
+    const int c = static_cast<int>(cascade);
+    lights_.update_sources(c);
+    const StageScope scope(session_, {Pass::inject_light, c});
+    injected.volume->clear(session_);
+    for (const Surface* source : lights_.sources(c))
+      injector_.inject_light(*source, grids_[cascade], *injected.volume);
+  });
+}
+
+void FrameCascades::block(std::size_t cascade) {
+  if (geometry_.empty()) return;
+  CachedVolume& geometry = of_cascade(geometry_, cascade);
+  geometry.cached.update(keys_[cascade].geometry, [&] {
+    if (!blocker_) return inject_geometry(cascade, *geometry.volume);
+    const StageScope scope(session_, {Pass::block, static_cast<int>(cascade)});
+    blocker_->block(cascade, grids_[cascade], *geometry.volume);
+  });
+}
+
+void FrameCascades::inject_geometry(std::size_t cascade, Volume& geometry) {
+  const int c = static_cast<int>(cascade);
+  lights_.rasterize_rsms(c);
+  const StageScope scope(session_, {Pass::inject_geometry, c});
+  geometry.clear(session_);
+  for (const Surface* rsm : lights_.rsms(c)) injector_.inject_geometry(*rsm, grids_[cascade], geometry);
+  injector_.inject_geometry(*camera_, grids_[cascade], geometry, options_.blocker_stride);
+}
+
+void FrameCascades::let_through(std::size_t cascade) {
+  if (const Volume* blockers = geometry(cascade))
+    ways_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->block(cascade, *blockers); });
+}
+
+void FrameCascades::reflect(std::size_t cascade) {
+  if (!reflector_) return;
+  reflected_[cascade].update(keys_[cascade].reflected, [&] {
+    const StageScope scope(session_, {Pass::reflect, static_cast<int>(cascade)});
+    let_through(cascade);
+    reflector_->reflect(cascade, grids_[cascade]);
+    sweeper_->reflect(cascade, reflector_->reflectors(cascade));
+  });
+}
+
+void FrameCascades::see(std::size_t cascade) {
+  if (!sight_) return;
+  seen_[cascade].update(keys_[cascade].triangles, [&] {
+    const StageScope scope(session_, {Pass::see, static_cast<int>(cascade)});
+    sight_->see(cascade, grids_[cascade]);
+  });
+}
+
+void FrameCascades::propagate(std::size_t cascade) {
+  Volume& accumulated = *accumulated_[cascade].volume;
+  accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
+    inject(cascade);
+    block(cascade);
+    reflect(cascade);
+    const Volume& injected = *of_cascade(injected_, cascade).volume;
+    const StageScope scope(session_, {Pass::propagate, static_cast<int>(cascade)});
+    if (propagator_)
+      return propagator_->propagate({injected, geometry(cascade), accumulated}, options_.iterations);
+    let_through(cascade);
+    sweeper_->sweep(cascade, grids_, injected, accumulated);
+  });
+}
+
+void FrameCascades::update(int cascade, const CascadeObserver& observer) {
+  const std::size_t c = cascade;
+  propagate(c);
+  see(c);
+  if (!observer) return;
+  inject(c);  // what cascades share may hold another one's
+  block(c);
+  observer({cascade, grids_[c], *of_cascade(injected_, c).volume, geometry(c), *accumulated_[c].volume,
+            lights_.scale()});
+}
+
+GatheredLight FrameCascades::light() const {
+  GatheredLight light{grids_, {}, sight_ ? &sight_->hidden() : nullptr, lights_.scale()};
+  for (const CachedVolume& accumulated : accumulated_) light.accumulated.push_back(accumulated.volume.get());
+  return light;
+}
+
+}  // namespace clpv
