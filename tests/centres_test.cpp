@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
-#include "support/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::centres_test {
@@ -21,13 +21,8 @@ class CentresFile : public ::testing::Test {
     return path;
   }
   void expect_refused(const std::string& path, const std::string& word) {
-    try {
-      load_basis(path);
-      ADD_FAILURE() << "taken: " << word;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
-      EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr(word)));
-    }
+    EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { load_basis(path); }),
+                ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr(word)));
   }
   test::TemporaryFolder folder_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "clpv/renderer.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/moving_scene.hpp"
 
 namespace clpv::door_test {
@@ -94,30 +95,14 @@ TEST(Door, ScenesTellTheirCameras) {
 TEST(Door, OptionsAreTheProgramsAndBadOnesAreRefused) {
   const auto all = Options::all();
   EXPECT_TRUE(std::ranges::any_of(all, [](const OptionDescription& o) { return o.name == "basis"; }));
-  try {
-    Options().set("layout", "planes");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_THAT(error.what(), HasSubstr("planes"));
-    EXPECT_THAT(error.what(), HasSubstr("soa"));
-  }
+  EXPECT_THAT(test::error_of(ExitCode::usage, [] { Options().set("layout", "planes"); }),
+              ::testing::AllOf(HasSubstr("planes"), HasSubstr("soa")));
   EXPECT_THROW(Options().set("no-such-option", "1"), Error);
 }
 
 TEST(Door, FailuresHaveTheirKind) {
-  try {
-    SceneFile("/nowhere/scene.json");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-  }
-  try {
-    Renderer(SceneFile(kCornell), small(), "no device of this name");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::device);
-  }
+  test::error_of(ExitCode::bad_input, [] { SceneFile("/nowhere/scene.json"); });
+  test::error_of(ExitCode::device, [] { Renderer(SceneFile(kCornell), small(), "no device of this name"); });
 }
 
 TEST(Door, ListsTheDeviceThatTestsRunOn) {

@@ -206,20 +206,6 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
   EXPECT_NEAR(mean(found, 2), mean(found, 0) / 4, 1e-3 * wanted);
 }
 
-// The same through the transports in steps: it is the same injection.
-TEST(EmissiveFrame, LightsByEveryTransport) {
-  Scene scene = lamp_over_floor(2);
-  for (const TransportKind transport : {TransportKind::sampled, TransportKind::exact}) {
-    RenderOptions options = small_frame();
-    options.transport = transport, options.blockers = Blockers::seen, options.gather = Gathering::all;
-    options.basis = "sh2", options.rsm_format = RsmFormat::paper;
-    options.cascade_size = 16, options.cascades = 1;  // three cells from lamp to floor
-    Frame frame(test_session(), scene, options);
-    frame.render(scene.cameras[0]);
-    EXPECT_GT(mean(frame.read(Show::irradiance), 0), 0.05) << static_cast<int>(transport);
-  }
-}
-
 TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   Scene scene = lamp_over_floor();
   const auto passes = [](Frame& frame, const Camera& camera) {

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame_lights.hpp"
 #include "scene/load.hpp"
-#include "tests/support/moving_scene.hpp"
+#include "support/error.hpp"
+#include "tests/support/on_device.hpp"
 
 namespace clpv::frame_test {
 namespace {
@@ -42,17 +44,12 @@ RenderOptions small_options(const Scene& scene) {
   return options;
 }
 
-Image image_of(Frame& frame, Show view) {
-  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
+Image render(const Scene& scene, const RenderOptions& options, Show view, const std::string& camera = {}) {
+  Frame frame(test::test_session(), scene, options);
+  frame.render(scene.camera(camera));
+  Image image = make_image(options.width, options.height, {"R", "G", "B", "A"});
   image.pixels = frame.read(view);
   return image;
-}
-
-Image render(const Scene& scene, const RenderOptions& options, Show view, const std::string& camera = {}) {
-  Session session(choose_device());
-  Frame frame(session, scene, options);
-  frame.render(scene.camera(camera));
-  return image_of(frame, view);
 }
 
 /// Mean of a channel over a box of pixels.
@@ -149,22 +146,42 @@ TEST(Frame, SceneWithoutLightIsBlack) {
   Scene scene = load_scene(scene_path("cornell.json"));
   scene.lights.clear();
   const Image image = render(scene, small_options(scene), Show::full);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(image.at(x, y, c), 0.0f);
-    }
+  for (std::size_t at = 0; at < image.pixels.size(); ++at) {
+    if (at % 4 == 3) continue;
+    ASSERT_EQ(image.pixels[at], 0.0f) << at;
+  }
+}
+
+TEST(Frame, WithoutOcclusionThereIsMoreLight) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  RenderOptions options = small_options(scene);
+  const Image occluded = render(scene, options, Show::irradiance);
+  options.occlusion = false;
+  const Image open = render(scene, options, Show::irradiance);
+  EXPECT_GT(mean(open, 0, 0, kWidth, kHeight, 1), 1.05 * mean(occluded, 0, 0, kWidth, kHeight, 1));
+}
+
+TEST(Frame, SweepsRefuseWhatIsOfSteps) {
+  const Scene scene = load_scene(scene_path("cornell.json"));
+  const std::vector<std::function<void(RenderOptions&)>> changes = {
+      [](RenderOptions& o) { o.state = State::fluxes; },
+      [](RenderOptions& o) { o.lobe_time = LobeTime::kernel; },
+      [](RenderOptions& o) { o.blocking = Blocking::one_sided; }};
+  for (const auto& change : changes) {
+    RenderOptions options;
+    change(options);
+    EXPECT_THROW(Frame(test::test_session(), scene, options), Error);
   }
 }
 
 /// Accumulated light of the finest cascade, seen from `eye`.
 std::vector<float> finest_light(const Scene& scene, const RenderOptions& options, const glm::vec3& eye) {
-  Session session(choose_device());
-  Frame frame(session, scene, options);
+  Frame frame(test::test_session(), scene, options);
   Camera camera = scene.camera("");
   camera.eye = eye;
   std::vector<float> light;
   frame.render(camera, [&](const CascadeVolumes& volumes) {
-    if (volumes.cascade == 0) light = volumes.accumulated.read(session);
+    if (volumes.cascade == 0) light = volumes.accumulated.read(test::test_session());
     for (float& value : light) value /= volumes.light_scale;
   });
   return light;
@@ -201,28 +218,6 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
   // Not to the bit: seen from elsewhere, float32 rounding turns single texels on the edges of the boxes to the other
   // surface, one in some 64 a cell. Light that did not move with the grid would differ by as much as there is.
   EXPECT_LT(difference, 2e-3 * total);
-}
-
-TEST(Frame, OfSomethingThatMovedIsAsIfMadeForThatInstant) {
-  const test::TemporaryFolder folder;
-  const fs::path path = test::write_moving_scene(folder);
-  for (const Blockers blockers : {Blockers::seen, Blockers::scene}) {
-    MovingScene moving(path);
-    RenderOptions options = small_options(moving.scene());
-    options.blockers = blockers;
-    Session session(choose_device());
-    Frame kept(session, moving.scene(), options);
-    std::vector<float> before;
-    for (const double seconds : {0.0, 0.35, 1.0, 0.35}) {
-      moving.pose(seconds);
-      kept.scene_moved();
-      kept.render(moving.scene().camera(""));
-      const std::vector<float> pixels = image_of(kept, Show::full).pixels;
-      EXPECT_EQ(pixels, render(moving.scene(), options, Show::full).pixels) << seconds << name_of(blockers);
-      EXPECT_NE(pixels, before) << "something moves";
-      before = pixels;
-    }
-  }
 }
 
 }  // namespace

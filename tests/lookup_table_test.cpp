@@ -1,17 +1,90 @@
 // SPDX-License-Identifier: MIT
-// The paper's look-up tables on the device: what kernels read is what is in them, however many came and went before.
+// The paper's look-up tables on the device, and lobes that the propagation kernel computes from them. clpv check compares such
+// lobes with the CPU reference; here is what it does not have.
 #include "pipeline/lookup_table.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "basis/table_kernel.hpp"
+#include "codegen/cell_macros.hpp"
+#include "pipeline/propagate.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv::lookup_table_test {
 namespace {
 
 using test::test_session;
+using ::testing::HasSubstr;
+
+/// What a kernel reads along each direction; by the functions that stages are generated with.
+std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, TableStorage storage,
+                             const std::vector<cl_float4>& directions) {
+  const LookupTable table(test_session(), basis, lobes, storage, TableUse::functions);
+  ProgramSource source{"coefficients.h", {}, {}};
+  source.generated = table.macros() + coefficient_macros(basis.size()) +
+                     table_basis_source(basis, lobes.table_size) +
+                     "__kernel void look_up(__global const float4* directions, __global float* found"
+                     " CLPV_AND_TABLE) {\n"
+                     "  const float4 d = directions[get_global_id(0)];\n"
+                     "  found[get_global_id(0)] = clpv_table_basis(d.x, d.y, d.z CLPV_PASS_TABLE).c1;\n}\n";
+  Kernel kernel(test_session(), source, "look_up");
+  const Buffer given = test_session().upload(directions, "directions");
+  const Buffer found = test_session().buffer(directions.size() * sizeof(float), "found");
+  table.add_to(kernel.set(given, found));
+  kernel.launch(directions.size(), 1);
+  return test_session().read<float>(found, directions.size());
+}
+
+TEST(LookupTable, HoldsTheFunctionOnTheDevice) {
+  // The second centre, whose table stands behind the first one's, is +x.
+  const auto basis = make_basis_from_centres("two", {{0, 1, 0}, {1, 0, 0}}, std::vector<double>{0.2, 0.3});
+  const LobeOptions lobes{.table_size = 64, .table_functions = true};
+  const ZonalTables tables = function_tables(*basis, lobes.table_size);
+  std::vector<cl_float4> directions{{{1, 0, 0, 0}}, {{-1, 0, 0, 0}}};
+  for (int i = 0; i < 62; ++i) {
+    const double t = -1 + 2 * (i + 0.5) / 63;  // between entries
+    directions.push_back({{static_cast<float>(t), static_cast<float>(std::sqrt(1 - t * t)), 0, 0}});
+  }
+  const std::vector<float> buffer = looked_up(*basis, lobes, TableStorage::buffer, directions);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    EXPECT_EQ(buffer[i], static_cast<float>(tables(1, directions[i].s[0]))) << i;
+  if (!test_session().device().images) GTEST_SKIP() << "no images on this device";
+  EXPECT_EQ(looked_up(*basis, lobes, TableStorage::image, directions), buffer);
+}
+
+TEST(LookupTable, IsNotThereWhereNothingIsLookedUp) {
+  const auto sh = make_basis("sh2"), srbf = make_basis("srbf4");
+  const LobeOptions both{.kind = LobeKind::rotate, .table_functions = true};
+  for (const TableUse use : {TableUse::lobes, TableUse::functions}) {
+    for (const LookupTable& table : {LookupTable(test_session(), *sh, both, TableStorage::image, use),
+                                     LookupTable(test_session(), *srbf, {}, TableStorage::image, use)}) {
+      EXPECT_FALSE(table.exists());
+      EXPECT_EQ(table.macros(), LookupTable::no_macros());
+    }
+    EXPECT_TRUE(LookupTable(test_session(), *srbf, both, TableStorage::buffer, use).exists());
+  }
+}
+
+TEST(LookupTable, RefusesImagesThatTheDeviceHasNot) {
+  Device without = choose_device();
+  without.images = false;
+  Session other(without);
+  const auto basis = make_basis("srbf4");
+  EXPECT_THAT(test::error_of(ExitCode::device,
+                             [&] {
+                               LookupTable(other, *basis, {.kind = LobeKind::rotate}, TableStorage::image,
+                                           TableUse::lobes);
+                             }),
+              HasSubstr("no images"));
+}
 
 /// Entries 0 .. size - 1 as a kernel reads them.
 std::vector<float> entries(const LookupTable& table, int size) {
@@ -54,15 +127,74 @@ TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersComeAndGo) {
   }
 }
 
-TEST(LookupTable, NoneWhereNothingIsLookedUp) {
-  const auto basis = make_basis("srbf8v2"), harmonics = make_basis("sh2");
-  const LookupTable exact(test_session(), *basis, {}, TableStorage::buffer, TableUse::lobes);
-  const LookupTable rotated(test_session(), *harmonics, {.kind = LobeKind::rotate}, TableStorage::buffer,
-                            TableUse::lobes);
-  for (const LookupTable* table : {&exact, &rotated}) {
-    EXPECT_FALSE(table->exists());
-    EXPECT_EQ(table->macros(), LookupTable::no_macros());
+constexpr int kGrid = 5, kSteps = 4;
+
+/// The sums after some steps, of two lamps in a corner of the grid.
+std::vector<float> accumulated(const Basis& basis, const Transport& transport,
+                               const PropagateOptions& options) {
+  const VolumeShape shape{kGrid, basis.size(), 3};
+  Volume injected(test_session(), shape, "injected"), sum(test_session(), shape, "sum");
+  const std::size_t plane = kGrid * kGrid * kGrid;
+  std::vector<float> light(plane * static_cast<std::size_t>(basis.size()) * 3, 0.0f);
+  const std::vector<double> lobe = basis.clamped_cosine(glm::normalize(glm::dvec3(3, 2, 1)));
+  for (std::size_t row = 0; row < 3 * lobe.size(); ++row) {
+    light[row * plane + 31] = static_cast<float>(lobe[row % lobe.size()]);
+    light[row * plane + 62] = 0.5f * light[row * plane + 31] * static_cast<float>(row / lobe.size());
   }
+  injected.write(test_session(), light);
+  Propagator(test_session(), basis, transport, options).propagate({injected, nullptr, sum}, kSteps);
+  return sum.read(test_session());
+}
+
+TEST(RunTimeLobes, OfUnevenLambdasGiveTheLightOfConstantOnes) {
+  const auto basis = make_basis_from_centres("uneven", make_basis("srbf4")->centres(),
+                                             std::vector<double>{0.2, 0.3, 0.3, 0.25});
+  for (const LobeKind kind : {LobeKind::exact, LobeKind::rotate}) {
+    const Transport transport =
+        make_transport(TransportKind::sampled, *basis, {.kind = kind, .table_functions = true});
+    const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid}),
+                             computed = accumulated(*basis, transport,
+                                                    {.grid = kGrid, .lobe_time = LobeTime::kernel});
+    const float largest = std::ranges::max(constant);
+    for (std::size_t i = 0; i < constant.size(); ++i)
+      ASSERT_NEAR(computed[i], constant[i], 1e-5 * double{largest}) << name_of(kind) << " " << i;
+  }
+}
+
+TEST(RunTimeLobes, AreRefusedWhereNoStepMakesAny) {
+  const auto basis = make_basis("sh2");
+  EXPECT_THAT(test::error_of(ExitCode::usage,
+                             [&] {
+                               Propagator(test_session(), *basis,
+                                          make_transport(TransportKind::sampled, *basis),
+                                          {.grid = 3, .state = State::fluxes, .lobe_time = LobeTime::kernel});
+                             }),
+              HasSubstr("state fluxes"));
+}
+
+// The paper's lobes and tables from end to end, and a set of a user's own.
+TEST(RunTimeLobes, AreThereForUsers) {
+  const test::TemporaryFolder folder;
+  const std::string file =
+      folder.write("mine.json", R"({"centres": [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]]})")
+          .string();
+  const auto run = [&](const std::string& given) {
+    const test::Outcome outcome = test::run(
+        CLPV_PROGRAM
+        " propagate --grid 5 --iterations 2 --at 2,2,2 --normal 1,2,3 --lobe rotate --evaluate table "
+        "--table-size 99 " +
+        given);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto last = [](const nlohmann::json& json) {
+    return json["steps"].back()["travelling"][0].get<double>();
+  };
+  const nlohmann::json host = run("--centres " + file), kernel = run("--lobe-time kernel --centres " + file);
+  EXPECT_NEAR(last(kernel), last(host), 1e-5 * last(host));
+  EXPECT_EQ(kernel["options"]["basis"], "mine");
+  EXPECT_EQ(kernel["options"]["lobe-time"], "kernel");
+  EXPECT_EQ(kernel["options"]["table-size"], 99);
 }
 
 }  // namespace

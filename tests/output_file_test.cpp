@@ -10,8 +10,8 @@
 #include <iterator>
 
 #include "support/array_files.hpp"
-#include "support/error.hpp"
 #include "support/progress.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::output_file_test {
@@ -29,19 +29,8 @@ class OutputFile : public testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
+using test::error_of;
 using test::read_file;
-
-template <typename Action>
-std::string message_of(ExitCode code, Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code);
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return {};
-}
 
 TEST_F(OutputFile, ReplacesWholeFilesAndLeavesNothingBeside) {
   const fs::path path = folder_ / "out.txt";
@@ -62,15 +51,15 @@ TEST_F(OutputFile, CheckLeavesNothingAndKeepsWhatIsThere) {
 
 TEST_F(OutputFile, RefusesPlacesThatTakeNoFileAndNamesThem) {
   EXPECT_NE(
-      message_of(ExitCode::run_time, [&] { check_writable(folder_ / "none" / "a.exr"); }).find("no folder"),
+      error_of(ExitCode::run_time, [&] { check_writable(folder_ / "none" / "a.exr"); }).find("no folder"),
       std::string::npos);
-  EXPECT_NE(message_of(ExitCode::run_time, [&] { check_writable(folder_); }).find(folder_.string()),
+  EXPECT_NE(error_of(ExitCode::run_time, [&] { check_writable(folder_); }).find(folder_.string()),
             std::string::npos);
-  message_of(ExitCode::run_time, [&] { check_writable(""); });
-  message_of(ExitCode::run_time, [&] { check_writable(folder_ / ""); });
+  error_of(ExitCode::run_time, [&] { check_writable(""); });
+  error_of(ExitCode::run_time, [&] { check_writable(folder_ / ""); });
   write_file(folder_ / "file", std::string_view("x"));
-  message_of(ExitCode::run_time, [&] { check_writable(folder_ / "file" / "a.exr"); });
-  message_of(ExitCode::run_time, [&] { check_writable("/dev/null"); });
+  error_of(ExitCode::run_time, [&] { check_writable(folder_ / "file" / "a.exr"); });
+  error_of(ExitCode::run_time, [&] { check_writable("/dev/null"); });
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
@@ -108,8 +97,7 @@ TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
   const rlimit small{1000, before.rlim_max};
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string message =
-      message_of(ExitCode::run_time, [&] { write_file(path, std::string(5000, 'x')); });
+  const std::string message = error_of(ExitCode::run_time, [&] { write_file(path, std::string(5000, 'x')); });
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(message.find(path.string()), std::string::npos);

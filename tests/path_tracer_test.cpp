@@ -8,7 +8,7 @@
 #include <functional>
 #include <numbers>
 
-#include "support/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::path_tracer_test {
@@ -288,37 +288,29 @@ TEST(PathTracer, BackgroundIsZero) {
   }
 }
 
-ExitCode refusal(const Scene& scene, const PathTracerOptions& options = {}) {
-  try {
-    trace_paths(scene, kDown, options);
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return ExitCode::ok;
-}
-
 TEST(PathTracer, RefusesWhatItCannotTrace) {
-  Scene scene = floor_scene(0.5);
-  EXPECT_EQ(refusal(scene), ExitCode::bad_input) << "no light";
-  scene.lights = {sun({0, -1, 0}, 1)};
-  PathTracerOptions options;
-  options.noise = 0;
-  EXPECT_EQ(refusal(scene, options), ExitCode::usage);
-  Scene bad = scene;
-  bad.vertices[2].position[1] = std::nanf("");
-  EXPECT_EQ(refusal(bad), ExitCode::bad_input);
-  bad = scene;
-  bad.materials[0].base_colour[1] = kOpen;
-  EXPECT_EQ(refusal(bad), ExitCode::bad_input);
-  bad = scene;
-  bad.lights[0].data.intensity[0] = std::nanf("");
-  EXPECT_EQ(refusal(bad), ExitCode::bad_input);
-  bad = scene;
-  bad.triangles[0].vertex[1] = 99;
-  EXPECT_EQ(refusal(bad), ExitCode::bad_input);
-  bad = scene;
-  bad.triangles.clear();
-  EXPECT_EQ(refusal(bad), ExitCode::bad_input);
+  Scene sound = floor_scene(0.5);
+  sound.lights = {sun({0, -1, 0}, 1)};
+  const auto trace = [](const Scene& scene, const PathTracerOptions& options) {
+    return [=] { trace_paths(scene, kDown, options); };
+  };
+  PathTracerOptions still;
+  still.noise = 0;
+  error_of(ExitCode::usage, trace(sound, still));
+  const std::vector<std::function<void(Scene&)>> faults = {
+      [](Scene& s) { s.lights.clear(); },
+      [](Scene& s) { s.vertices[2].position[1] = std::nanf(""); },
+      [](Scene& s) { s.materials[0].base_colour[1] = kOpen; },
+      [](Scene& s) { s.lights[0].data.intensity[0] = std::nanf(""); },
+      [](Scene& s) { s.triangles[0].vertex[1] = 99; },
+      [](Scene& s) { s.triangles.clear(); },
+  };
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    SCOPED_TRACE(i);
+    Scene bad = sound;
+    faults[i](bad);
+    error_of(ExitCode::bad_input, trace(bad, {}));
+  }
 }
 
 }  // namespace

@@ -193,11 +193,5 @@ TEST_F(CachedSession, RebuildsWhatIsDamagedOrRefused) {
   EXPECT_NE(cache_.load(key(3)), refused);
 }
 
-TEST_F(CachedSession, GoesOnWithoutAFolder) {
-  write_file(folder_.path() / "file", "");
-  cache_ = ProgramCache(folder_.path() / "file" / "below");
-  EXPECT_EQ(answer(4), 4);
-}
-
 }  // namespace
 }  // namespace clpv::program_cache_test

@@ -5,15 +5,22 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+
+#include <sstream>
 
 #include "checks/check.hpp"
+#include "device/compile_notice.hpp"
 #include "device/kernel.hpp"
-#include "support/error.hpp"
+#include "support/log.hpp"
+#include "tests/support/error_of.hpp"
 
 namespace clpv::session_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   Device device = choose_device();
@@ -22,14 +29,8 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   Session session(device);
   const Buffer held = session.buffer(4u << 20, "first");
   EXPECT_EQ(session.largest_buffer(), 2u << 20);
-  try {
-    session.buffer(3u << 20, "light volume");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::run_time);
-    EXPECT_THAT(error.what(), HasSubstr("light volume needs 3.0 MiB"));
-    EXPECT_THAT(error.what(), HasSubstr("at most 2.0 MiB"));
-  }
+  EXPECT_THAT(test::error_of(ExitCode::run_time, [&] { session.buffer(3u << 20, "light volume"); }),
+              AllOf(HasSubstr("light volume needs 3.0 MiB"), HasSubstr("at most 2.0 MiB")));
   EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was refused does not count";
 }
 
@@ -87,12 +88,8 @@ TEST(Kernel, MissingArgumentsAreToldByName) {
   Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
   EXPECT_EQ(session.build_ms(), 0) << "described, not built";
   kernel.set(bytes).launch(1, 1);
-  try {
-    kernel.set().launch(1, 1);
-    FAIL() << "a launch without arguments";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("kernel 'sizes' was given 0 of its 1 arguments"));
-  }
+  EXPECT_THAT([&] { kernel.set().launch(1, 1); },
+              ThrowsMessage<Error>(HasSubstr("kernel 'sizes' was given 0 of its 1 arguments")));
 }
 
 TEST(Kernel, WhatIsDescribedAndStillWantedIsBuiltOnce) {
@@ -120,14 +117,8 @@ TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   const Buffer bytes = session.buffer(1024, "sizes");
   Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
   const std::size_t too_large = 1u << 20;
-  try {
-    kernel.set(bytes).launch(too_large, too_large);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::run_time);
-    EXPECT_THAT(error.what(), HasSubstr("kernel 'sizes' on " + session.device().name));
-    EXPECT_THAT(error.what(), HasSubstr("CL_INVALID_WORK_"));
-  }
+  EXPECT_THAT(test::error_of(ExitCode::run_time, [&] { kernel.set(bytes).launch(too_large, too_large); }),
+              AllOf(HasSubstr("kernel 'sizes' on " + session.device().name), HasSubstr("CL_INVALID_WORK_")));
 }
 
 TEST(Session, StagesAreTimedAndAddUpByMark) {
@@ -160,6 +151,37 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
 TEST(Sizes, HostAndDeviceAgreeOnTheSharedStructs) {
   Session session(choose_device());
   for (const auto& result : reference::check_sizes(session)) EXPECT_TRUE(result.passed()) << result.place;
+}
+
+/// The log, in place of stderr, while this lives.
+class LogInMemory {
+ public:
+  LogInMemory() : before_(spdlog::default_logger()) {
+    auto logger =
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_));
+    logger->set_pattern("%v");
+    spdlog::set_default_logger(logger);
+  }
+  ~LogInMemory() { spdlog::set_default_logger(before_); }
+
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+TEST(CompileNotice, ALongWaitIsToldOnceAndAShortOneNot) {
+  const LogInMemory log;
+  tell_of_compiling("this device", 0, 600);
+  tell_of_keeping(600);
+  EXPECT_EQ(log.text(), "");
+  tell_of_compiling("this device", 600, 1200);
+  tell_of_compiling("this device", 1200, 6000);
+  tell_of_keeping(1200);
+  EXPECT_EQ(log.text(),
+            "compiling kernels for this device, which takes a while the first time\n"
+            "keeping the compiled kernels for later starts\n");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Light from beyond a scene: maps of the sky, what of them light is swept from, and what it does to surfaces.
 #include "scene/sky.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@
 #include "pipeline/frame.hpp"
 #include "pipeline/view.hpp"
 #include "scene/load.hpp"
-#include "support/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/traced_scenes.hpp"
@@ -30,6 +31,7 @@ namespace {
 
 using namespace test;
 using std::numbers::pi;
+using ::testing::HasSubstr;
 
 Sky map_of(int width, int height, const std::function<float(int x, int y)>& radiance) {
   Sky sky;
@@ -158,16 +160,6 @@ TEST(SkyFrame, AnOpenPlaneGetsPiTimesTheRadiance) {
   const Scene scene = under(even_sky({2, 1, 1}));
   EXPECT_NEAR(traced(scene), 2 * pi, 1e-3);
   EXPECT_NEAR(lit(scene), 2 * pi, 0.03 * 2 * pi);
-  RenderOptions options = small_frame();
-  options.storage = Storage::float32, options.directions = options.coarser_directions = Directions::of24;
-  EXPECT_NEAR(lit(scene, options), 2 * pi, 0.03 * 2 * pi);
-}
-
-// Lux of a bright day or a candle's: volumes of 16 bits hold both.
-TEST(SkyFrame, BrightSkiesAndDarkOnes) {
-  const double one = lit(under(even_sky(glm::vec3(1))));
-  for (const float radiance : {1e-5f, 3e4f})
-    EXPECT_NEAR(lit(under(even_sky(glm::vec3(radiance)))) / double{radiance}, one, 2e-3 * one);
 }
 
 TEST(SkyFrame, ABrightHalfOfTheSkyLightsHalfAsMuch) {
@@ -189,15 +181,6 @@ TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
     EXPECT_NEAR(traced(scene), wanted, 0.01 * pi) << distance;
     EXPECT_NEAR(lit(scene), wanted, 0.12 * pi) << distance;
   }
-}
-
-TEST(SkyFrame, ALargePlaneHighUpShutsItOut) {
-  Scene scene = under(even_sky(glm::vec3(1)));
-  add_quad(scene, {-9, 1.2f, -9}, {18, 0, 0}, {0, 0, 18}, 0);
-  const double wanted = traced(scene);
-  EXPECT_LT(wanted, 0.05 * pi);
-  EXPECT_LT(lit(scene), 0.45 * pi)
-      << "a third passes a single plane, and what is beyond the cascades blocks nothing";
 }
 
 // A texel of the sun's size far brighter than the sky: found by those that look for it.
@@ -264,13 +247,8 @@ TEST(SkyFrame, StepsRefuseIt) {
   const Scene scene = under(even_sky(glm::vec3(1)));
   RenderOptions options = small_frame();
   options.transport = TransportKind::sampled;
-  try {
-    Frame frame(test_session(), scene, options);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_NE(std::string(error.what()).find("transport: found 'sampled' with a sky"), std::string::npos);
-  }
+  EXPECT_THAT(error_of(ExitCode::usage, [&] { Frame(test_session(), scene, options); }),
+              HasSubstr("transport: found 'sampled' with a sky"));
 }
 
 /// A scene file with that member "sky", beside a map of two texels whose red is `value` in the second.
@@ -318,22 +296,22 @@ TEST_F(SkyFile, IsFoundFromTheFolderThatItLiesIn) {
 }
 
 TEST_F(SkyFile, RefusesWhatCannotShine) {
+  const std::pair<std::string, std::string> members[] = {
+      {"{}", "/sky: found neither radiance nor map"},
+      {R"({"map": "map.exr", "radiance": [1, 1, 1]})", "/sky: found radiance and map"},
+      {R"({"radiance": [1, -1, 1]})", "/sky/radiance"},
+      {R"({"radiance": [1, 1, 1], "scale": 2})", "/sky/scale"},
+      {R"({"map": "map.exr", "ground": [1, 1, 1]})", "/sky/ground"},
+      {R"({"map": "../map.exr"})", "leaves"},
+      {R"({"map": "none.exr"})", "none.exr"},
+      {R"({"map": "scene.json"})", "extension"}};
+  for (const auto& [sky, words] : members) EXPECT_THAT(refusal(sky), HasSubstr(words));
   const std::string map = R"({"map": "map.exr", "scale": 2})";
-  EXPECT_NE(refusal(map, -0.5f).find("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"),
-            std::string::npos);
-  EXPECT_NE(refusal(map, std::numeric_limits<float>::quiet_NaN()).find("pixel 1,0 channel R: found nan"),
-            std::string::npos);
-  EXPECT_NE(refusal(map, std::numeric_limits<float>::infinity()).find("found inf"), std::string::npos);
-  EXPECT_NE(refusal(map, 1, {"R", "G"}).find("no channel B"), std::string::npos);
-  EXPECT_NE(refusal("{}").find("/sky: found neither radiance nor map"), std::string::npos);
-  EXPECT_NE(refusal(R"({"map": "map.exr", "radiance": [1, 1, 1]})").find("/sky: found radiance and map"),
-            std::string::npos);
-  EXPECT_NE(refusal(R"({"radiance": [1, -1, 1]})").find("/sky/radiance"), std::string::npos);
-  EXPECT_NE(refusal(R"({"radiance": [1, 1, 1], "scale": 2})").find("/sky/scale"), std::string::npos);
-  EXPECT_NE(refusal(R"({"map": "map.exr", "ground": [1, 1, 1]})").find("/sky/ground"), std::string::npos);
-  EXPECT_NE(refusal(R"({"map": "../map.exr"})").find("leaves"), std::string::npos);
-  EXPECT_NE(refusal(R"({"map": "none.exr"})").find("none.exr"), std::string::npos);
-  EXPECT_NE(refusal(R"({"map": "scene.json"})").find("extension"), std::string::npos);
+  EXPECT_THAT(refusal(map, -0.5f), HasSubstr("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"));
+  EXPECT_THAT(refusal(map, std::numeric_limits<float>::quiet_NaN()),
+              HasSubstr("pixel 1,0 channel R: found nan"));
+  EXPECT_THAT(refusal(map, std::numeric_limits<float>::infinity()), HasSubstr("found inf"));
+  EXPECT_THAT(refusal(map, 1, {"R", "G"}), HasSubstr("no channel B"));
 }
 
 }  // namespace

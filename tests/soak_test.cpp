@@ -98,39 +98,34 @@ void all_at_once(const std::string& command) {
 TEST(ManyAtOnce, ShareAnEmptyProgramCache) {
   const test::TemporaryFolder folder;
   const std::string at = folder.path().string();
-  const std::string render =
-      "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + at + "/cache " CLPV_PROGRAM " -v render " + kTiny +
-      " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2"
-      " --transport sampled --gather all --blockers seen -o " +
+  const std::string propagate =
+      "XDG_CACHE_HOME=" + at + "/cache " CLPV_PROGRAM " -v propagate --grid 5 --iterations 2 --at 2,2,2 -o " +
       at;
-  all_at_once(render + "/#.exr");
-  const std::string first = test::read_file(folder / "0.exr");
+  all_at_once(propagate + "/#.npy");
+  const std::string first = test::read_file(folder / "0.npy");
   EXPECT_FALSE(first.empty());
   for (int i = 1; i < at_once(); ++i)
-    EXPECT_TRUE(test::read_file(folder / (std::to_string(i) + ".exr")) == first) << i;
+    EXPECT_TRUE(test::read_file(folder / (std::to_string(i) + ".npy")) == first) << i;
   for (const auto& entry : fs::directory_iterator(folder / "cache/clpv"))
     EXPECT_EQ(entry.path().extension(), ".program") << "left behind";
-  const test::Outcome next = test::run(render + "/next.exr");
+  const test::Outcome next = test::run(propagate + "/next.npy");
   EXPECT_EQ(next.exit_code, 0) << next.err;
   EXPECT_THAT(next.err, testing::HasSubstr("from the cache"));
-  EXPECT_TRUE(test::read_file(folder / "next.exr") == first);
+  EXPECT_TRUE(test::read_file(folder / "next.npy") == first);
 }
 
 TEST(ManyAtOnce, ShareAnEmptyQualityCache) {
   const test::TemporaryFolder folder;
   const std::string at = folder.path().string();
-  all_at_once(
-      CLPV_PROGRAM " quality " + kTiny +
-      " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2"
-      " --transport sampled --spp 4 --frames 1 --cache " +
-      at + "/kept --json " + at + "/#.json");
-  for (const auto& entry : fs::recursive_directory_iterator(folder / "kept"))
-    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
-  const test::Outcome again = test::run(
+  const std::string quality =
       CLPV_PROGRAM " --quiet quality " + kTiny +
       " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2"
       " --transport sampled --spp 4 --frames 1 --cache " +
-      at + "/kept --format json");
+      at + "/kept --json " + at;
+  all_at_once(quality + "/#.json");
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "kept"))
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  const test::Outcome again = test::run(quality + "/again.json");
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(again.err, "");
 }

@@ -36,17 +36,18 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
   return {};
 }
 
-std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape) {
-  std::vector<VolumeFormat> formats;
-  for (const VolumeFormat& format : all_formats()) {
+std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
+                                        const std::vector<VolumeFormat>& formats) {
+  std::vector<VolumeFormat> supported;
+  for (const VolumeFormat& format : formats) {
     if (format == VolumeFormat{}) continue;
     if (const auto reason = unsupported(device, format, shape)) {
       spdlog::info("{} on {} is unsupported: {}", format_name(format), device.name, *reason);
     } else {
-      formats.push_back(format);
+      supported.push_back(format);
     }
   }
-  return formats;
+  return supported;
 }
 
 double tolerance_in(std::string_view stage, const VolumeFormat& format) {

@@ -34,8 +34,9 @@ struct CheckResult {
 
 using CheckResults = std::vector<CheckResult>;
 
-/// Formats beside the default soa/float in which the device can hold volumes of this shape.
-std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape);
+/// Those of `formats`, beside the default soa/float, in which the device can hold volumes of this shape.
+std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
+                                        const std::vector<VolumeFormat>& formats = all_formats());
 /// tolerance(stage), or that of half storage.
 double tolerance_in(std::string_view stage, const VolumeFormat& format);
 
@@ -43,10 +44,10 @@ double tolerance_in(std::string_view stage, const VolumeFormat& format);
 struct CheckScope {
   bool thorough = false;  ///< every combination of basis and options: minutes, for kernels to build
   std::vector<std::string> bases = basis_names();
-  bool beyond_bases = true;  ///< what does not vary with the basis as well: formats, areas
+  std::vector<VolumeFormat> formats = all_formats();  ///< those that the device lacks are left out
 };
 
-/// A stage's. The scope is for those that vary with the basis: inject, propagate, gather.
+/// A stage's. The scope is for those of many variants: inject, propagate, sweep, bounce, gather.
 CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 
 // One a stage, in checks/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device, but for building kernels.

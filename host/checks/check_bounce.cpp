@@ -101,7 +101,7 @@ CheckResults check_bounce(Session& session, const CheckScope& scope) {
       {.basis = "sh2", .grid = 7, .parts = {1, 2, 1}, .bounces = Bounces::all, .form = SweepForm::planes},
       {.basis = "srbf8v2", .grid = 1, .parts = {1}, .bounces = Bounces::all},
   };
-  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}))
+  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
     cases.push_back(
         {.basis = "bins24", .grid = 9, .parts = {1, 1}, .bounces = Bounces::all, .format = format});
   if (scope.thorough) {

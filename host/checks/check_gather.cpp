@@ -102,10 +102,11 @@ CheckResult check_one(Session& session, const Basis& basis, TransportKind transp
 }
 
 /// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
-void check_formats(Session& session, CheckResults& results) {
+void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   constexpr TransportKind transport = TransportKind::sweep;
-  for (const VolumeFormat& format : other_formats(session.device(), {kGrid, basis->size(), 3})) {
+  for (const VolumeFormat& format :
+       other_formats(session.device(), {kGrid, basis->size(), 3}, scope.formats)) {
     Variant variant{.name = format_name(format), .format = format};
     if (sampled_by_device(format)) {
       variant.name += " filter";
@@ -138,12 +139,11 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
     results.push_back(
         check_one(session, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image}));
   }
-  if (!scope.beyond_bases) return results;
   const std::unique_ptr<Basis> swept = swept_basis();  // all that a sweep leaves to gather
   results.push_back(check_one(session, *swept, TransportKind::sweep, {"plain"}));
   results.push_back(
       check_one(session, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible}));
-  check_formats(session, results);
+  check_formats(session, scope, results);
   return results;
 }
 

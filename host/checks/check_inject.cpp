@@ -199,9 +199,10 @@ void check_rotated(Session& session, const Basis& basis, bool thorough, CheckRes
 }
 
 /// Every other way for volumes to lie in memory.
-void check_formats(Session& session, CheckResults& results) {
+void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  for (const VolumeFormat& format : other_formats(session.device(), {kGrid + 1, basis->size(), 3})) {
+  for (const VolumeFormat& format :
+       other_formats(session.device(), {kGrid + 1, basis->size(), 3}, scope.formats)) {
     const InjectOptions options{.grid = kGrid, .format = format};
     results.push_back(check_light(session, *basis, options, false, RsmFormat::float32));
     results.push_back(check_geometry(session, *basis, options, true, RsmFormat::float32));
@@ -225,7 +226,6 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
     results.push_back(check_light(session, *basis, plain, false, RsmFormat::paper));
     results.push_back(check_geometry(session, *basis, plain, false, RsmFormat::paper));
   }
-  if (!scope.beyond_bases) return results;
   for (const bool orthographic : {true, false}) {
     const InjectOptions areas{.grid = kGrid, .blocking = Blocking::areas};  // whatever the basis
     for (const int stride : {1, 2, 3}) {
@@ -236,7 +236,7 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
   }
   results.push_back(
       check_light(session, *make_basis("sh2"), {.grid = kGrid}, false, RsmFormat::float32, true));
-  check_formats(session, results);
+  check_formats(session, scope, results);
   return results;
 }
 

@@ -140,11 +140,11 @@ void check_areas(Session& session, bool thorough, CheckResults& results) {
 }
 
 /// Every other way for volumes to lie in memory: one basis and transport, since these have no part in it.
-void check_formats(Session& session, CheckResults& results) {
+void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
   const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
-  for (const VolumeFormat& format : other_formats(session.device(), corners)) {
+  for (const VolumeFormat& format : other_formats(session.device(), corners, scope.formats)) {
     results.push_back(check_one(session, *basis, transport, {.grid = kFormatGrid, .format = format}, true));
   }
 }
@@ -168,9 +168,8 @@ CheckResults check_propagate(Session& session, const CheckScope& scope) {
       check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
     }
   }
-  if (!scope.beyond_bases) return results;
   check_areas(session, scope.thorough, results);
-  check_formats(session, results);
+  check_formats(session, scope, results);
   return results;
 }
 

@@ -105,7 +105,7 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       {.basis = "bins96", .grid = 5, .parts = {3, 2}, .blocking = false},
       {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},
   };
-  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}))
+  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
     cases.push_back({.basis = "bins24", .grid = 9, .parts = {1, 1}, .format = format});
   if (scope.thorough) {
     for (const std::string& name : basis_names()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tests that every basis has to pass: TEST_P(EveryBasis, ...), instantiated once, in every_basis.cpp.
+// The fixture of tests that every basis has to pass; each file derives and instantiates its own.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -27,15 +27,14 @@ inline void expect_passed(const reference::CheckResults& results, std::size_t le
   }
 }
 
-/// What is left of a check once each basis has had a test of its own.
-inline reference::CheckScope beyond_bases() {
-  return {.bases = {}};
+/// A check's variants that differ in code, not in numbers alone. Bases: harmonics, centres with mirrors and without, direction
+/// bins. Formats: each layout, and halves.
+inline reference::CheckScope few_variants() {
+  return {.bases = {"sh2", "srbf8v2", "srbf4", "bins24"},
+          .formats = {{Layout::soa, Storage::float16},
+                      {Layout::aos, Storage::float32},
+                      {Layout::tiled, Storage::float16},
+                      {Layout::image, Storage::float16}}};
 }
-
-/// A test a basis, so that each is short: TEST_P(Name, ...) of a check's part.
-class CheckOfBasis : public ::testing::TestWithParam<std::string> {
- protected:
-  static reference::CheckScope scope() { return {.bases = {GetParam()}, .beyond_bases = false}; }
-};
 
 }  // namespace clpv::test

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+# Lists the files of a program of GoogleTest as tests of ctest: STEM for STEM_test.cpp, a process each, which opens the device
+# and compiles once what its tests share.
+#
+#   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -DCACHE=FOLDER -P discover_tests.cmake
+#
+# All take compiled programs from CACHE, and leave theirs there: neither the user's nor, where POCL_CACHE_DIR is not set, PoCL's.
+# LONG begin first, so that none of them is left to run alone at the end.
+cmake_minimum_required(VERSION 3.22)
+set(LONG killed drawing starved bench soak quality hostile_surroundings sequence propagate frame gather inject)
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
+foreach(line IN LISTS lines)
+  string(REGEX MATCH "^( *)\"(name|file)\": \"(.*)\",$" matched "${line}")
+  string(LENGTH "${CMAKE_MATCH_1}" indentation)
+  if(CMAKE_MATCH_2 STREQUAL "file")
+    string(REGEX REPLACE ".*/([^/]*)_test\\\\?\\.cpp$" "\\1" stem "${CMAKE_MATCH_3}")
+    list(APPEND stems ${stem})
+    list(APPEND filter_${stem} "${suite}.${test}")
+  elseif(indentation LESS 8)
+    set(suite "${CMAKE_MATCH_3}")
+  else()
+    set(test "${CMAKE_MATCH_3}")
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES stems)
+set(text "")
+foreach(stem IN LISTS stems)
+  set(cost 0)
+  if(stem IN_LIST LONG)
+    set(cost 100)
+  endif()
+  list(JOIN filter_${stem} ":" filter)
+  string(APPEND text "add_test([[${stem}]] [[${PROGRAM}]] [[--gtest_filter=${filter}]])\n"
+    "set_tests_properties([[${stem}]] PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]])\n")
+endforeach()
+file(WRITE ${OUTPUT} "${text}")
