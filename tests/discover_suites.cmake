@@ -7,7 +7,7 @@
 # LONG_SUITES begin first, so that none of them is left to run alone at the end.
 cmake_minimum_required(VERSION 3.22)
 set(LONG_SUITES Killed Names/EveryBasis HostileSurroundings TuneProgram Names/PropagateKernels Starved HostileCommandLines
-  BenchProgram ManyAtOnce Drawing HostileScenes Names/InjectKernels SequenceTest Frame Names/GatherKernels HostileFiles)
+  BenchProgram ManyAtOnce Drawing Names/InjectKernels SequenceTest Frame Names/GatherKernels)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[^ \n]+\\." lines "${listed}")
 set(text "")
