@@ -155,83 +155,79 @@ TEST_F(ImageFiles, HdrIsRead) {
   EXPECT_NEAR(image.pixels[3], 0.5f, 0.01f);
 }
 
-TEST_F(ImageFiles, RefusesWhatIsNoImageOrAnotherThanItsName) {
-  EXPECT_NE(refusal("missing.exr").find("no such file"), std::string::npos);
-  fs::create_directories(folder_ / "folder.exr");
-  refusal("folder.exr");
-  refusal("empty.png", "");
-  refusal("text.exr", "once upon a time");
-  EXPECT_NE(refusal("a.txt", "x").find(".exr, .png and .hdr"), std::string::npos);
-  Image image = sample(4, 4, {"R", "G", "B"});
-  write_exr(folder_ / "good.exr", image);
-  EXPECT_NE(refusal("exr.png", read_file(folder_ / "good.exr")).find("content is openexr"),
-            std::string::npos);
+/// `bytes` put over what follows that text, so many bytes after it.
+std::string with(std::string image, const std::string& after, std::size_t skip, const std::string& bytes) {
+  const std::size_t at = image.find(after);
+  EXPECT_NE(at, std::string::npos) << after;
+  return image.replace(at + after.size() + skip, bytes.size(), bytes);
 }
 
-TEST_F(ImageFiles, RefusesTruncatedFiles) {
-  Image image = sample(64, 64, {"R", "G", "B"});
+TEST_F(ImageFiles, RefusesWhatIsNoImageOrTooLarge) {
+  Image image = sample(8, 6, {"R", "G", "B"});
   write_exr(folder_ / "good.exr", image);
   image.encoding = Encoding::srgb;
   for (float& value : image.pixels) value /= 400;
   write_png(folder_ / "good.png", image);
-  for (const std::string name : {"good.exr", "good.png"}) {
-    const std::string bytes = read_file(folder_ / name);
-    for (const double share : {0.02, 0.1, 0.5, 0.9, 0.98}) {
-      refusal("cut." + name, bytes.substr(0, static_cast<std::size_t>(share * bytes.size())));
-    }
-  }
-  std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20 +X 20\n";
-  refusal("cut.hdr", hdr + std::string(100, 'x'));
-  refusal("head.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n");
-}
+  fs::create_directories(folder_ / "folder.exr");
+  EXPECT_NE(refusal("missing.exr").find("no such file"), std::string::npos);
+  EXPECT_NE(refusal("folder.exr").find("not a regular file"), std::string::npos);
 
-TEST_F(ImageFiles, RefusesHugeDimensionsBeforeTakingMemory) {
-  Image image = sample(4, 4, {"R", "G", "B"});
-  image.encoding = Encoding::srgb;
-  write_png(folder_ / "small.png", image);
-  std::string png = read_file(folder_ / "small.png");
-  set_big_endian(png, 16, 60000);
-  set_big_endian(png, 20, 60000);
-  set_big_endian(png, 29, crc(std::string_view(png).substr(12, 17)));
-  const std::string message = refusal("huge.png", png);
-  EXPECT_NE(message.find("60000 x 60000"), std::string::npos) << message;
-  EXPECT_NE(message.find("16384"), std::string::npos) << message;
-  refusal("huge.hdr",
-          "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\n" + std::string(64, 'x'));
-
-  ImageLimits limits;
-  limits.pixel_bytes = 100;
-  EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
-  limits = {};
-  limits.channels = 2;
-  EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
-  limits = {};
-  limits.file_bytes = 20;
-  EXPECT_THROW(read_image(folder_ / "small.png", limits), Error);
-}
-
-TEST_F(ImageFiles, RefusesTilesFarLargerThanTheImage) {
-  write_exr(folder_ / "small.exr", sample(4, 4, {"R"}));
-  std::string exr = read_file(folder_ / "small.exr");
+  const std::string exr = read_file(folder_ / "good.exr"), png = read_file(folder_ / "good.png");
+  const std::string window("dataWindow\0box2i\0", 17), compression("compression\0compression\0", 24);
+  std::string huge = png, broken = png, text = png, tiles = exr;
+  set_big_endian(huge, 16, 60000);
+  set_big_endian(huge, 20, 60000);
+  set_big_endian(huge, 29, crc(std::string_view(huge).substr(12, 17)));
+  broken.replace(43, 9, 9, '\x55');
+  text.insert(33, "\x7f\xff\xff\xfftEXtComment");
   // A scan-line file made to claim tiles: the attribute "tiles" (two sides and a level mode), and the flag in the version.
-  std::string tiles("tiles\0tiledesc\0\x09\0\0\0\x10\0\0\0\0\0\xbb\0\0", 28);
-  exr.insert(8, tiles);
-  exr[5] = static_cast<char>(exr[5] | 2);
-  const std::string message = refusal("tiles.exr", exr);
-  EXPECT_NE(message.find("tiles of 16 x 12255232"), std::string::npos) << message;
-}
-
-TEST_F(ImageFiles, RefusesChunksThatAreNotInTheFile) {
-  write_exr(folder_ / "small.exr", sample(4, 4, {"R"}));
-  const std::string exr = read_file(folder_ / "small.exr");
+  tiles.insert(8, std::string("tiles\0tiledesc\0\x09\0\0\0\x10\0\0\0\0\0\xbb\0\0", 28));
+  tiles[5] = static_cast<char>(tiles[5] | 2);
+  const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
+  const struct {
+    const char* name;
+    std::string bytes;
+    const char* word;
+  } rows[] = {
+      {"empty.png", "", "no image"},
+      {"text.exr", "once upon a time", "no image"},
+      {"a.txt", "x", ".exr, .png and .hdr"},
+      {"exr.png", exr, "content is openexr"},
+      {"png.exr", png, "content is png"},
+      {"wide.exr", with(exr, window, 12, std::string("\x9f\x86\1\0\5\0\0\0", 8)),
+       "100000 x 6 pixels; allowed are 1 to 16384"},
+      {"inverse.exr", with(exr, window, 12, "\xfb\xff\xff\xff\xfb\xff\xff\xff"), "-4 x -4"},
+      {"compression.exr", with(exr, compression, 4, "\x7f"), "cannot be read"},
+      {"future.exr", with(exr, "\x76\x2f\x31\x01", 0, "\x09"), "cannot be read"},
+      {"tiles.exr", tiles, "tiles of 16 x 12255232"},
+      {"huge.png", huge, "60000 x 60000 pixels; allowed are 1 to 16384"},
+      {"broken.png", broken, "damaged"},
+      {"text.png", text, "damaged or truncated"},
+      {"first.hdr", "#?RADIANCE\n", "hdr"},
+      {"head.hdr", hdr, "hdr"},
+      {"cut.hdr", hdr + "\n-Y 20 +X 20\n" + std::string(100, 'x'), "hdr"},
+      {"huge.hdr", hdr + "\n-Y 2000000000 +X 2000000000\n" + std::string(64, 'x'), "hdr"},
+      {"none.hdr", hdr + "\n-Y 0 +X 0\n", "hdr"},
+  };
+  for (const auto& [name, bytes, word] : rows) {
+    const std::string message = refusal(name, bytes);
+    EXPECT_NE(message.find(word), std::string::npos) << message;
+  }
+  for (const auto& [name, whole] : {std::pair("cut.exr", exr), {"cut.png", png}}) {
+    for (const double share : {0.02, 0.1, 0.5, 0.9, 0.98})
+      refusal(name, whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+  }
   const std::size_t table =
       exr.find("screenWindowWidth") + std::string("screenWindowWidth.float.size1234.").size();
-  for (const std::uint64_t place : {0xffffffffffffffffull, 0x8000000000000000ull, 0xffffffff00000000ull,
-                                    1ull << 40, static_cast<unsigned long long>(exr.size()) - 1}) {
+  for (const std::uint64_t place :
+       {0xffffffffffffffffull, 0x8000000000000000ull, 0xffffffff00000000ull, 1ull << 40, exr.size() - 1ull}) {
     std::string moved = exr;
     std::memcpy(moved.data() + table, &place, sizeof place);
     EXPECT_NE(refusal("moved.exr", moved).find("damaged or truncated"), std::string::npos) << place;
   }
+  for (const ImageLimits& limits :
+       {ImageLimits{.pixel_bytes = 100}, ImageLimits{.channels = 2}, ImageLimits{.file_bytes = 20}})
+    EXPECT_THROW(read_image(folder_ / "good.png", limits), Error);
 }
 
 TEST_F(ImageFiles, UnwritablePlacesAreRunTimeErrors) {

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "scene/box.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {

@@ -10,7 +10,6 @@
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/view.h"
-#include "scene/box.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {

@@ -7,25 +7,17 @@
 #include <future>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/gltf_accessor.hpp"
-#include "scene/gltf_animation.hpp"
-#include "scene/gltf_document.hpp"
-#include "scene/gltf_material.hpp"
-#include "scene/gltf_mesh.hpp"
-#include "scene/gltf_nodes.hpp"
-#include "scene/gltf_view.hpp"
-#include "scene/texture_image.hpp"
+#include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 
 Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion, Notes& notes) {
   const GltfDocument document = read_gltf_document(path);
-  check_sparse(document);
+  std::vector<std::string> ignored = document.model.extensionsUsed;
+  std::erase_if(ignored, reads_extension);
+  if (!ignored.empty()) notes.add(fmt::format("extensions used but not read: {}", fmt::join(ignored, ", ")));
   Scene scene;
-  if (!document.ignored_extensions.empty()) {
-    notes.add(fmt::format("extensions used but not read: {}", fmt::join(document.ignored_extensions, ", ")));
-  }
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
   PosedTree posed(motion.tree, 0);

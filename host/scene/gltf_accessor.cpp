@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "scene/gltf_accessor.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <ranges>
 
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
@@ -55,56 +60,87 @@ double load_number(const std::uint8_t* from, int component_type, bool normalized
   }
 }
 
+std::size_t bytes_of(int component_type) {
+  return static_cast<unsigned>(tinygltf::GetComponentSizeInBytes(static_cast<unsigned>(component_type)));
+}
+
+std::string type_name(int type) {
+  if (type == TINYGLTF_TYPE_SCALAR) return "SCALAR";
+  return fmt::format("{}{}", type > TINYGLTF_TYPE_VEC4 ? "MAT" : "VEC", type % 32);
+}
+
 }  // namespace
 
 GltfAccessor::GltfAccessor(const GltfDocument& document, int index)
-    : accessor_(&document.model.accessors[static_cast<std::size_t>(index)]), index_(index) {
-  components_ = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor_->type));
-  component_bytes_ = static_cast<std::size_t>(
-      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor_->componentType)));
-  element_bytes_ = component_bytes_ * static_cast<std::size_t>(components_);
+    : document_(&document),
+      accessor_(&entry(document.model.accessors, index)),
+      place_(fmt::format("/accessors/{}", index)),
+      components_(tinygltf::GetNumComponentsInType(static_cast<unsigned>(accessor_->type))),
+      component_bytes_(bytes_of(accessor_->componentType)),
+      element_bytes_(component_bytes_ * static_cast<unsigned>(components_)) {
   if (accessor_->bufferView >= 0) {
-    const auto view = static_cast<std::size_t>(accessor_->bufferView);
-    values_ = document.view(view).subspan(accessor_->byteOffset);
-    stride_ = document.model.bufferViews[view].byteStride;
+    stride_ = entry(document.model.bufferViews, accessor_->bufferView).byteStride;
     if (stride_ == 0) stride_ = element_bytes_;
+    values_ = elements(accessor_->bufferView, accessor_->byteOffset, count(), stride_, element_bytes_);
   }
-  if (!accessor_->sparse.isSparse) return;
-  const auto& sparse = accessor_->sparse;
-  sparse_count_ = static_cast<std::size_t>(sparse.count);
-  const auto view = [&](int index, int offset) {
-    return document.view(static_cast<std::size_t>(index)).subspan(static_cast<std::size_t>(offset));
-  };
-  sparse_indices_ = view(sparse.indices.bufferView, sparse.indices.byteOffset);
-  sparse_values_ = view(sparse.values.bufferView, sparse.values.byteOffset);
+  if (const auto& sparse = accessor_->sparse; sparse.isSparse) {
+    sparse_count_ = static_cast<std::size_t>(sparse.count);
+    const std::size_t bytes = bytes_of(sparse.indices.componentType);
+    sparse_indices_ = elements(sparse.indices.bufferView, static_cast<unsigned>(sparse.indices.byteOffset),
+                               sparse_count_, bytes, bytes);
+    sparse_values_ = elements(sparse.values.bufferView, static_cast<unsigned>(sparse.values.byteOffset),
+                              sparse_count_, element_bytes_, element_bytes_);
+  }
 }
 
-std::string GltfAccessor::place() const {
-  return fmt::format("/accessors/{}", index_);
+GltfAccessor::GltfAccessor(const GltfDocument& document, int index, std::string place,
+                           std::initializer_list<int> types, const Numbers& numbers,
+                           std::optional<std::size_t> count)
+    : GltfAccessor(document, index) {
+  place_ = std::move(place);
+  const bool fits = std::ranges::find(types, accessor_->type) != types.end() &&
+                    numbers.include(accessor_->componentType, accessor_->normalized);
+  if (fits && accessor_->count == count.value_or(accessor_->count)) return;
+  std::vector<std::string> names;
+  for (const int type : types) names.push_back(type_name(type));
+  refuse(document.file, place_,
+         fmt::format("/accessors/{}, {} of {}, componentType {}{}", index, accessor_->count,
+                     type_name(accessor_->type), accessor_->componentType,
+                     accessor_->normalized ? ", normalized" : ""),
+         fmt::format("{}{} of {}", count ? fmt::format("{} of ", *count) : "", fmt::join(names, " or "),
+                     numbers.words));
+}
+
+/// `count` elements of `bytes`, `stride` apart, from `offset` on. No product overflows 64 bits: counts are below 2^32.
+std::span<const std::uint8_t> GltfAccessor::elements(int view, std::size_t offset, std::size_t count,
+                                                     std::size_t stride, std::size_t bytes) const {
+  const auto all = document_->view(view);
+  if (stride < bytes) {
+    refuse(document_->file, place_, fmt::format("elements of {} bytes", bytes),
+           fmt::format("at most the byteStride {} of /bufferViews/{}", stride, view));
+  }
+  const std::size_t end = offset + (count - 1) * stride + bytes;
+  if (end > all.size()) {
+    refuse(document_->file, place_, fmt::format("{} elements up to byte {}", count, end),
+           fmt::format("at most the {} bytes of /bufferViews/{}", all.size(), view));
+  }
+  return all.subspan(offset, end - offset);
+}
+
+std::uint32_t GltfAccessor::replaced(std::size_t i) const {
+  const int type = accessor_->sparse.indices.componentType;
+  return load_unsigned(&sparse_indices_[i * bytes_of(type)], type);
 }
 
 const std::uint8_t* GltfAccessor::address(std::size_t element, int component) const {
-  const std::size_t within = component_bytes_ * static_cast<std::size_t>(component);
-  std::size_t first = 0, end = sparse_count_;
-  while (first < end) {  // the first replaced element not before this one
-    const std::size_t middle = first + (end - first) / 2;
-    if (sparse_index(middle) < element) {
-      first = middle + 1;
-    } else {
-      end = middle;
-    }
-  }
-  if (first < sparse_count_ && sparse_index(first) == element) {
-    return &sparse_values_[first * element_bytes_ + within];
+  const std::size_t within = component_bytes_ * static_cast<unsigned>(component);
+  if (sparse_count_ > 0) {
+    const auto all = std::views::iota(std::size_t{0}, sparse_count_);
+    const auto found = std::ranges::lower_bound(all, element, {}, [&](std::size_t i) { return replaced(i); });
+    if (found != all.end() && replaced(*found) == element)
+      return &sparse_values_[*found * element_bytes_ + within];
   }
   return values_.empty() ? nullptr : &values_[element * stride_ + within];
-}
-
-std::uint32_t GltfAccessor::sparse_index(std::size_t i) const {
-  const int type = accessor_->sparse.indices.componentType;
-  const auto bytes =
-      static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
-  return load_unsigned(&sparse_indices_[i * bytes], type);
 }
 
 double GltfAccessor::number(std::size_t element, int component) const {
@@ -112,25 +148,33 @@ double GltfAccessor::number(std::size_t element, int component) const {
   return from == nullptr ? 0.0 : load_number(from, accessor_->componentType, accessor_->normalized);
 }
 
+double GltfAccessor::finite(std::size_t element, int component) const {
+  const double value = number(element, component);
+  if (!std::isfinite(value)) {
+    refuse(document_->file, place_,
+           fmt::format("{} in component {} of element {}", value, component, element), "finite numbers");
+  }
+  return value;
+}
+
 std::uint32_t GltfAccessor::index(std::size_t element, int component) const {
   const std::uint8_t* from = address(element, component);
   return from == nullptr ? 0 : load_unsigned(from, accessor_->componentType);
 }
 
-void check_sparse(const GltfDocument& document) {
+void check_accessors(const GltfDocument& document) {
   std::uint64_t total = 0;
   for (std::size_t a = 0; a < document.model.accessors.size(); ++a) {
     const GltfAccessor accessor(document, static_cast<int>(a));
-    const std::string place = accessor.place() + "/sparse/indices";
     total += accessor.sparse_count_;
     if (total > bounds::kSparseElements) {
-      refuse(document.file, place, fmt::format("{} sparse elements so far", total),
+      refuse(document.file, accessor.place_, fmt::format("{} sparse elements so far", total),
              fmt::format("at most {} in all", bounds::kSparseElements));
     }
     for (std::size_t i = 0; i < accessor.sparse_count_; ++i) {
-      const std::uint32_t element = accessor.sparse_index(i);
-      if (element >= accessor.count() || (i > 0 && element <= accessor.sparse_index(i - 1))) {
-        refuse(document.file, place, fmt::format("index {} at {}", element, i),
+      const std::uint32_t element = accessor.replaced(i);
+      if (element >= accessor.count() || (i > 0 && element <= accessor.replaced(i - 1))) {
+        refuse(document.file, accessor.place_ + "/sparse/indices", fmt::format("index {} at {}", element, i),
                fmt::format("ascending indices below {}", accessor.count()));
       }
     }

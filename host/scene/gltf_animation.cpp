@@ -1,53 +1,63 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_animation.hpp"
-
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
-#include "scene/gltf_path.hpp"
+#include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 namespace {
 
-using nlohmann::json;
 using CurvePointer = std::shared_ptr<const Curve>;
+
+/// What a channel may move: by its path in glTF, the values of a sampler, and the curve of the node.
+struct Target {
+  std::string_view path;
+  int type;
+  Numbers numbers;
+  CurvePointer NodeCurves::*curve;
+};
+
+constexpr std::array<Target, 4> kAnimated = {
+    {{"translation", TINYGLTF_TYPE_VEC3, kFloats, &NodeCurves::translation},
+     {"rotation", TINYGLTF_TYPE_VEC4, kShares, &NodeCurves::rotation},
+     {"scale", TINYGLTF_TYPE_VEC3, kFloats, &NodeCurves::scale},
+     {"weights", TINYGLTF_TYPE_SCALAR, kShares, &NodeCurves::weights}}};
 
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, Notes& notes) : document_(document), notes_(notes) {}
 
-  /// `place`: "/animations/0".
-  void read(const json& animation, const std::string& place) {
-    std::map<std::tuple<std::size_t, GltfPath, std::size_t>, CurvePointer>
+  /// `place`: "/animations/0". tinygltf leaves out channels without a node, so that none here is named by its place.
+  void read(const tinygltf::Animation& animation, const std::string& place) {
+    std::map<std::tuple<int, std::string_view, std::size_t>, CurvePointer>
         read;  // channels may share a sampler
-    for (std::size_t i = 0; i < animation["channels"].size(); ++i) {
-      const json& channel = animation["channels"][i];
-      const std::string here = fmt::format("{}/channels/{}", place, i);
-      const auto path = named<GltfPath>("path", channel["target"]["path"].get_ref<const std::string&>());
-      const std::size_t sampler = channel["sampler"], samplers = animation["samplers"].size();
-      if (sampler >= samplers) {
-        refuse(document_.file, here + "/sampler", fmt::format("{}", sampler),
-               fmt::format("an index into {}/samplers, 0 to {}", place, samplers - 1));
+    for (const tinygltf::AnimationChannel& channel : animation.channels) {
+      const auto target = std::ranges::find(kAnimated, channel.target_path, &Target::path);
+      if (target == kAnimated.end()) continue;  // of an extension that is not read
+      const int count = static_cast<int>(animation.samplers.size());
+      if (channel.sampler >= count) {
+        refuse(document_.file, place + "/channels", fmt::format("sampler {}", channel.sampler),
+               fmt::format("0 to {}, the samplers of {}", count - 1, place));
       }
-      if (!channel["target"].contains("node")) continue;  // of an extension that is not read
-      const int node = channel["target"]["node"];
-      const std::size_t components = components_of(path, node);
+      const std::size_t components = components_of(*target, channel.target_node);
       if (components == 0) {
-        notes_.add(fmt::format("{}: animates {} of node {}, which has none that are read", here,
-                               name_of(path), node));
+        notes_.add(fmt::format("{}: animates {} of node {}, which has none that are read", place,
+                               target->path, channel.target_node));
         continue;
       }
-      CurvePointer& curve = read[{sampler, path, components}];
+      CurvePointer& curve = read[{channel.sampler, target->path, components}];
       if (!curve) {
-        curve = read_curve(animation["samplers"][sampler], path, components,
-                           fmt::format("{}/samplers/{}", place, sampler));
+        curve = read_curve(entry(animation.samplers, channel.sampler), *target, components,
+                           fmt::format("{}/samplers/{}", place, channel.sampler));
       }
-      assign(node, path, curve, here);
+      assign(channel.target_node, *target, curve, place);
     }
   }
 
@@ -55,95 +65,41 @@ class AnimationReader {
 
  private:
   /// Numbers a key has; 0: nothing of the node that is read.
-  std::size_t components_of(GltfPath path, int node) const {
-    switch (path) {
-      case GltfPath::translation:
-      case GltfPath::scale:
-        return 3;
-      case GltfPath::rotation:
-        return 4;
-      case GltfPath::weights: {
-        const int mesh = document_.model.nodes[static_cast<std::size_t>(node)].mesh;
-        return mesh < 0 ? 0
-                        : document_.model.meshes[static_cast<std::size_t>(mesh)].primitives[0].targets.size();
-      }
-      case GltfPath::pointer:
-        return 0;
-    }
-    return 0;
+  std::size_t components_of(const Target& target, int node) const {
+    if (target.type == TINYGLTF_TYPE_VEC3) return 3;
+    if (target.type == TINYGLTF_TYPE_VEC4) return 4;
+    const int mesh = entry(document_.model.nodes, node).mesh;
+    return mesh < 0 ? 0 : entry(document_.model.meshes, mesh).primitives[0].targets.size();
   }
 
-  void assign(int node, GltfPath path, const CurvePointer& curve, const std::string& place) {
-    if (path != GltfPath::weights && !document_.model.nodes[static_cast<std::size_t>(node)].matrix.empty()) {
-      refuse(document_.file, place + "/target/node", fmt::format("node {}, which has a matrix", node),
-             "a node with translation, rotation and scale");
+  void assign(int node, const Target& target, const CurvePointer& curve, const std::string& place) {
+    if (target.type != TINYGLTF_TYPE_SCALAR && !entry(document_.model.nodes, node).matrix.empty()) {
+      refuse(document_.file, fmt::format("/nodes/{}/matrix", node),
+             fmt::format("a matrix, and a {} by {}", target.path, place), "translation, rotation and scale");
     }
-    CurvePointer& taken = curve_of(nodes_[node], path);
+    CurvePointer& taken = nodes_[node].*target.curve;
     if (taken) return notes_.add(fmt::format("{}: node {} is moved by an earlier channel", place, node));
     taken = curve;
   }
 
-  static CurvePointer& curve_of(NodeCurves& curves, GltfPath path) {
-    switch (path) {
-      case GltfPath::rotation:
-        return curves.rotation;
-      case GltfPath::scale:
-        return curves.scale;
-      case GltfPath::weights:
-        return curves.weights;
-      case GltfPath::translation:
-      case GltfPath::pointer:
-        break;
-    }
-    return curves.translation;
-  }
-
-  CurvePointer read_curve(const json& sampler, GltfPath path, std::size_t components,
-                          const std::string& place) {
-    const GltfAccessor input(document_, sampler["input"].get<int>()),
-        output(document_, sampler["output"].get<int>());
+  CurvePointer read_curve(const tinygltf::AnimationSampler& sampler, const Target& target,
+                          std::size_t components, const std::string& place) {
     Curve curve;
-    curve.interpolation =
-        named<Interpolation>("interpolation", sampler.value("interpolation", std::string("LINEAR")));
+    curve.interpolation = named<Interpolation>("interpolation", sampler.interpolation);
     curve.components = components;
-    check_kinds(sampler, input, output, path, place);
     const std::size_t parts = curve.interpolation == Interpolation::cubic_spline ? 3 : 1;
-    const std::size_t elements = path == GltfPath::weights ? parts * components : parts;  // of a key
-    if (output.count() != input.count() * elements) {
-      refuse(document_.file, place + "/output", fmt::format("{} elements", output.count()),
-             fmt::format("{} for each of the {} times of its input", elements, input.count()));
-    }
+    const bool scalars = target.type == TINYGLTF_TYPE_SCALAR;
+    const GltfAccessor input(document_, sampler.input, place + "/input", {TINYGLTF_TYPE_SCALAR}, kFloats);
+    const GltfAccessor output(document_, sampler.output, place + "/output", {target.type}, target.numbers,
+                              input.count() * parts * (scalars ? components : 1));
     reserve(input.count() * (1 + parts * components), place);
     read_times(input, curve, place + "/input");
-    read_values(output, curve, place + "/output");
-    if (path == GltfPath::rotation) make_unit(curve, parts, place + "/output");
+    curve.values.reserve(input.count() * parts * components);
+    for (std::size_t i = 0; i < output.count(); ++i) {
+      for (int k = 0; k < output.components(); ++k) curve.values.push_back(output.finite(i, k));
+    }
+    if (target.curve == &NodeCurves::rotation) make_unit(curve, parts, place + "/output");
     return std::make_shared<const Curve>(std::move(curve));
-  }
-
-  void check_kinds(const json& sampler, const GltfAccessor& input, const GltfAccessor& output, GltfPath path,
-                   const std::string& place) const {
-    const auto kind = [&](const GltfAccessor& accessor, const char* key) {
-      const int index = sampler[key].get<int>();
-      return fmt::format("{}, {} components of componentType {}{}", accessor.place(), accessor.components(),
-                         document_.model.accessors[static_cast<std::size_t>(index)].componentType,
-                         accessor.normalized() ? ", normalized" : "");
-    };
-    const auto is_float = [](const GltfAccessor& accessor) {
-      return accessor.component_type() == TINYGLTF_COMPONENT_TYPE_FLOAT && !accessor.normalized();
-    };
-    if (input.components() != 1 || !is_float(input)) {
-      refuse(document_.file, place + "/input", kind(input, "input"), "SCALAR of floats (componentType 5126)");
-    }
-    const bool integers = path == GltfPath::rotation || path == GltfPath::weights;
-    const auto type = document_.model.accessors[static_cast<std::size_t>(sampler["output"].get<int>())].type;
-    const auto [wanted, name] = path == GltfPath::rotation  ? std::pair(TINYGLTF_TYPE_VEC4, "VEC4")
-                                : path == GltfPath::weights ? std::pair(TINYGLTF_TYPE_SCALAR, "SCALAR")
-                                                            : std::pair(TINYGLTF_TYPE_VEC3, "VEC3");
-    if (type != wanted || !(is_float(output) || (integers && output.normalized()))) {
-      refuse(document_.file, place + "/output", kind(output, "output"),
-             fmt::format("{} of floats (componentType 5126){}", name,
-                         integers ? " or normalized integers" : ""));
-    }
   }
 
   void reserve(std::uint64_t numbers, const std::string& place) {
@@ -157,29 +113,12 @@ class AnimationReader {
   void read_times(const GltfAccessor& input, Curve& curve, const std::string& place) const {
     curve.times.reserve(input.count());
     for (std::size_t i = 0; i < input.count(); ++i) {
-      const double time = input.number(i, 0);
-      if (!std::isfinite(time) || time < 0) {
-        refuse(document_.file, place, fmt::format("{} s at {}", time, i), "finite times from 0 s on");
-      }
-      if (i > 0 && time <= curve.times.back()) {
-        refuse(document_.file, place, fmt::format("{} s at {}, after {} s", time, i, curve.times.back()),
-               "times that rise from each to the next");
+      const double time = input.finite(i, 0);
+      if (i == 0 ? time < 0 : time <= curve.times.back()) {
+        refuse(document_.file, place, fmt::format("{} s at {}", time, i),
+               i == 0 ? "times from 0 s on" : fmt::format("more than the {} s before", curve.times.back()));
       }
       curve.times.push_back(time);
-    }
-  }
-
-  void read_values(const GltfAccessor& output, Curve& curve, const std::string& place) const {
-    curve.values.reserve(output.count() * static_cast<std::size_t>(output.components()));
-    for (std::size_t i = 0; i < output.count(); ++i) {
-      for (int k = 0; k < output.components(); ++k) {
-        curve.values.push_back(output.number(i, k));
-        if (!std::isfinite(curve.values.back())) {
-          refuse(document_.file, place,
-                 fmt::format("{} in component {} of element {}", curve.values.back(), k, i),
-                 "finite numbers");
-        }
-      }
     }
   }
 
@@ -207,9 +146,8 @@ class AnimationReader {
 
 std::map<int, NodeCurves> read_animations(const GltfDocument& document, Notes& notes) {
   AnimationReader reader(document, notes);
-  for (std::size_t i = 0; document.animations && i < document.animations->size(); ++i) {
-    reader.read((*document.animations)[i], fmt::format("/animations/{}", i));
-  }
+  for (std::size_t i = 0; i < document.model.animations.size(); ++i)
+    reader.read(document.model.animations[i], fmt::format("/animations/{}", i));
   return reader.take();
 }
 

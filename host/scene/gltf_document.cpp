@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Reads a glTF file: container, JSON, checks, buffers; then lets tinygltf make typed structs of the rest.
-//
-// tinygltf 2.7 reads files and decodes images as it parses, and trusts counts and indices. It is therefore
-// handed a document that has been checked and that names neither buffers nor images.
+// tinygltf 2.7 trusts indices and sizes, opens what URIs name, and decodes images as it parses. It therefore reads only JSON
+// that we have checked, opens only buffers in the model's folder, and hands images on as they are.
 #include "scene/gltf_document.hpp"
 
-#include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "scene/bounds.hpp"
-#include "scene/gltf_schema.hpp"
+#include "scene/gltf_accessor.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 
@@ -19,120 +15,119 @@ namespace {
 
 using nlohmann::json;
 
-struct Container {
-  std::string_view text;                                ///< the JSON
-  std::optional<std::span<const std::uint8_t>> binary;  ///< a .glb's binary chunk
+bool is_glb(const Bytes& bytes) {
+  constexpr std::uint32_t kMagic = 0x46546C67;
+  return bytes.size() >= 4 && little_endian_word(bytes, 0) == kMagic;
+}
+
+/// The first chunk of a .glb. Checks what tinygltf does not: the version, and all 8 bytes before the second chunk's data.
+std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
+  constexpr std::size_t kChunkHeader = 8, kText = 12 + kChunkHeader;
+  if (bytes.size() < kText)
+    refuse(file, {}, fmt::format("a .glb of {} bytes", bytes.size()), "at least 20: it is truncated");
+  if (const auto version = little_endian_word(bytes, 4); version != 2)
+    refuse(file, {}, fmt::format(".glb version {}", version), "version 2");
+  const std::size_t length = little_endian_word(bytes, 8), size = little_endian_word(bytes, 12);
+  const std::size_t end = kText + size;
+  if (length > bytes.size() || end > length) {
+    refuse(
+        file, {},
+        fmt::format("a .glb of {} bytes, by its header {}, its first chunk {}", bytes.size(), length, size),
+        "chunks within the file: it is truncated");
+  }
+  if (end + kChunkHeader <= length && end + kChunkHeader + little_endian_word(bytes, end) > length) {
+    refuse(file, {}, fmt::format("a second .glb chunk of {} bytes", little_endian_word(bytes, end)),
+           fmt::format("at most {}, the rest of the file", length - end - kChunkHeader));
+  }
+  return {reinterpret_cast<const char*>(bytes.data()) + kText, size};
+}
+
+/// The buffers that tinygltf asks for as files, one after the other. Images it asks for later, and is told that there are none:
+/// those in use are read by load_textures.
+struct BufferFiles {
+  const GltfDocument& document;
+  const json& parsed;
+  std::vector<std::size_t> waiting = {};  ///< the next one last
+  std::uint64_t bytes_left = bounds::kBufferBytes;
 };
 
-constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-
-Container open_glb(const Bytes& bytes, const std::string& file) {
-  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
-  if (bytes.size() < kHeader + kChunkHeader) {
-    refuse(file, {}, fmt::format("a .glb of {} bytes", bytes.size()), "at least 20: it is truncated");
-  }
-  if (little_endian_word(bytes, 4) != 2)
-    refuse(file, {}, fmt::format(".glb version {}", little_endian_word(bytes, 4)), "version 2");
-  const std::size_t length = little_endian_word(bytes, 8);
-  if (length > bytes.size() || length < kHeader + kChunkHeader) {
-    refuse(file, {}, fmt::format("a .glb of {} bytes whose header says {}", bytes.size(), length),
-           "the length in the header: it is truncated");
-  }
-  Container container;
-  for (std::size_t offset = kHeader; offset + kChunkHeader <= length;) {
-    const std::size_t size = little_endian_word(bytes, offset);
-    const std::uint32_t type = little_endian_word(bytes, offset + 4);
-    const std::size_t start = offset + kChunkHeader;
-    if (size > length - start) {
-      refuse(file, {}, fmt::format("a .glb chunk of {} bytes at byte {}", size, offset),
-             fmt::format("at most {}, what is left of the file", length - start));
-    }
-    if (offset == kHeader && type != kJsonChunk) {
-      refuse(file, {}, fmt::format("first .glb chunk of type {:#x}", type), "JSON (0x4e4f534a)");
-    }
-    if (type == kJsonChunk && offset == kHeader) {
-      if (size > bounds::kJsonBytes) {
-        refuse(file, {}, fmt::format("{} bytes of JSON", size),
-               fmt::format("at most {}", bounds::kJsonBytes));
-      }
-      container.text = {reinterpret_cast<const char*>(bytes.data()) + start, size};
-    } else if (type == kBinaryChunk && !container.binary) {
-      container.binary = std::span(bytes).subspan(start, size);
-    }
-    offset = start + (size + 3) / 4 * 4;
-  }
-  return container;
-}
-
-Container open_container(const Bytes& bytes, const std::string& file) {
-  if (bytes.size() >= 4 && little_endian_word(bytes, 0) == kGlbMagic) return open_glb(bytes, file);
-  if (bytes.size() > bounds::kJsonBytes) {
-    refuse(file, {}, fmt::format("{} bytes of JSON", bytes.size()),
-           fmt::format("at most {}", bounds::kJsonBytes));
-  }
-  return {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, std::nullopt};
-}
-
-Bytes read_buffer(const json& buffer, const Container& container, const GltfDocument& document,
-                  std::size_t index, std::uint64_t left) {
-  const std::string place = fmt::format("/buffers/{}", index);
-  if (!buffer.contains("uri")) {
-    if (index != 0 || !container.binary) {
-      refuse(document.file, place, "no uri", "a uri, but for the first buffer of a .glb with a binary chunk");
-    }
-    return Bytes(container.binary->begin(), container.binary->end());
-  }
-  const std::string& uri = buffer["uri"].get_ref<const std::string&>();
-  if (uri.starts_with("data:")) return decode_data_uri(uri, document.file, place + "/uri");
-  return read_file(resolve_uri(document.folder, uri, document.file, place + "/uri"), left, document.file,
-                   place + "/uri");
-}
-
-void read_buffers(const json& parsed, const Container& container, GltfDocument& document) {
-  if (!parsed.contains("buffers")) return;
-  std::uint64_t left = bounds::kBufferBytes;
-  for (std::size_t i = 0; i < parsed["buffers"].size(); ++i) {
+BufferFiles find_buffer_files(const GltfDocument& document, const json& parsed) {
+  BufferFiles files{document, parsed};
+  for (std::size_t i = parsed.contains("buffers") ? parsed["buffers"].size() : 0; i-- > 0;) {
     const json& buffer = parsed["buffers"][i];
-    Bytes bytes = read_buffer(buffer, container, document, i, left);
-    const std::uint64_t wanted = buffer["byteLength"];
-    if (bytes.size() < wanted || bytes.size() > left) {
-      refuse(document.file, fmt::format("/buffers/{}/byteLength", i), fmt::format("{}", wanted),
-             bytes.size() > left
-                 ? fmt::format("{} bytes left of {} for all buffers", left, bounds::kBufferBytes)
-                 : fmt::format("at most the {} bytes there are: truncated?", bytes.size()));
-    }
-    left -= bytes.size();
-    document.buffers.push_back(std::move(bytes));
+    if (buffer.contains("uri") && !tinygltf::IsDataURI(buffer["uri"].get_ref<const std::string&>()))
+      files.waiting.push_back(i);
   }
+  return files;
 }
 
-void read_image_places(const json& parsed, GltfDocument& document) {
-  if (!parsed.contains("images")) return;
-  for (const json& image : parsed["images"]) {
-    GltfImage place{image.value("uri", std::string()), std::nullopt};
-    if (image.contains("bufferView")) place.buffer_view = image["bufferView"].get<std::size_t>();
-    document.images.push_back(std::move(place));
+bool read_next_buffer(Bytes* bytes, std::string*, const std::string&, void* user_data) {
+  auto& files = *static_cast<BufferFiles*>(user_data);
+  const std::size_t index = files.waiting.back();
+  files.waiting.pop_back();
+  const json& buffer = files.parsed["buffers"][index];
+  const std::string& file = files.document.file;
+  const std::string place = fmt::format("/buffers/{}", index), uri_place = place + "/uri";
+  const auto path = resolve_uri(files.document.folder, buffer["uri"], file, uri_place);
+  *bytes = read_file(path, files.bytes_left, file, uri_place);
+  files.bytes_left -= bytes->size();
+  const std::size_t wanted = buffer["byteLength"];
+  if (bytes->size() < wanted) {
+    refuse(file, place + "/byteLength", fmt::format("{}", wanted),
+           fmt::format("at most the {} bytes there are: truncated?", bytes->size()));
   }
+  bytes->resize(wanted);
+  return true;
 }
 
-/// Hands tinygltf what it is to make structs of.
-void parse_model(json parsed, GltfDocument& document) {
-  for (const char* unread : {"buffers", "images", "animations", "extras"}) parsed.erase(unread);
-  const std::string text = parsed.dump();
-  tinygltf::TinyGLTF parser;
+tinygltf::FsCallbacks callbacks(BufferFiles& files) {
+  return {[](const std::string&, void* user_data) {
+            return !static_cast<BufferFiles*>(user_data)->waiting.empty();
+          },
+          [](const std::string& path, void*) { return path; }, read_next_buffer, nullptr, &files};
+}
+
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+/// The entry that tinygltf stopped at: of the lists in which it refuses what we do not, in its order.
+std::string place_of_failure(const tinygltf::Model& model, const json& document) {
+  const std::pair<std::string, std::size_t> read[] = {
+      {"/buffers", model.buffers.size()},
+      {"/bufferViews", model.bufferViews.size()},
+      {"/images", model.images.size()},
+      {"/cameras", model.cameras.size()},
+      {"/extensions/KHR_lights_punctual/lights", model.lights.size()}};
+  for (const auto& [list, count] : read) {
+    const json::json_pointer pointer(list);
+    if (document.contains(pointer) && count < document.at(pointer).size())
+      return fmt::format("{}/{}", list, count);
+  }
+  return {};
+}
+
+void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) {
+  BufferFiles files = find_buffer_files(document, parsed);
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks(callbacks(files));
+  loader.SetImageLoader(keep_encoded, nullptr);
   std::string error, warning;
-  if (!parser.LoadASCIIFromString(&document.model, &error, &warning, text.data(),
-                                  static_cast<unsigned int>(text.size()), "", tinygltf::REQUIRE_VERSION)) {
-    std::replace(error.begin(), error.end(), '\n', ' ');
-    refuse(document.file, {}, "no glTF: " + error, "glTF 2.0");
-  }
+  const auto size = static_cast<unsigned>(bytes.size());
+  const bool loaded = is_glb(bytes)
+                          ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size)
+                          : loader.LoadASCIIFromString(&document.model, &error, &warning,
+                                                       reinterpret_cast<const char*>(bytes.data()), size, "");
+  if (!loaded) refuse(document.file, place_of_failure(document.model, parsed), shown(error), "glTF 2.0");
 }
 
 }  // namespace
 
-std::span<const std::uint8_t> GltfDocument::view(std::size_t index) const {
-  const tinygltf::BufferView& view = model.bufferViews[index];
-  return std::span(buffers[static_cast<std::size_t>(view.buffer)]).subspan(view.byteOffset, view.byteLength);
+std::span<const std::uint8_t> GltfDocument::view(int index) const {
+  const tinygltf::BufferView& view = entry(model.bufferViews, index);
+  return std::span(entry(model.buffers, view.buffer).data).subspan(view.byteOffset, view.byteLength);
 }
 
 GltfDocument read_gltf_document(const std::filesystem::path& path) {
@@ -140,27 +135,14 @@ GltfDocument read_gltf_document(const std::filesystem::path& path) {
   document.file = path.string();
   const Bytes bytes = read_file(path, bounds::kGlbBytes, document.file);
   document.folder = std::filesystem::canonical(path).parent_path();
-  const Container container = open_container(bytes, document.file);
-  json parsed = parse_json(container.text, document.file);
+  const std::string_view text =
+      is_glb(bytes) ? json_of_glb(bytes, document.file)
+                    : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const json parsed = parse_json(text, document.file);
   check_gltf(parsed, document.file);
-  read_buffers(parsed, container, document);
-  read_image_places(parsed, document);
-  for (const std::string name : parsed.value("extensionsUsed", json::array())) {
-    if (!reads_extension(name)) document.ignored_extensions.push_back(name);
-  }
-  if (parsed.contains("animations"))
-    document.animations = std::make_shared<const json>(std::move(parsed["animations"]));
-  parse_model(std::move(parsed), document);
+  load_model(bytes, parsed, document);
+  check_accessors(document);
   return document;
-}
-
-Bytes decode_data_uri(const std::string& uri, const std::string& file, std::string_view place) {
-  Bytes bytes;
-  std::string mime_type;
-  if (!tinygltf::DecodeDataURI(&bytes, mime_type, uri, 0, false)) {
-    refuse(file, place, "'" + uri.substr(0, 40) + "...'", "a base64 data URI of octets, PNG or JPEG");
-  }
-  return bytes;
 }
 
 }  // namespace clpv

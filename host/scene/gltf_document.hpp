@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A glTF model in memory: guarded, checked, and its buffers read. Internal to the loader; includes tinygltf.
+// A glTF document as tinygltf reads it, after our check of its JSON. Internal to the loader; includes tinygltf.
 #pragma once
 
 #include <tiny_gltf.h>
 
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,29 +13,29 @@
 
 namespace clpv {
 
-/// Where an image's encoded bytes are: a part of a buffer, a data URI, or a file of its own.
-struct GltfImage {
-  std::string uri;  ///< empty: in the buffer view
-  std::optional<std::size_t> buffer_view;
-};
+/// An entry of one of tinygltf's lists, by an index that has been checked.
+template <typename T>
+const T& entry(const std::vector<T>& list, int index) {
+  return list[static_cast<std::size_t>(index)];
+}
 
 struct GltfDocument {
   std::string file;              ///< as the user named it, for messages
   std::filesystem::path folder;  ///< canonical; nothing outside it is read
-  tinygltf::Model model;         ///< all but buffers, images and animations, which tinygltf never sees
-  std::vector<GltfImage> images;
-  std::vector<Bytes> buffers;
-  std::vector<std::string> ignored_extensions;       ///< used, not required, and not read
-  std::shared_ptr<const nlohmann::json> animations;  ///< checked; null: none
+  tinygltf::Model model;  ///< indices in range; an Image's `image` holds the encoded bytes of a data URI
 
-  /// A checked view's bytes.
-  std::span<const std::uint8_t> view(std::size_t index) const;
+  /// The bytes of a buffer view.
+  std::span<const std::uint8_t> view(int index) const;
 };
 
 /// Reads a .gltf or .glb (told apart by content). Throws Error(bad_input).
 GltfDocument read_gltf_document(const std::filesystem::path& path);
 
-/// The bytes of a base64 data URI. Throws Error(bad_input).
-Bytes decode_data_uri(const std::string& uri, const std::string& file, std::string_view place);
+/// Checks parsed JSON before tinygltf reads it: types, ranges, indices within their lists, views within their buffers, and
+/// whatever tinygltf trusts. Throws Error(bad_input). In gltf_schema.cpp, as is reads_extension.
+void check_gltf(const nlohmann::json& document, const std::string& file);
+
+/// Returns true if the loader reads that extension.
+bool reads_extension(const std::string& name);
 
 }  // namespace clpv

@@ -48,13 +48,13 @@ std::uint32_t wrap_of(int gltf) {
 
 /// The index of a texture in the set, which grows by it at its first use.
 std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set) {
-  const tinygltf::Texture& source = document.model.textures[static_cast<std::size_t>(texture)];
+  const tinygltf::Texture& source = entry(document.model.textures, texture);
   if (source.source < 0) {
     refuse(document.file, fmt::format("/textures/{}", texture), "no source", "a source: a PNG or JPEG image");
   }
   TextureRequest wanted{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
   if (source.sampler >= 0) {
-    const tinygltf::Sampler& sampler = document.model.samplers[static_cast<std::size_t>(source.sampler)];
+    const tinygltf::Sampler& sampler = entry(document.model.samplers, source.sampler);
     wanted.wrap_u = wrap_of(sampler.wrapS);
     wanted.wrap_v = wrap_of(sampler.wrapT);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Materials: factors, alpha, and which textures they want with which texture coordinates.
+// Materials: factors, alpha, and which textures they want with which texture coordinates; and those textures.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -31,6 +31,12 @@ struct MaterialSet {
   std::vector<TextureRequest> textures;  ///< Material::texture indexes these
 };
 
+/// Throws Error(bad_input).
 MaterialSet read_materials(const GltfDocument& document, Notes& notes);
+
+/// Decodes each requested image (PNG or JPEG, told by its first bytes, not by name or mimeType) on all cores, where its header
+/// keeps the bounds.
+/// Row 0 is v = 0. Throws Error(bad_input) for the first bad one in the document's order.
+std::vector<Texture> load_textures(const GltfDocument& document, const std::vector<TextureRequest>& requests);
 
 }  // namespace clpv

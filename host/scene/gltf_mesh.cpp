@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_mesh.hpp"
-
 #include <algorithm>
 #include <map>
 
 #include "scene/bounds.hpp"
-#include "scene/gltf_deformation.hpp"
+#include "scene/gltf_parts.hpp"
 #include "scene/gltf_primitive.hpp"
-#include "scene/gltf_skin.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -15,10 +12,9 @@ namespace {
 
 /// Weights of morph targets where no curve says them: the node's, else the mesh's, else none.
 std::vector<double> stored_weights(const GltfDocument& document, const TreeNode& node, std::size_t targets) {
-  const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(node.index)];
+  const tinygltf::Node& source = entry(document.model.nodes, node.index);
   const bool own = !source.weights.empty();
-  const std::vector<double>& given =
-      own ? source.weights : document.model.meshes[static_cast<std::size_t>(source.mesh)].weights;
+  const std::vector<double>& given = own ? source.weights : entry(document.model.meshes, source.mesh).weights;
   if (given.empty()) return std::vector<double>(targets, 0.0);
   if (given.size() != targets) {
     refuse(
@@ -69,7 +65,7 @@ class Appender {
     made.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
     const TreeNode& at = motion_.tree.nodes[node];
     if (!primitive->targets.empty()) made.weights = stored_weights(document_, at, primitive->targets.size());
-    if (const int skin = document_.model.nodes[static_cast<std::size_t>(at.index)].skin; skin >= 0) {
+    if (const int skin = entry(document_.model.nodes, at.index).skin; skin >= 0) {
       made.skin = skins_.read(skin);
       if (primitive->influences.empty())
         notes_.add(fmt::format("{}: has no joints for the skin of /nodes/{}", primitive->place, at.index));
@@ -103,8 +99,8 @@ class Appender {
 };
 
 /// The primitives of a mesh have their morph targets in common.
-void check_targets(const GltfDocument& document, std::size_t mesh, std::size_t index) {
-  const auto& primitives = document.model.meshes[mesh].primitives;
+void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
+  const auto& primitives = entry(document.model.meshes, mesh).primitives;
   if (primitives[index].targets.size() != primitives[0].targets.size()) {
     refuse(document.file, fmt::format("/meshes/{}/primitives/{}/targets", mesh, index),
            fmt::format("{} morph targets", primitives[index].targets.size()),
@@ -119,20 +115,19 @@ void append_meshes(const GltfDocument& document, PosedTree& posed, const Materia
   const std::vector<TreeNode>& nodes = motion.tree.nodes;
   std::map<int, std::vector<std::size_t>> stands;  // each primitive is read once, however often it stands
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const int mesh = document.model.nodes[static_cast<std::size_t>(nodes[i].index)].mesh;
-    if (mesh >= 0) stands[mesh].push_back(i);
+    if (const int mesh = entry(document.model.nodes, nodes[i].index).mesh; mesh >= 0)
+      stands[mesh].push_back(i);
   }
   Appender appender(document, scene, motion, notes);
   VertexMap map;
-  std::uint64_t morph_numbers = 0;
+  Room room{bounds::kVertices, bounds::kTriangles, bounds::kMorphNumbers};
   for (const auto& [mesh, at] : stands) {
-    const auto index = static_cast<std::size_t>(mesh);
-    for (std::size_t i = 0; i < document.model.meshes[index].primitives.size(); ++i) {
-      check_targets(document, index, i);
-      const Room room{bounds::kVertices - scene.vertices.size(), bounds::kTriangles - scene.triangles.size()};
-      LocalPrimitive primitive = read_primitive(document, index, i, materials, room, map, notes);
+    for (std::size_t i = 0; i < entry(document.model.meshes, mesh).primitives.size(); ++i) {
+      check_targets(document, mesh, i);
+      room.vertices = bounds::kVertices - scene.vertices.size();
+      room.triangles = bounds::kTriangles - scene.triangles.size();
+      LocalPrimitive primitive = read_primitive(document, mesh, i, materials, room, map, notes);
       if (primitive.triangles.empty()) continue;
-      read_deformation(document, document.model.meshes[index].primitives[i], primitive, morph_numbers, notes);
       appender.append(std::make_shared<const LocalPrimitive>(std::move(primitive)), at, posed);
     }
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_nodes.hpp"
-
 #include <glm/gtc/type_ptr.hpp>
+#include <set>
 
 #include "scene/bounds.hpp"
+#include "scene/gltf_accessor.hpp"
+#include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -15,8 +16,7 @@ std::string place_of(int node) {
   return fmt::format("/nodes/{}", node);
 }
 
-/// Each node's parent. A graph in which every node has at most one parent and every chain of parents ends is
-/// a forest.
+/// Each node's parent. Below a node without one, a graph in which every node has at most one parent is a tree.
 std::vector<int> find_parents(const GltfDocument& document) {
   std::vector<int> parents(document.model.nodes.size(), kNone);
   for (std::size_t i = 0; i < parents.size(); ++i) {
@@ -30,28 +30,6 @@ std::vector<int> find_parents(const GltfDocument& document) {
     }
   }
   return parents;
-}
-
-void check_forest(const GltfDocument& document, const std::vector<int>& parents) {
-  std::vector<int> depths(parents.size(), 0);  // 0: not known yet; a root's is 1
-  for (std::size_t i = 0; i < parents.size(); ++i) {
-    std::vector<int> chain;
-    int node = static_cast<int>(i);
-    while (node != kNone && depths[static_cast<std::size_t>(node)] == 0) {
-      if (chain.size() > parents.size()) {
-        refuse(document.file, place_of(node), "a cycle in the node graph", "a tree");
-      }
-      chain.push_back(node);
-      node = parents[static_cast<std::size_t>(node)];
-    }
-    int depth = node == kNone ? 0 : depths[static_cast<std::size_t>(node)];
-    for (auto link = chain.rbegin(); link != chain.rend(); ++link)
-      depths[static_cast<std::size_t>(*link)] = ++depth;
-    if (depth > bounds::kNodeDepth) {
-      refuse(document.file, place_of(static_cast<int>(i)), fmt::format("{} levels deep", depth),
-             fmt::format("at most {}", bounds::kNodeDepth));
-    }
-  }
 }
 
 Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index) {
@@ -70,7 +48,7 @@ Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index)
 }
 
 TreeNode make_node(const GltfDocument& document, int index, const std::map<int, NodeCurves>& curves) {
-  const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(index)];
+  const tinygltf::Node& source = entry(document.model.nodes, index);
   TreeNode made;
   made.index = index;
   made.pose = stored_pose(source, document.file, index);
@@ -86,52 +64,94 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
     for (std::size_t i = 0; i < parents.size(); ++i) {
       if (parents[i] == kNone) roots.push_back(static_cast<int>(i));
     }
+    if (roots.empty() && !parents.empty()) refuse(document.file, "/nodes", "a cycle", "trees");
     return roots;
   }
   const int chosen = std::max(document.model.defaultScene, 0);
-  std::vector<bool> seen(parents.size(), false);
-  for (const int node : document.model.scenes[static_cast<std::size_t>(chosen)].nodes) {
-    const auto i = static_cast<std::size_t>(node);
-    const std::string place = fmt::format("/scenes/{}/nodes", chosen);
-    if (parents[i] != kNone) {
-      refuse(document.file, place, fmt::format("node {}, a child of node {}", node, parents[i]),
-             "root nodes");
-    }
-    if (seen[i]) refuse(document.file, place, fmt::format("node {} twice", node), "each node once");
-    seen[i] = true;
+  const std::string place = fmt::format("/scenes/{}/nodes", chosen);
+  std::set<int> seen;
+  for (const int node : entry(document.model.scenes, chosen).nodes) {
+    if (const int parent = entry(parents, node); parent != kNone)
+      refuse(document.file, place, fmt::format("node {}, a child of node {}", node, parent), "root nodes");
+    if (!seen.insert(node).second)
+      refuse(document.file, place, fmt::format("node {} twice", node), "each node once");
     roots.push_back(node);
   }
   return roots;
+}
+
+std::vector<glm::dmat4> read_inverse_binds(const GltfDocument& document, int accessor, std::size_t joints,
+                                           const std::string& place) {
+  if (accessor < 0) return std::vector<glm::dmat4>(joints, glm::dmat4(1.0));
+  const GltfAccessor from(document, accessor, place, {TINYGLTF_TYPE_MAT4}, kFloats);
+  if (from.count() < joints) {
+    refuse(document.file, place, fmt::format("{} matrices", from.count()),
+           fmt::format("one for each of {} joints", joints));
+  }
+  std::vector<glm::dmat4> made(joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    for (int k = 0; k < 16; ++k) made[i][k / 4][k % 4] = from.finite(i, k);
+  }
+  return made;
 }
 
 }  // namespace
 
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
                     const glm::dmat4& root) {
-  const std::vector<int> parents = find_parents(document);
-  check_forest(document, parents);
   NodeTree tree;
   tree.file = document.file;
   tree.root = root;
   struct Pending {
-    int index;
+    int index, depth;
     std::optional<std::size_t> parent;
   };
   std::vector<Pending> pending;
-  const auto push = [&](const std::vector<int>& nodes, std::optional<std::size_t> parent) {
-    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) pending.push_back({*node, parent});
+  const auto push = [&](const std::vector<int>& nodes, int depth, std::optional<std::size_t> parent) {
+    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) pending.push_back({*node, depth, parent});
   };
-  push(root_nodes(document, parents), std::nullopt);
+  push(root_nodes(document, find_parents(document)), 1, std::nullopt);
   while (!pending.empty()) {
     const Pending next = pending.back();
     pending.pop_back();
+    if (next.depth > bounds::kNodeDepth) {
+      refuse(document.file, place_of(next.index), fmt::format("{} levels deep", next.depth),
+             fmt::format("at most {}", bounds::kNodeDepth));
+    }
     TreeNode node = make_node(document, next.index, curves);
     node.parent = next.parent;
     if (next.parent && tree.nodes[*next.parent].moves) node.moves = true;
     tree.nodes.push_back(std::move(node));
-    push(document.model.nodes[static_cast<std::size_t>(next.index)].children, tree.nodes.size() - 1);
+    push(entry(document.model.nodes, next.index).children, next.depth + 1, tree.nodes.size() - 1);
   }
   return tree;
+}
+
+SkinReader::SkinReader(const GltfDocument& document, const NodeTree& tree)
+    : document_(document), in_tree_(document.model.nodes.size()) {
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+    in_tree_[static_cast<std::size_t>(tree.nodes[i].index)] = i;
+}
+
+std::shared_ptr<const Skin> SkinReader::read(int index) {
+  std::shared_ptr<const Skin>& known = skins_[index];
+  if (known) return known;
+  const tinygltf::Skin& source = entry(document_.model.skins, index);
+  const std::string place = fmt::format("/skins/{}", index);
+  joints_ += source.joints.size();
+  if (joints_ > bounds::kJoints) {
+    refuse(document_.file, place + "/joints", fmt::format("{} joints so far", joints_),
+           fmt::format("at most {} in all skins", bounds::kJoints));
+  }
+  Skin skin;
+  for (const int joint : source.joints) {
+    const std::optional<std::size_t> node = entry(in_tree_, joint);
+    if (!node) refuse(document_.file, place + "/joints", fmt::format("node {}", joint), "nodes of the scene");
+    skin.joints.push_back(*node);
+  }
+  skin.inverse_binds = read_inverse_binds(document_, source.inverseBindMatrices, skin.joints.size(),
+                                          place + "/inverseBindMatrices");
+  return known = std::make_shared<const Skin>(std::move(skin));
 }
 
 }  // namespace clpv

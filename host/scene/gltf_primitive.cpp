@@ -13,6 +13,7 @@ namespace {
 
 constexpr glm::dvec3 kUp{0, 1, 0};        // the normal of vertices that only degenerate triangles use
 constexpr double kShortestStored = 1e-6;  // a shorter stored normal is none
+constexpr double kMostWeight = 1e6;       // of a joint; they are made to add up to 1
 
 /// A primitive's attributes, checked against each other.
 struct Attributes {
@@ -32,12 +33,16 @@ class PrimitiveReader {
   std::uint64_t triangle_count(const Attributes& from, int mode, const Room& room) const;
   void read_triangles(const Attributes& from, int mode, std::uint64_t count, VertexMap& map,
                       LocalPrimitive& to) const;
+  /// Of the vertices there are: the joints they go with, and the morph targets.
+  void read_influences(const Attributes& from, LocalPrimitive& to) const;
+  void read_targets(const Attributes& from, Room& room, LocalPrimitive& to) const;
 
  private:
-  std::optional<GltfAccessor> attribute(const std::string& name, int least_components, int most_components,
-                                        std::size_t count) const;
-  std::optional<GltfAccessor> indices() const;
-  double component(const GltfAccessor& from, const char* name, std::uint32_t index, int i) const;
+  using Types = std::initializer_list<int>;
+  std::optional<GltfAccessor> attribute(const std::map<std::string, int>& attributes,
+                                        const std::string& place, const std::string& name, Types types,
+                                        std::optional<std::size_t> count,
+                                        const Numbers& numbers = kNumbers) const;
   LocalVertex vertex(const Attributes& from, std::uint32_t index) const;
   [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
     refuse(document_.file, place_, found, allowed);
@@ -49,79 +54,112 @@ class PrimitiveReader {
   const UvMapping& mapping_;
 };
 
-std::optional<GltfAccessor> PrimitiveReader::attribute(const std::string& name, int least_components,
-                                                       int most_components, std::size_t count) const {
-  const auto found = source_.attributes.find(name);
-  if (found == source_.attributes.end()) return std::nullopt;
-  GltfAccessor accessor(document_, found->second);
-  const std::string place = fmt::format("{}/attributes/{}", place_, name);
-  if (accessor.components() < least_components || accessor.components() > most_components ||
-      document_.model.accessors[static_cast<std::size_t>(found->second)].type > TINYGLTF_TYPE_VEC4) {
-    refuse(document_.file, place, fmt::format("elements of {} components", accessor.components()),
-           fmt::format("VEC{}{}", least_components,
-                       most_components > least_components ? fmt::format(" or VEC{}", most_components) : ""));
-  }
-  if (count != 0 && accessor.count() != count) {
-    refuse(document_.file, place, fmt::format("{} elements", accessor.count()),
-           fmt::format("as many as POSITION, {}", count));
-  }
-  return accessor;
+std::optional<GltfAccessor> PrimitiveReader::attribute(const std::map<std::string, int>& attributes,
+                                                       const std::string& place, const std::string& name,
+                                                       Types types, std::optional<std::size_t> count,
+                                                       const Numbers& numbers) const {
+  const auto found = attributes.find(name);
+  if (found == attributes.end()) return std::nullopt;
+  return GltfAccessor(document_, found->second, fmt::format("{}{}/{}", place_, place, name), types, numbers,
+                      count);
 }
 
 Attributes PrimitiveReader::attributes(bool textured, Notes& notes) const {
-  const auto position = attribute("POSITION", 3, 3, 0);
+  const auto find = [&](const std::string& name, Types types, std::optional<std::size_t> count) {
+    return attribute(source_.attributes, "/attributes", name, types, count);
+  };
+  const auto position = find("POSITION", {TINYGLTF_TYPE_VEC3}, std::nullopt);
   if (!position) refuse_here("no attribute POSITION", "POSITION, a VEC3");
-  const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
-  Attributes made{*position, attribute("NORMAL", 3, 3, position->count()), std::nullopt,
-                  attribute("COLOR_0", 3, 4, position->count()), indices()};
+  const std::size_t count = position->count();
+  Attributes made{*position, find("NORMAL", {TINYGLTF_TYPE_VEC3}, count), std::nullopt,
+                  find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count), std::nullopt};
+  if (source_.indices >= 0) {
+    made.indices =
+        GltfAccessor(document_, source_.indices, place_ + "/indices", {TINYGLTF_TYPE_SCALAR}, kIndices);
+  }
   if (textured) {
-    made.uv = attribute(set, 2, 2, position->count());
+    const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
+    made.uv = find(set, {TINYGLTF_TYPE_VEC2}, count);
     if (!made.uv)
       notes.add(fmt::format("{}: its material wants {}, which it lacks: 0, 0 instead", place_, set));
   }
   return made;
 }
 
-std::optional<GltfAccessor> PrimitiveReader::indices() const {
-  if (source_.indices < 0) return std::nullopt;
-  GltfAccessor accessor(document_, source_.indices);
-  const int type = accessor.component_type();
-  if (accessor.components() != 1 || accessor.normalized() ||
-      (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-       type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
-    refuse(document_.file, accessor.place(), "indices that are no unsigned integer scalars",
-           "SCALAR of componentType 5121, 5123 or 5125, not normalized");
-  }
-  return accessor;
-}
-
-double PrimitiveReader::component(const GltfAccessor& from, const char* name, std::uint32_t index,
-                                  int i) const {
-  const double value = from.number(index, i);
-  if (!std::isfinite(value)) {
-    refuse_here(fmt::format("{} in component {} of {} of vertex {}", value, i, name, index),
-                "finite numbers");
-  }
-  return value;
+glm::dvec3 vector_in(const GltfAccessor& from, std::uint32_t index) {
+  return {from.finite(index, 0), from.finite(index, 1), from.finite(index, 2)};
 }
 
 LocalVertex PrimitiveReader::vertex(const Attributes& from, std::uint32_t index) const {
-  LocalVertex made{{}, {}, {}, glm::vec4(1), index};
-  for (int i = 0; i < 3; ++i) made.position[i] = component(from.position, "POSITION", index, i);
-  for (int i = 0; i < 3 && from.normal; ++i) made.normal[i] = component(*from.normal, "NORMAL", index, i);
+  LocalVertex made{vector_in(from.position, index), {}, {}, glm::vec4(1), index};
+  if (from.normal) made.normal = vector_in(*from.normal, index);
   if (from.uv) {
-    const glm::dvec3 uv(component(*from.uv, "TEXCOORD", index, 0), component(*from.uv, "TEXCOORD", index, 1),
-                        1);
-    made.uv = glm::vec2(mapping_.transform * uv);
+    made.uv =
+        glm::vec2(mapping_.transform * glm::dvec3(from.uv->finite(index, 0), from.uv->finite(index, 1), 1));
     if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
       refuse_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
                   "finite numbers");
     }
   }
-  for (int i = 0; from.colour && i < from.colour->components(); ++i) {
-    made.colour[i] = static_cast<float>(std::clamp(component(*from.colour, "COLOR_0", index, i), 0.0, 1.0));
-  }
+  for (int i = 0; from.colour && i < from.colour->components(); ++i)
+    made.colour[i] = static_cast<float>(std::clamp(from.colour->finite(index, i), 0.0, 1.0));
   return made;
+}
+
+void PrimitiveReader::read_influences(const Attributes& from, LocalPrimitive& to) const {
+  const auto find = [&](const char* name, const Numbers& numbers) {
+    return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4}, from.position.count(),
+                     numbers);
+  };
+  const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kNumbers);
+  if (joints.has_value() != weights.has_value()) {
+    refuse(document_.file, place_ + "/attributes",
+           joints ? "JOINTS_0 without WEIGHTS_0" : "WEIGHTS_0 without JOINTS_0", "both or none");
+  }
+  if (!joints) return;
+  to.influences.reserve(to.vertices.size());
+  for (const LocalVertex& vertex : to.vertices) {
+    Influence made{};
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+      const double weight = weights->number(vertex.source, i);
+      if (!(weight >= 0 && weight <= kMostWeight)) {
+        refuse(document_.file, place_ + "/attributes/WEIGHTS_0",
+               fmt::format("{} in component {} of vertex {}", weight, i, vertex.source),
+               fmt::format("0 to {}", kMostWeight));
+      }
+      made.joints[i] = static_cast<std::uint16_t>(joints->index(vertex.source, i));
+      made.weights[i] = weight;
+      sum += weight;
+    }
+    for (double& weight : made.weights) weight = sum > 0 ? weight / sum : 0;
+    if (sum == 0) made.weights[0] = 1;
+    to.influences.push_back(made);
+  }
+}
+
+void PrimitiveReader::read_targets(const Attributes& from, Room& room, LocalPrimitive& to) const {
+  for (std::size_t t = 0; t < source_.targets.size(); ++t) {
+    const std::string place = fmt::format("/targets/{}", t);
+    const auto read = [&](const char* name) {
+      std::vector<glm::vec3> made;
+      const auto found =
+          attribute(source_.targets[t], place, name, {TINYGLTF_TYPE_VEC3}, from.position.count());
+      if (!found) return made;
+      const std::uint64_t numbers = 3 * to.vertices.size();
+      if (numbers > room.morph_numbers) {
+        refuse(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
+               fmt::format("{} left of {} in all", room.morph_numbers, bounds::kMorphNumbers));
+      }
+      room.morph_numbers -= numbers;
+      made.reserve(to.vertices.size());
+      for (const LocalVertex& vertex : to.vertices) made.emplace_back(vector_in(*found, vertex.source));
+      return made;
+    };
+    MorphTarget target{read("POSITION"), {}};
+    if (!to.flat) target.normals = read("NORMAL");
+    to.targets.push_back(std::move(target));
+  }
 }
 
 /// The corners of triangle `i`, in the order that makes its front counter-clockwise (glTF 2.0,
@@ -216,13 +254,6 @@ void normalize_stored(LocalPrimitive& primitive) {
 
 }  // namespace
 
-glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::uvec3& t) {
-  const glm::dvec3& a = vertices[t.x].position;
-  const glm::dvec3 n = glm::cross(vertices[t.y].position - a, vertices[t.z].position - a);
-  const double length = glm::length(n);
-  return length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
-}
-
 void VertexMap::restart(std::size_t count) {
   if (entries_.size() < count) entries_.resize(count);
   if (++stamp_ == 0) {  // wrapped: old stamps would look new
@@ -237,15 +268,14 @@ std::uint32_t VertexMap::slot(std::uint32_t source, std::uint32_t& fresh) {
   return entry.slot;
 }
 
-LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, std::size_t index,
-                              const MaterialSet& materials, const Room& room, VertexMap& map, Notes& notes) {
-  const tinygltf::Primitive& source = document.model.meshes[mesh].primitives[index];
+LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
+                              const MaterialSet& materials, Room& room, VertexMap& map, Notes& notes) {
+  const tinygltf::Primitive& source = entry(document.model.meshes, mesh).primitives[index];
   LocalPrimitive made;
   made.place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
-  const int mode = source.mode < 0 ? TINYGLTF_MODE_TRIANGLES : source.mode;
-  if (mode < TINYGLTF_MODE_TRIANGLES) {
+  if (source.mode < TINYGLTF_MODE_TRIANGLES) {
     notes.add(fmt::format("{}: made of {}, which are not drawn", made.place,
-                          mode == TINYGLTF_MODE_POINTS ? "points" : "lines"));
+                          source.mode == TINYGLTF_MODE_POINTS ? "points" : "lines"));
     return made;
   }
   made.material = static_cast<std::uint32_t>(
@@ -254,14 +284,19 @@ LocalPrimitive read_primitive(const GltfDocument& document, std::size_t mesh, st
   const bool textured = material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
   const PrimitiveReader reader(document, source, made.place, materials.mappings[made.material]);
   const Attributes attributes = reader.attributes(textured, notes);
-  const std::uint64_t triangles = reader.triangle_count(attributes, mode, room);
-  reader.read_triangles(attributes, mode, triangles, map, made);
+  const std::uint64_t triangles = reader.triangle_count(attributes, source.mode, room);
+  reader.read_triangles(attributes, source.mode, triangles, map, made);
   made.flat = !attributes.normal;
   if (made.flat) {
     split_flat(made);
   } else {
     normalize_stored(made);
   }
+  reader.read_influences(attributes, made);
+  reader.read_targets(attributes, room, made);
+  if (source.attributes.contains("JOINTS_1"))
+    notes.add(
+        fmt::format("{}: more than four joints a vertex: those of JOINTS_0 alone are read", made.place));
   return made;
 }
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_view.hpp"
-
 #include <set>
 
 #include "scene/bounds.hpp"
-#include "scene/light_cone.hpp"
+#include "scene/gltf_parts.hpp"
 #include "scene/light_kind.hpp"
-#include "scene/view_placement.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -19,7 +16,7 @@ class ViewReader {
 
   /// Whether the scene has it.
   bool camera(int node, const tinygltf::Node& source, const glm::dmat4& to_world) {
-    const tinygltf::Camera& given = document_.model.cameras[static_cast<std::size_t>(source.camera)];
+    const tinygltf::Camera& given = entry(document_.model.cameras, source.camera);
     const std::string place = fmt::format("/cameras/{}", source.camera);
     if (given.type != "perspective") {
       notes_.add(fmt::format("{} ('{}') is orthographic and left out", place, given.name));
@@ -38,7 +35,7 @@ class ViewReader {
   }
 
   void light(int node, const tinygltf::Node& source, int index, const glm::dmat4& to_world) {
-    const tinygltf::Light& given = document_.model.lights[static_cast<std::size_t>(index)];
+    const tinygltf::Light& given = entry(document_.model.lights, index);
     if (scene_.lights.size() == bounds::kLights) {
       refuse(document_.file, place_of(node), "one more light", fmt::format("at most {}", bounds::kLights));
     }
@@ -87,7 +84,7 @@ void append_views(const GltfDocument& document, const PosedTree& posed, double m
   ViewReader reader(document, metres_per_unit, scene, notes);
   for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
     const TreeNode& node = motion.tree.nodes[i];
-    const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(node.index)];
+    const tinygltf::Node& source = entry(document.model.nodes, node.index);
     if (source.camera >= 0 && reader.camera(node.index, source, posed.to_world(i)) && node.moves) {
       motion.cameras.push_back({scene.cameras.size() - 1, i});
     }

@@ -14,16 +14,6 @@ namespace clpv {
 namespace fs = std::filesystem;
 namespace {
 
-/// A URI as it may stand in a message: short, on one line.
-std::string shown(std::string_view text) {
-  constexpr std::size_t kShown = 80;
-  std::string out(text.substr(0, kShown));
-  for (char& c : out) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return text.size() > kShown ? out + "..." : out;
-}
-
 /// Bounds the depth of brackets and the number of values, without recursion and before a parser allocates for
 /// them.
 void check_extent(std::string_view text, const std::string& file) {
@@ -67,18 +57,19 @@ std::optional<std::string> percent_decoded(std::string_view uri) {
   return out;
 }
 
-bool has_scheme(std::string_view uri) {
-  const std::size_t colon = uri.find(':');
-  return colon != std::string_view::npos && colon > 0 &&
-         uri.substr(0, colon).find('/') == std::string_view::npos;
-}
-
 bool lies_in(const fs::path& path, const fs::path& folder) {
   const auto [in_folder, in_path] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   return in_folder == folder.end();
 }
 
 }  // namespace
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t kShown = 160;
+  std::string out(text.substr(0, kShown));
+  std::replace(out.begin(), out.end(), '\n', ' ');
+  return text.size() > kShown ? out + "..." : out;
+}
 
 Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
   std::error_code failure;
@@ -105,6 +96,10 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
 }
 
 nlohmann::json parse_json(std::string_view text, const std::string& file) {
+  if (text.size() > bounds::kJsonBytes) {
+    refuse(file, {}, fmt::format("{} bytes of JSON", text.size()),
+           fmt::format("at most {}", bounds::kJsonBytes));
+  }
   check_extent(text, file);
   try {
     return nlohmann::json::parse(text);
@@ -117,29 +112,17 @@ nlohmann::json parse_json(std::string_view text, const std::string& file) {
 
 fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::string& file,
                      std::string_view place) {
-  const std::string kAllowed = "a relative path to a file in the model's folder or below";
+  const auto refuse_uri = [&](const char* why) {
+    refuse(file, place, fmt::format("URI '{}', {}", shown(uri), why),
+           "a relative path to a file in the model's folder or below");
+  };
   const std::optional<std::string> decoded = percent_decoded(uri);
-  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) {
-    refuse(file, place, fmt::format("malformed URI '{}'", shown(uri)), kAllowed);
-  }
-  if (has_scheme(*decoded)) refuse(file, place, fmt::format("URI '{}' with a scheme", shown(uri)), kAllowed);
-  std::string portable = *decoded;
-  std::replace(portable.begin(), portable.end(), '\\', '/');
-  const fs::path lexical = (folder / portable).lexically_normal();
-  if (portable.front() == '/' || !lies_in(lexical, folder.lexically_normal())) {
-    refuse(file, place, fmt::format("URI '{}', which leaves the model's folder", shown(uri)), kAllowed);
-  }
+  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) refuse_uri("malformed");
   std::error_code failure;
   const fs::path real = fs::canonical(folder / *decoded, failure);
-  if (failure) refuse(file, place, fmt::format("URI '{}', no such file", shown(uri)), kAllowed);
-  if (!lies_in(real, fs::canonical(folder))) {
-    refuse(file, place, fmt::format("URI '{}', a link that leaves the model's folder", shown(uri)), kAllowed);
-  }
-  if (!fs::is_regular_file(real)) {
-    refuse(file, place,
-           fmt::format("URI '{}', {}", shown(uri), fs::is_directory(real) ? "a folder" : "no regular file"),
-           kAllowed);
-  }
+  if (failure) refuse_uri("no such file");
+  if (!lies_in(real, fs::canonical(folder))) refuse_uri("which leaves the model's folder");
+  if (!fs::is_regular_file(real)) refuse_uri(fs::is_directory(real) ? "a folder" : "no regular file");
   return real;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "scene/motion.hpp"
+#include "scene/notes.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
 

@@ -48,6 +48,11 @@ struct Light {
   ClpvLight data{};
 };
 
+/// An axis-aligned box [m].
+struct Bounds {
+  glm::vec3 lower{0}, upper{0};
+};
+
 /// A run of a scene's vertices and triangles.
 struct Part {
   std::uint32_t first_vertex, vertices, first_triangle, triangles;

@@ -11,7 +11,6 @@
 
 #include "scene/bounds.hpp"
 #include "scene/input.hpp"
-#include "scene/light_cone.hpp"
 #include "scene/light_kind.hpp"
 #include "scene/sky.hpp"
 #include "support/error.hpp"

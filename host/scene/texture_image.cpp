@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "scene/texture_image.hpp"
-
 #include <OpenImageIO/imageio.h>
 
 #include <atomic>
@@ -13,6 +11,7 @@
 #include "image/image_header.hpp"
 #include "image/memory_reader.hpp"
 #include "scene/bounds.hpp"
+#include "scene/gltf_material.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -21,8 +20,8 @@ namespace {
 /// An encoded image, bounded and of known format, ready to be decoded.
 struct Encoded {
   std::string place, name;
-  Bytes owned;                          ///< of a file or data URI
-  std::span<const std::uint8_t> bytes;  ///< owned, or part of a buffer
+  Bytes owned;                          ///< of a file
+  std::span<const std::uint8_t> bytes;  ///< owned, or the document's
   ImageHeader header;
 };
 
@@ -35,15 +34,12 @@ std::string first_bytes(std::span<const std::uint8_t> bytes) {
 }
 
 void read_encoded(const GltfDocument& document, int index, Encoded& encoded) {
-  const GltfImage& image = document.images[static_cast<std::size_t>(index)];
-  encoded.place = fmt::format("/images/{}", index);
-  if (image.buffer_view) {
-    encoded.bytes = document.view(*image.buffer_view);
-    encoded.name = encoded.place;
-  } else if (image.uri.starts_with("data:")) {
-    encoded.owned = decode_data_uri(image.uri, document.file, encoded.place + "/uri");
-    encoded.bytes = encoded.owned;
-    encoded.name = encoded.place;
+  const tinygltf::Image& image = entry(document.model.images, index);
+  encoded.place = encoded.name = fmt::format("/images/{}", index);
+  if (image.bufferView >= 0) {
+    encoded.bytes = document.view(image.bufferView);
+  } else if (!image.image.empty()) {
+    encoded.bytes = image.image;
   } else {
     const auto path = resolve_uri(document.folder, image.uri, document.file, encoded.place + "/uri");
     encoded.owned = read_file(path, bounds::kImageFileBytes, document.file, encoded.place + "/uri");

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "image/image_header.hpp"
-#include "scene/texture_image.hpp"
+#include "scene/gltf_material.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
@@ -23,13 +23,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0 || !is_small({data, size})) return 0;
   GltfDocument document;
   document.file = "fuzzed.glb";
-  document.buffers.emplace_back(data, data + size);
+  document.model.buffers.emplace_back().data.assign(data, data + size);
   tinygltf::BufferView view;
   view.buffer = 0;
   view.byteOffset = 0;
   view.byteLength = size;
   document.model.bufferViews.push_back(view);
-  document.images.push_back({{}, 0});
+  document.model.images.emplace_back().bufferView = 0;
   fuzz::read_or_refuse({ExitCode::bad_input}, [&] { load_textures(document, {{0, 0, 0}}); });
   return 0;
 }
