@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdlib>
 #include <iterator>
 
 #include "device/cl_error.hpp"
+#include "support/number.hpp"
 
 namespace clpv {
 namespace {
@@ -84,18 +84,12 @@ std::string summary(const std::vector<Device>& devices) {
   return text;
 }
 
-bool parse_int(std::string_view text, int& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size();
-}
-
 bool matches(const Device& device, std::string_view choice) {
-  int first = 0, second = 0;
-  if (parse_int(choice, first)) return device.index == first;
+  if (const auto index = parse_number<int>(choice)) return device.index == *index;
   if (const auto colon = choice.find(':'); colon != std::string_view::npos) {
-    if (parse_int(choice.substr(0, colon), first) && parse_int(choice.substr(colon + 1), second)) {
-      return device.platform_index == first && device.device_index == second;
-    }
+    const auto platform = parse_number<int>(choice.substr(0, colon)),
+               number = parse_number<int>(choice.substr(colon + 1));
+    if (platform && number) return device.platform_index == *platform && device.device_index == *number;
   }
   const std::string wanted = lower(choice);
   return lower(device.name).find(wanted) != std::string::npos ||

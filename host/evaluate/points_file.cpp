@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -12,6 +11,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/input.hpp"
+#include "support/number.hpp"
 
 namespace clpv {
 namespace {
@@ -39,10 +39,9 @@ std::optional<std::array<double, 6>> parse_six(std::string_view line) {
   std::array<double, 6> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i > 0 && line.empty()) return std::nullopt;
-    const std::string_view part = trimmed(cut(line, ','));
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), values[i]);
-    if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(values[i]))
-      return std::nullopt;
+    const auto value = parse_number<double>(trimmed(cut(line, ',')));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    values[i] = *value;
   }
   return trimmed(line).empty() ? std::optional(values) : std::nullopt;
 }

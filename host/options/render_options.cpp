@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
 #include "options/presets.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
+#include "support/number.hpp"
 
 namespace clpv {
 namespace {
@@ -162,12 +162,11 @@ bool parse(std::string_view text, const Path&, std::string& out) {
 
 template <typename Number>
 bool parse(std::string_view text, const Range& range, Number& out) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return false;
-  const bool inside =
-      range.open ? value > range.least && value < range.most : value >= range.least && value <= range.most;
-  if (inside) out = value;
+  const auto value = parse_number<Number>(text);
+  if (!value) return false;
+  const bool inside = range.open ? *value > range.least && *value < range.most
+                                 : *value >= range.least && *value <= range.most;
+  if (inside) out = *value;
   return inside;
 }
 
