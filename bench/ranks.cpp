@@ -15,17 +15,17 @@ RankWork::RankWork(Team& team, Session& session, std::shared_ptr<const Scene> sc
       options_(options) {}
 
 void RankWork::render(int ranks, int frames) {
-  team_.from_first([&] { return nlohmann::json{ranks, frames}.dump(); });
+  team_.from_root([&] { return nlohmann::json{ranks, frames}.dump(); });
   share(ranks, frames);
 }
 
 void RankWork::end() {
-  team_.from_first([] { return "[]"; });
+  team_.from_root([] { return "[]"; });
 }
 
 void RankWork::serve() {
   for (;;) {
-    const auto said = nlohmann::json::parse(team_.from_first([] { return ""; }));
+    const auto said = nlohmann::json::parse(team_.from_root([] { return ""; }));
     if (said.empty()) return;
     share(said[0], said[1]);
   }
@@ -34,8 +34,8 @@ void RankWork::serve() {
 void RankWork::share(int ranks, int frames) {
   const bool mine = team_.rank() < ranks;
   if (mine && !frame_) frame_ = std::make_unique<Frame>(session_, *scene_, options_);
-  team_.begin(static_cast<std::size_t>(frames));
-  while (mine && team_.take()) {
+  team_.barrier();
+  for (int i = team_.rank(); mine && i < frames; i += ranks) {
     frame_->forget_light();
     frame_->render(camera_);
     session_.queue().finish();

@@ -19,7 +19,7 @@ class RankWork {
 
   int most_ranks() const { return team_.size(); }
 
-  /// At rank 0: the first `ranks` ranks render so many frames, taking them from one counter; back when all are there.
+  /// At rank 0: the first `ranks` ranks render so many frames, each its part; returns when all have.
   void render(int ranks, int frames);
   void end();  ///< at rank 0: there will be no more
 

@@ -15,7 +15,7 @@
 #include "bench/report.hpp"
 #include "commands/commands.hpp"
 #include "commands/drawing.hpp"
-#include "parallel/rank_device.hpp"
+#include "commands/options.hpp"
 #include "parallel/team.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -96,10 +96,8 @@ nlohmann::json earlier_run(const Options& options) {
 /// Finds out before the work whether charts can be drawn. None where none are asked for.
 std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   if (options.plot.empty()) return nullptr;
-  auto drawing = std::make_unique<const Drawing>(Picture::bench, "--plot");
-  std::error_code failed;
-  std::filesystem::create_directories(options.plot, failed);
-  if (failed) throw Error(ExitCode::run_time, "--plot {}: {}", options.plot, failed.message());
+  auto drawing = std::make_unique<const Drawing>("bench", "--plot");
+  create_folder("--plot", options.plot);
   check_writable(std::filesystem::path(options.plot) / "roofline.svg");
   return drawing;
 }
@@ -154,7 +152,7 @@ void check_ranks(const Team& team, const Options& options) {
 
 void run(Options options, Shared& shared) {
   Team& team = shared.team();
-  team.agree([&] { check_ranks(team, options); });
+  check_ranks(team, options);
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.suite.tuned = !options.no_tune;
@@ -167,11 +165,10 @@ void run(Options options, Shared& shared) {
   const bench::Suite& suite = suite_named(options.suite);
   take_scene(options, suite);
   // Of programs out of a cache no build can be told.
-  Session session(device_of_rank(team, shared.device),
+  Session session(team.device(shared.device),
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
-  tell_devices(team, session.device());
   options.bench.suite.ranks = rank_work(team, session, options.bench.suite);
-  if (!team.leads()) return options.bench.suite.ranks->serve();
+  if (!team.is_root()) return options.bench.suite.ranks->serve();
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
   options.bench.hung = [&](const bench::Results& so_far) {

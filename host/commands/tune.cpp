@@ -6,9 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands/choices.hpp"
 #include "commands/commands.hpp"
-#include "commands/frame_options.hpp"
+#include "commands/options.hpp"
 #include "pipeline/frame_volumes.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
