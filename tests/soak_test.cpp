@@ -99,7 +99,8 @@ TEST(ManyAtOnce, ShareAnEmptyProgramCache) {
   const test::TemporaryFolder folder;
   const std::string at = folder.path().string();
   const std::string render =
-      "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + at + "/cache " CLPV_PROGRAM " -v render " + kTiny +
+      test::usual_kernels() + "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + at +
+      "/cache " CLPV_PROGRAM " -v render " + kTiny +
       " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2"
       " --transport sampled --gather all --blockers seen -o " +
       at;
