@@ -4,16 +4,17 @@
 include(CMakePackageConfigHelpers)
 if(CLPV_BUILD_PROGRAM)
   install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  # The man page and the completion are the program's own word on its options.
-  set(pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
-  add_custom_command(OUTPUT ${pages}/clpv.1 ${pages}/clpv
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
-    COMMAND clpv --man-page > ${pages}/clpv.1
-    COMMAND clpv --bash-completion > ${pages}/clpv
-    DEPENDS clpv VERBATIM)
-  add_custom_target(clpv_pages ALL DEPENDS ${pages}/clpv.1 ${pages}/clpv)
-  install(FILES ${pages}/clpv.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${pages}/clpv DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  find_program(HELP2MAN help2man)
+  if(HELP2MAN)
+    set(page ${CMAKE_CURRENT_BINARY_DIR}/clpv.1)
+    add_custom_command(OUTPUT ${page}
+      COMMAND ${HELP2MAN} --no-info --help-option=--help-all "--name=${PROJECT_DESCRIPTION}" --output=${page} $<TARGET_FILE:clpv>
+      DEPENDS clpv VERBATIM)
+    add_custom_target(clpv_pages ALL DEPENDS ${page})
+    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  else()
+    message(STATUS "help2man not found: no man page")
+  endif()
 endif()
 install(DIRECTORY tools/clpv_draw DESTINATION ${CMAKE_INSTALL_DATADIR}/clpv
         FILES_MATCHING PATTERN "*.py" PATTERN "*.html" PATTERN __pycache__ EXCLUDE)

@@ -7,7 +7,7 @@ if(CLPV_MPI)
   find_package(MPI COMPONENTS C)
 endif()
 if(CLPV_MPI AND MPI_C_FOUND)
-  add_library(clpv_mpi MODULE host/parallel/mpi_messages.cpp)
+  add_library(clpv_mpi MODULE host/parallel/mpi_communicator.cpp)
   set_target_properties(clpv_mpi PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY $<TARGET_FILE_DIR:clpv>)
   target_include_directories(clpv_mpi PRIVATE host)
   target_compile_definitions(clpv_mpi PRIVATE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)  # C++ that MPI 3 has given up

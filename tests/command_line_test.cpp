@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the program says before any command runs.
+// The program as a process: its exit codes, what it says before any command runs, and what its streams take. All else runs in the
+// tests' own process (support/run_here.hpp).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 test::Outcome clpv(const std::string& arguments) {
   return test::run(CLPV_PROGRAM " " + arguments);
@@ -24,34 +24,33 @@ TEST(CommandLine, NothingGivenIsAQuestionForHelp) {
   EXPECT_EQ(bare.err, "");
 }
 
-TEST(CommandLine, AMisspeltCommandIsNamed) {
-  const test::Outcome outcome = clpv("--quiet rendr scene.json -o out.png");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("'rendr'"), HasSubstr("did you mean render?")));
-  EXPECT_THAT(clpv("qualtiy").err, HasSubstr("did you mean quality?"));
+TEST(CommandLine, ExitCodes) {
+  EXPECT_EQ(clpv("--version").exit_code, 0);
+  EXPECT_EQ(clpv("basis sh2 --figures /proc/none").exit_code, 1);
+  EXPECT_EQ(clpv("rendr").exit_code, 2);
+  EXPECT_EQ(clpv("render none.json -o /tmp/none.exr").exit_code, 3);
+  EXPECT_EQ(clpv("--device 99 check --stage sizes").exit_code, 4);
 }
 
-TEST(CommandLine, AWordLikeNoCommandGetsTheList) {
-  const test::Outcome outcome = clpv("photograph");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("'photograph'"), HasSubstr("render"), HasSubstr("compare"),
-                                 Not(HasSubstr("did you mean"))));
+TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
+  EXPECT_THAT(clpv("--help-all").out,
+              AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));
 }
 
-TEST(CommandLine, OptionsWithoutACommandAreAnError) {
-  const test::Outcome outcome = clpv("--quiet");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("subcommand"));
+TEST(CommandLine, AReaderThatIsGone) {
+  // As any program: the signal of the pipe ends it, with nothing said.
+  const test::TemporaryFolder folder;
+  const test::Outcome outcome =
+      test::run("{ " CLPV_PROGRAM " basis; echo $? >" + (folder / "code").string() + "; } | exec true");
+  EXPECT_EQ(outcome.err, "");
+  const std::string code = test::read_file(folder / "code");
+  EXPECT_TRUE(code == "141\n" || code == "0\n") << code;  // 0: it was done before
 }
 
-TEST(CommandLine, TimesAreFiniteSeconds) {
-  for (const std::string command : {"render", "reference"}) {
-    for (const std::string bad : {"nan", "inf", "1e7", "noon", "1s", "''"}) {
-      const test::Outcome outcome = clpv(command + " none.gltf -o none.exr --time " + bad);
-      EXPECT_EQ(outcome.exit_code, 2) << bad;
-      EXPECT_THAT(outcome.err, AllOf(HasSubstr("--time"), HasSubstr("-1000000..1000000"))) << bad;
-    }
-  }
+TEST(CommandLine, DataThatDoesNotFitIsNotLostUnsaid) {
+  const test::Outcome outcome = clpv("devices --json >/dev/full");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));
 }
 
 }  // namespace

@@ -2,56 +2,48 @@
 // What is drawn by tools/clpv_draw: `clpv report`, `clpv basis --figures` and `clpv bench --plot`, and what they say where
 // Python or a module is missing. Charts and page themselves: tests/draw.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "image/image_io.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::drawing_test {
 namespace {
 
+using test::run_here;
 using ::testing::HasSubstr;
 
 class Drawing : public ::testing::Test {
  protected:
-  static test::Outcome clpv(const std::string& arguments, const std::string& environment = "") {
-    return test::run(environment + " " CLPV_PROGRAM " " + arguments);
-  }
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
-  /// Each command that draws, and the option or command its messages name.
-  std::vector<std::pair<std::string, std::string>> commands() const {
-    return {{"report " + file("out"), "clpv report"},
-            {"basis sh2 --figures " + file("out"), "--figures"},
-            {"bench ceilings --filter launch --plot " + file("out"), "--plot"}};
-  }
 
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Drawing, SaysThatPythonIsMissing) {
-  for (const auto& [arguments, named] : commands()) {
-    const test::Outcome outcome = clpv(arguments, "PATH=/nowhere");
-    EXPECT_EQ(outcome.exit_code, 1) << named;
-    EXPECT_THAT(outcome.err, HasSubstr(named + " needs python3"));
-  }
-}
-
-TEST_F(Drawing, NamesTheModuleThatIsMissing) {
-  folder_.write("matplotlib.py", "raise ImportError('broken')\n");
-  for (const auto& [arguments, named] : commands()) {
-    const test::Outcome outcome = clpv(arguments, "PYTHONPATH=" + file(""));
-    EXPECT_EQ(outcome.exit_code, 1) << named;
-    EXPECT_THAT(outcome.err, HasSubstr(named + " needs modules of Python"));
-    EXPECT_THAT(outcome.err, HasSubstr("python3-matplotlib"));
+TEST_F(Drawing, WhatIsMissingIsToldBeforeTheWork) {
+  folder_.write("matplotlib.py", "raise ImportError('broken matplotlib')\n");
+  const auto clpv = [&](const std::string& environment, const std::string& arguments) {
+    return test::run(environment + " " CLPV_PROGRAM " " + arguments);
+  };
+  const test::Outcome no_python = clpv("PATH=/nowhere", "basis sh2 --figures " + file("out"));
+  EXPECT_EQ(no_python.exit_code, 1);
+  EXPECT_THAT(no_python.err, HasSubstr("--figures: python3 -m clpv_draw ended with 127"));
+  const std::string broken = "PYTHONPATH=" + file("");
+  for (const auto& [arguments, named] :
+       {std::pair("report " + file("out"), "clpv report"),
+        {"bench ceilings --filter launch --plot " + file("out"), "--plot"}}) {
+    const test::Outcome no_module = clpv(broken, arguments);
+    EXPECT_EQ(no_module.exit_code, 1) << named;
+    EXPECT_THAT(no_module.err, HasSubstr(named + std::string(": python3 -m clpv_draw ended with 1: broken")));
+    EXPECT_THAT(no_module.err, HasSubstr("python3-matplotlib"));
   }
 }
 
 TEST_F(Drawing, AFolderThatCannotBeIsTold) {
   folder_.write("file", "");
   for (const std::string command : {"report ", "basis sh2 --figures ", "bench ceilings --plot "}) {
-    const test::Outcome outcome = clpv(command + file("file/there"));
+    const test::Outcome outcome = run_here(command + file("file/there"));
     EXPECT_EQ(outcome.exit_code, 1) << command;
     EXPECT_THAT(outcome.err, HasSubstr(file("file/there")));
   }
@@ -66,7 +58,7 @@ int count(const Image& image, bool (*is)(float red, float blue)) {
 
 TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
   const std::string to = file("new/folder");
-  const test::Outcome outcome = clpv("basis srbf8v2 --lobe rotate --figures " + to);
+  const test::Outcome outcome = run_here("basis srbf8v2 --lobe rotate --figures " + to);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* name : {"figure2.png", "figure3.png", "figure6.png"}) {
     EXPECT_THAT(outcome.out, HasSubstr(name));
@@ -79,7 +71,7 @@ TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
 }
 
 TEST_F(Drawing, AReportIsOnePageWithItsViews) {
-  const test::Outcome outcome = clpv(
+  const test::Outcome outcome = run_here(
       "report " + file("page") +
       " " CLPV_SOURCE_DIR "/scenes/cornell.json --width 48 --height 27 --spp 4 --cache " + file("cache"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -94,13 +86,12 @@ TEST_F(Drawing, AReportRefusesWithItsOwnExitCode) {
   folder_.write("other.json", R"({"schema": 1})");
   folder_.write("shape.json", R"({"variants": [{"refused": 0}]})");
   for (const char* name : {"other.json", "shape.json"}) {
-    const test::Outcome outcome = clpv("report " + file("page") + " --quality " + file(name));
+    const test::Outcome outcome = run_here("report " + file("page") + " --quality " + file(name));
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(file(name)));
     EXPECT_THAT(outcome.err, HasSubstr("variants"));
   }
-  EXPECT_EQ(clpv("report " + file("page") + " --bench " + file("absent.json")).exit_code, 3);
-  EXPECT_EQ(clpv("report").exit_code, 2);
+  EXPECT_EQ(run_here("report " + file("page") + " --bench " + file("absent.json")).exit_code, 3);
   EXPECT_FALSE(std::filesystem::exists(file("page/index.html")));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Comparisons as test cases, and what the installation takes from the options: man page and completion.
+// Comparisons as test cases, for what shows test results.
 #include "checks/junit.hpp"
 
 #include <gmock/gmock.h>
@@ -7,14 +7,13 @@
 
 #include <cmath>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::junit_test {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(Junit, TellsStagesCasesAndWhatFailed) {
   const std::string xml = reference::junit({{"inject", "sh2", 1e-7, 1e-6, ""},
@@ -32,32 +31,9 @@ TEST(Junit, TellsStagesCasesAndWhatFailed) {
 TEST(Junit, IsWrittenByTheCheck) {
   const test::TemporaryFolder folder;
   const std::string file = (folder / "check.xml").string();
-  const test::Outcome outcome = test::run(CLPV_PROGRAM " check --stage sizes --junit " + file);
+  const test::Outcome outcome = test::run_here("check --stage sizes --junit " + file);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(test::read_file(file), HasSubstr("<testsuite name=\"sizes\""));
-}
-
-TEST(Pages, TheManPageNamesEveryCommandAndOption) {
-  const test::Outcome page = test::run(CLPV_PROGRAM " --man-page");
-  EXPECT_EQ(page.exit_code, 0) << page.err;
-  EXPECT_THAT(page.out, AllOf(HasSubstr(".TH CLPV 1"), HasSubstr(".SS render"), HasSubstr(".SS bench"),
-                              HasSubstr("\\fB\\-\\-transport\\fR"), HasSubstr("Exit codes: 0 ok")));
-  EXPECT_THAT(page.out, Not(HasSubstr("man\\-page")));
-  const test::Outcome read =
-      test::run(CLPV_PROGRAM " --man-page | man -l - 2>&1 >/dev/null | grep -v 'break line'; true");
-  EXPECT_THAT(read.out + read.err, Not(HasSubstr("warning"))) << "of roff, where there is a man";
-}
-
-TEST(Pages, TheCompletionCompletes) {
-  const auto completed = [](const std::string& line) {
-    return test::run("bash -c 'source <(" CLPV_PROGRAM " --bash-completion); COMP_WORDS=(" + line +
-                     "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _clpv; echo ${COMPREPLY[*]}'")
-        .out;
-  };
-  EXPECT_EQ(completed("clpv seq"), "sequence\n");
-  EXPECT_EQ(completed("clpv render --transp"), "--transport\n");
-  EXPECT_EQ(completed("clpv render --layout ti"), "tiled\n");
-  EXPECT_EQ(completed("clpv bench reg"), "\n");
 }
 
 }  // namespace

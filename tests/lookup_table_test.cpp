@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "basis/table_kernel.hpp"
-#include "codegen/cell_macros.hpp"
+#include "basis/kernel_text.hpp"
+#include "codegen/linear_code.hpp"
 #include "pipeline/propagate.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"

@@ -39,7 +39,8 @@ class Starved : public ::testing::Test {
 
   /// `timeout` goes first: the shim is for the program alone.
   static std::string program() {
-    return "timeout 120 env CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() +
+    return "timeout 120 env " + usual_kernels() +
+           "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() +
            " CLPV_SHIM_REPORT=" + (*cache_ / "report").string() +
            " LD_PRELOAD=" CLPV_OPENCL_SHIM " " CLPV_PROGRAM;
   }
@@ -90,13 +91,13 @@ long step_or(long usual) {
 
 TEST_F(Starved, OfDeviceMemoryAtSomeAllocations) {
   CLPV_COUNT_OF("memory", 1);
-  for (long n = first; n <= count; n += step_or(9))
+  for (long n = first; n <= count; n += step_or(23))
     expect_told("memory", n, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
 }
 
 TEST_F(Starved, OfItsDeviceAtSomeEnqueues) {
   CLPV_COUNT_OF("enqueue", 1);
-  for (long n = first; n <= count; n += step_or(61))
+  for (long n = first; n <= count; n += step_or(151))
     expect_told("enqueue", n, "-2", "CL_DEVICE_NOT_AVAILABLE");
 }
 

@@ -12,11 +12,8 @@
 #include "options/presets.hpp"
 #include "support/named_enum.hpp"
 
-namespace clpv::bench {
-namespace {
-
-constexpr int kPathFrames = 24;
-constexpr double kTurn = 0.6, kSway = 0.5;  // [rad], [m]: to either side, once along the path
+namespace clpv {
+namespace bench {
 
 /// What of a frame each repetition makes anew, besides what the camera sees.
 enum class Anew {
@@ -25,8 +22,18 @@ enum class Anew {
   nothing,     ///< what a camera costs that looks round among things and lights at rest
 };
 
+}  // namespace bench
+
 template <>
-inline constexpr auto kNames<Anew> = name_list("light", "everything", "nothing");
+inline constexpr auto kNames<bench::Anew> = name_list("light", "everything", "nothing");
+
+}  // namespace clpv
+
+namespace clpv::bench {
+namespace {
+
+constexpr int kPathFrames = 24;
+constexpr double kTurn = 0.6, kSway = 0.5;  // [rad], [m]: to either side, once along the path
 
 /// A camera that looks round to either side and sways, back where it began after kPathFrames.
 Camera on_path(Camera camera, int frame, double sway) {
@@ -147,9 +154,9 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   variant.options.lobe_time = LobeTime::host;
   Case result;
   result.row =
-      make_row("frame", "frame", variant, fmt::format("/{}/anew:{}", name_of(preset), name_of(anew)));
+      make_row("frame", "frame", variant, fmt::format("/{}/anew:{}", name_of(preset), clpv::name_of(anew)));
   result.row.preset = name_of(preset);
-  result.row.anew = name_of(anew);
+  result.row.anew = clpv::name_of(anew);
   result.make = [&session, options, render, anew] { return frame_job(session, options, render, anew); };
   return result;
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kCorners = 8;
 
-struct Generated {
+struct TransmitCode {
   LinearCode code;
   std::string assignments;  // to ways.c0, ways.c1, ...
 };
@@ -53,7 +53,7 @@ std::vector<std::string> blockers_towards(LinearCode& code, const glm::ivec3& no
 
 /// Gives ways.c<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker the mean over the corners
 /// towards `normal`, looked up by a row of `weights` each.
-void add_ways(Generated& out, const glm::ivec3& normal, const std::vector<std::vector<double>>& weights,
+void add_ways(TransmitCode& out, const glm::ivec3& normal, const std::vector<std::vector<double>>& weights,
               const std::vector<int>& ways) {
   LinearCode& code = out.code;
   const auto corners = static_cast<double>(corners_towards(normal).size());
@@ -70,7 +70,7 @@ void add_ways(Generated& out, const glm::ivec3& normal, const std::vector<std::v
 }
 
 /// The 30 ways to faces: five lead to each face, whose corners they share.
-int add_faces(Generated& out, const FaceTransport& scheme) {
+int add_faces(TransmitCode& out, const FaceTransport& scheme) {
   for (const glm::ivec3& normal : kAxes) {
     std::vector<std::vector<double>> weights;
     std::vector<int> ways;
@@ -85,7 +85,7 @@ int add_faces(Generated& out, const FaceTransport& scheme) {
 }
 
 /// One way a neighbour, through the face, edge or corner that the two cells share.
-int add_neighbours(Generated& out, const std::vector<SweepWay>& ways) {
+int add_neighbours(TransmitCode& out, const std::vector<SweepWay>& ways) {
   int number = 0;
   for (const SweepWay& way : ways) add_ways(out, -way.offset, {way.blocked_by}, {number++});
   return number;
@@ -94,7 +94,7 @@ int add_neighbours(Generated& out, const std::vector<SweepWay>& ways) {
 }  // namespace
 
 TransmitSource transmit_source(const Basis& basis, const Transport& transport) {
-  Generated out;
+  TransmitCode out;
   TransmitSource result;
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
   result.ways = faces != nullptr ? add_faces(out, *faces)

@@ -17,7 +17,7 @@ int axis_index(const glm::ivec3& axis) {
   return -1;
 }
 
-struct Generated {
+struct TransportCode {
   std::string neighbours;  // body of CLPV_EACH_NEIGHBOUR
   LinearCode arrive;
   std::vector<std::string> gains;
@@ -25,7 +25,7 @@ struct Generated {
   bool apart = false;  // gains are the fluxes through each face, not yet what the cell gains
 };
 
-void add_neighbour(Generated& out, const glm::ivec3& travel) {
+void add_neighbour(TransportCode& out, const glm::ivec3& travel) {
   out.neighbours += fmt::format(" DO({}, {}, {}, {})", out.count, -travel.x, -travel.y, -travel.z);
   ++out.count;
 }
@@ -44,7 +44,7 @@ Matrix half_face_rows(const FaceTransport& faces, State source) {
   return source == State::fluxes ? rows * faces.lobes : rows;
 }
 
-void generate_faces(Generated& out, const FaceTransport& faces, const StepForm& form) {
+void generate_faces(TransportCode& out, const FaceTransport& faces, const StepForm& form) {
   const Matrix rows = half_face_rows(faces, form.source);
   std::array<std::string, 6> through;
   through.fill("0.0f");
@@ -101,7 +101,7 @@ std::string expand_function(const FaceTransport& faces, const Basis& basis, Stat
   return LinearCode().function("Coefficients", "clpv_expand", "Target", faces.lobes);
 }
 
-std::string arrive_macro(const Generated& out) {
+std::string arrive_macro(const TransportCode& out) {
   std::string gained = "\n" + out.arrive.text() + (out.apart ? "" : "  Target gained;\n");
   for (std::size_t i = 0; i < out.gains.size(); ++i)
     gained += fmt::format("  {}{}{} = {};\n", out.apart ? "through[" : "gained.c", i, out.apart ? "]" : "",
@@ -113,7 +113,7 @@ std::string arrive_macro(const Generated& out) {
 
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
   const auto& faces = std::get<FaceTransport>(transport.scheme);
-  Generated out;
+  TransportCode out;
   generate_faces(out, faces, form);
   TransportSource result;
   result.source_count = form.source == State::fluxes ? 6 : basis.size();

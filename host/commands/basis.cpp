@@ -8,12 +8,9 @@
 #include <vector>
 
 #include "basis/rotated_lobe.hpp"
-#include "commands/basis_figures.hpp"
-#include "commands/basis_search.hpp"
-#include "commands/basis_table.hpp"
-#include "commands/choices.hpp"
+#include "commands/basis_parts.hpp"
 #include "commands/commands.hpp"
-#include "commands/parse.hpp"
+#include "commands/options.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -53,16 +50,14 @@ std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {
   return bases;
 }
 
-/// Of the bases that are named, or else of the paper's.
-void write_figures(const Options& options) {
-  const bool named = !options.name.empty() || !options.centres_file.empty();
-  const BasisFigures figures{named ? bases_of(options) : paper_bases(options.lambda), options.lobes,
-                             options.lambda};
-  for (const auto& file : write_basis_figures(figures, options.figures)) fmt::print("{}\n", file.string());
-}
-
 void run(const Options& options) {
-  if (!options.figures.empty()) return write_figures(options);
+  if (!options.figures.empty()) {
+    BasisFigures figures{{}, options.lobes, options.lambda};
+    if (!options.name.empty() || !options.centres_file.empty()) figures.bases = bases_of(options);
+    for (const auto& file : write_basis_figures(std::move(figures), options.figures))
+      fmt::print("{}\n", file.string());
+    return;
+  }
   const BasisView view = options.view();
   if (options.search.centres) return search_and_tell(options.search, options.lambda, view, options.json);
   nlohmann::json bases = nlohmann::json::array();

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "commands/basis_figures.hpp"
-
 #include <array>
 #include <cmath>
 #include <functional>
@@ -10,7 +8,9 @@
 
 #include "basis/lobe_quality.hpp"
 #include "basis/srbf.hpp"
+#include "commands/basis_parts.hpp"
 #include "commands/drawing.hpp"
+#include "commands/options.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
@@ -84,23 +84,14 @@ nlohmann::json add_lobes(Surfaces& surfaces, const BasisFigures& figures) {
   return rows;
 }
 
-void create_folder(const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error(ExitCode::run_time, "--figures {}: {}", folder.string(), failed.message());
-}
-
 }  // namespace
 
-std::vector<std::unique_ptr<Basis>> paper_bases(double lambda) {
-  std::vector<std::unique_ptr<Basis>> bases;
-  for (const char* name : kPaperBases) bases.push_back(make_basis(name, lambda));
-  return bases;
-}
-
-std::vector<fs::path> write_basis_figures(const BasisFigures& figures, const fs::path& folder) {
-  const Drawing drawing(Picture::basis, "--figures");
-  create_folder(folder);
+std::vector<fs::path> write_basis_figures(BasisFigures figures, const fs::path& folder) {
+  if (figures.bases.empty()) {
+    for (const char* name : kPaperBases) figures.bases.push_back(make_basis(name, figures.lambda));
+  }
+  const Drawing drawing("basis", "--figures");
+  create_folder("--figures", folder);
   const std::vector<fs::path> files{folder / "figure2.png", folder / "figure3.png", folder / "figure6.png"};
   for (const fs::path& file : files) check_writable(file);
   Surfaces surfaces;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "commands/basis_search.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
-#include "commands/choices.hpp"
+#include "commands/basis_parts.hpp"
+#include "commands/options.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "commands/basis_table.hpp"
-
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "basis/lobe_quality.hpp"
+#include "commands/basis_parts.hpp"
 
 namespace clpv {
 

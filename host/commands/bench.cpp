@@ -89,7 +89,7 @@ nlohmann::json earlier_run(const Options& options) {
 /// Finds out before the work whether charts can be drawn. None where none are asked for.
 std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   if (options.plot.empty()) return nullptr;
-  auto drawing = std::make_unique<const Drawing>(Picture::bench, "--plot");
+  auto drawing = std::make_unique<const Drawing>("bench", "--plot");
   std::error_code failed;
   std::filesystem::create_directories(options.plot, failed);
   if (failed) throw Error(ExitCode::run_time, "--plot {}: {}", options.plot, failed.message());

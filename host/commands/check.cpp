@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "checks/junit.hpp"
-#include "commands/choices.hpp"
 #include "commands/commands.hpp"
+#include "commands/options.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
@@ -88,13 +88,11 @@ void run(const Options& options, const Shared& shared) {
   }
   const auto failed = failures(all);
   if (options.json) {
-    const Device& d = session.device();
-    fmt::print("{}\n",
-               nlohmann::json{{"schema", 1},
-                              {"device", {{"platform", d.platform}, {"name", d.name}, {"driver", d.driver}}},
-                              {"passed", failed == 0},
-                              {"checks", to_json(all)}}
-                   .dump(2));
+    fmt::print("{}\n", nlohmann::json{{"schema", 1},
+                                      {"device", to_json(session.device())},
+                                      {"passed", failed == 0},
+                                      {"checks", to_json(all)}}
+                           .dump(2));
   }
   if (!options.junit.empty()) write_file(options.junit, reference::junit(all, session.device().name));
   if (failed > 0)

@@ -7,18 +7,18 @@
 #include <span>
 #include <string>
 
-namespace clpv {
+#include "parallel/team.hpp"
 
-class Team;
+namespace clpv {
 
 /// What every command shares.
 struct Shared {
   std::string device;  ///< --device
   bool quiet = false;
   int verbosity = 0;
-  /// The processes that a launcher started this one with; begun when it is first asked for.
+  /// The ranks that a launcher started this process with; the first call starts MPI.
   Team& team();
-  std::shared_ptr<Team> begun;  ///< none yet, until it is
+  std::unique_ptr<Team> started;  ///< none before
 };
 
 struct Command {
@@ -33,9 +33,13 @@ std::span<const Command> all_commands();
 void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands = all_commands());
 
 /// Parses, and runs the command. Throws CLI::Error, and Error(usage) that names the command meant by a misspelt one.
-void parse_command_line(CLI::App& app, int argc, char** argv);
+void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-// Each in commands/NAME.cpp. The callbacks throw clpv::Error; main turns it into an exit code.
+/// The program but for its signals: parses, runs the command, says on stderr what failed. Returns the exit code. A rank that
+/// fails ends all ranks.
+int run_program(int argc, const char* const* argv);
+
+// Each in commands/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an exit code.
 void add_devices(CLI::App& app, Shared& shared);
 void add_render(CLI::App& app, Shared& shared);
 void add_sequence(CLI::App& app, Shared& shared);

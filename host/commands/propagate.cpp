@@ -9,8 +9,7 @@
 #include <optional>
 
 #include "commands/commands.hpp"
-#include "commands/frame_options.hpp"
-#include "commands/parse.hpp"
+#include "commands/options.hpp"
 #include "options/render_options.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"

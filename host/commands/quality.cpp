@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: MIT
 // clpv quality: how far the frames of many variants are from the path-traced truth, and what they cost.
+//
+//   scenes, --camera   ->  Subject: a scene, its cameras, the truth of each      quality_subjects.hpp, evaluate/cached_reference.hpp
+//   --vary             ->  Variant: values of the options that vary             evaluate/quality.hpp
+//   subject x variant  ->  Group: the options of one frame, which shows every camera of the subject
+//   group x camera     ->  QualityCell: kept by an earlier run, or rendered, compared and kept      QualityStore
+//   cells              ->  means of a variant; table, CSV and JSON               evaluate/quality_report.hpp
+//
+// Ranks take every N-th group, or every N-th cell where groups are fewer than ranks.
 #include "evaluate/quality.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "clpv/version.hpp"
 #include "commands/commands.hpp"
-#include "commands/frame_options.hpp"
-#include "commands/quality_cells.hpp"
+#include "commands/options.hpp"
 #include "commands/quality_subjects.hpp"
-#include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
 #include "evaluate/quality_report.hpp"
-#include "parallel/rank_device.hpp"
 #include "support/error.hpp"
-#include "support/named_enum.hpp"
+#include "support/interrupt.hpp"
 #include "support/output_file.hpp"
+#include "support/progress.hpp"
 
 namespace clpv {
 namespace {
@@ -27,7 +35,8 @@ namespace {
 struct Options {
   QualitySubjects subjects;
   std::vector<std::string> varied;
-  std::string view = "indirect", cache, json, csv, format = "table";
+  std::string cache, json, csv, format = "table";
+  Show view = Show::indirect;
   int frames = 3;
   bool fresh = false;
   TracingOptions tracing;
@@ -35,7 +44,7 @@ struct Options {
 };
 
 /// All combinations: what --vary says; without a word about bases, transports or presets, which have both, all of them.
-std::vector<Variant> variants(const Options& options) {
+std::vector<Variant> variants_of(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
     varied.push_back(parse_varied(text));
@@ -63,28 +72,97 @@ RenderOptions with(const Options& options, const Variant& variant, const Scene& 
   return resolve_options(given, scene);
 }
 
-/// What is measured, of subjects and variants that must outlive it.
-QualityMatrix matrix(const Options& options, const std::vector<Subject>& subjects,
-                     const std::vector<Variant>& all) {
-  QualityMatrix matrix{subjects, all, {}, named<Show>("--view", options.view), options.frames, options.fresh};
+struct Group {
+  const Subject& subject;
+  const Variant& variant;
+  RenderOptions options;
+};
+
+/// By subject, then by variant. Throws for options that do not go together.
+std::vector<Group> groups_of(const Options& options, const std::vector<Subject>& subjects,
+                             const std::vector<Variant>& variants) {
+  std::vector<Group> groups;
   for (const Subject& subject : subjects) {
-    std::vector<RenderOptions>& of_subject = matrix.options.emplace_back();
-    for (const Variant& variant : all) of_subject.push_back(with(options, variant, subject.scene));
+    for (const Variant& variant : variants)
+      groups.push_back({subject, variant, with(options, variant, subject.scene)});
   }
-  return matrix;
+  return groups;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A cell of that group and camera; makes the group's frame where there is none yet.
+QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
+                     const Options& options) {
+  const auto started = std::chrono::steady_clock::now();
+  QualityCell cell;
+  try {
+    double made_s = 0;
+    if (!frame) {
+      frame = std::make_unique<Frame>(session, group.subject.scene, group.options);
+      made_s = seconds_since(started);
+    }
+    cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera], options.view,
+                   options.frames);
+    cell.made_s = made_s;
+  } catch (const Error& error) {
+    // A basis that a transport cannot carry, a grid that does not fit: a result like any other.
+    if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
+    cell.refused = error.what();
+  }
+  cell.measured_s = seconds_since(started) - cell.made_s;
+  cell.scene = group.subject.scene.name;
+  cell.camera = group.subject.cameras[camera].name;
+  return cell;
+}
+
+/// All cells, by group and camera, at rank 0; elsewhere those of this rank.
+std::vector<QualityCell> measure_all(Team& team, Session& session, const std::vector<Group>& groups,
+                                     const QualityStore& store, const Options& options) {
+  const bool whole = groups.size() >= static_cast<std::size_t>(team.size());
+  const auto each = [&](const auto& action) {
+    std::size_t cell = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      std::unique_ptr<Frame> frame;
+      for (std::size_t camera = 0; camera < groups[g].subject.cameras.size(); ++camera, ++cell)
+        if (team.takes(whole ? g : cell)) action(frame, groups[g], camera, cell);
+    }
+  };
+  std::size_t mine = 0;
+  each([&](auto&...) { ++mine; });
+  std::map<std::size_t, nlohmann::json> cells;  // of this rank, by number
+  Progress progress("quality", mine);
+  each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
+    stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(), mine));
+    const std::string key = quality_key(group.subject.truths[camera], session.device(), group.options,
+                                        options.view, options.frames);
+    std::optional<QualityCell> cell;
+    if (!options.fresh) cell = store.find(key);
+    const bool kept = cell.has_value();
+    if (!kept) cell = rendered(session, frame, group, camera, options);
+    cell->variant = group.variant;  // the same options may have been written otherwise
+    if (!kept && cell->refused.empty()) store.keep(key, *cell);  // a refusal may be a matter of the moment
+    cells[number] = to_json(*cell);
+    progress.advance();
+  });
+  for (const std::string& told : team.gather(nlohmann::json(cells).dump()))
+    cells.merge(nlohmann::json::parse(told).get<std::map<std::size_t, nlohmann::json>>());
+  std::vector<QualityCell> all;
+  for (const auto& [number, cell] : cells) all.push_back(cell_from_json(cell));
+  return all;
 }
 
 nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector<Subject>& subjects,
                         const Session& session, const Options& options) {
-  const Device& device = session.device();
-  nlohmann::json json = {
-      {"schema", 1},
-      {"time", options.subjects.time},
-      {"version", version()},
-      {"view", options.view},
-      {"frames", options.frames},
-      {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
-      {"given", options.given}};
+  nlohmann::json json = {{"schema", 1},
+                         {"time", options.subjects.time},
+                         {"version", version()},
+                         {"view", name_of(options.view)},
+                         {"frames", options.frames},
+                         {"device", to_json(session.device())},
+                         {"given", options.given}};
   for (const Subject& subject : subjects) {
     for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
       const reference::Reference& truth = subject.truths[view];
@@ -100,32 +178,26 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
   return json;
 }
 
-/// All that is there before anything is measured.
-struct Prepared {
-  std::vector<Variant> variants;
-  std::filesystem::path folder;
-  std::optional<QualityStore> store;
-  std::unique_ptr<Session> session;
-  std::vector<Subject> subjects;  ///< without truths
-};
-
-Prepared prepare(const Options& options, const Shared& shared, const Team& team) {
+void run(const Options& options, Shared& shared) {
+  Team& team = shared.team();
   check_models(options.subjects);
-  Prepared made;
-  made.variants = variants(options);
-  named<Show>("--view", options.view);
+  const std::vector<Variant> variants = variants_of(options);
+  const reference::PathTracerOptions tracing = options.tracing.resolved();
   for (const std::string& output : {options.json, options.csv}) {
     if (!output.empty()) check_writable(output);
   }
-  made.folder = quality_cache(options.cache);
-  made.store.emplace(made.folder / "cells");
-  made.session = std::make_unique<Session>(device_of_rank(team, shared.device));
-  made.subjects = load_subjects(options.subjects);
-  return made;
-}
-
-void tell(const std::vector<QualityCell>& cells, const Prepared& made, const Options& options) {
-  const std::string json = document(cells, made.subjects, *made.session, options).dump(2) + "\n";
+  const std::filesystem::path folder = quality_cache(options.cache);
+  const QualityStore store(folder / "cells");
+  Session session(team.device(shared.device));
+  std::vector<Subject> subjects = load_subjects(options.subjects);
+  const std::vector<Group> groups = groups_of(options, subjects, variants);
+  for (Subject& subject : subjects) {
+    const RenderOptions frame = with(options, {}, subject.scene);
+    trace_truths(subject, frame.width, frame.height, tracing, folder / "references", team);
+  }
+  const std::vector<QualityCell> cells = measure_all(team, session, groups, store, options);
+  if (!team.is_root()) return;
+  const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
   if (!options.json.empty()) write_file(options.json, json);
   if (!options.csv.empty()) write_file(options.csv, quality_csv(cells));
   fmt::print("{}", options.format == "json"  ? json
@@ -133,34 +205,10 @@ void tell(const std::vector<QualityCell>& cells, const Prepared& made, const Opt
                                              : quality_table(cells));
 }
 
-void run(const Options& options, Shared& shared) {
-  Team& team = shared.team();
-  Prepared made;
-  team.agree([&] { made = prepare(options, shared, team); });
-  tell_devices(team, made.session->device());
-  for (Subject& subject : made.subjects) {
-    const RenderOptions frame = with(options, {}, subject.scene);
-    trace_truths(subject, frame.width, frame.height, options.tracing.resolved(), made.folder / "references",
-                 team);
-  }
-  std::optional<QualityMatrix> measured;
-  team.agree([&] { measured.emplace(matrix(options, made.subjects, made.variants)); });
-  const std::vector<QualityCell> cells = measure_all(team, *made.session, *measured, *made.store);
-  if (team.leads()) tell(cells, made, options);
-}
-
 void add_options(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.subjects.scenes, "scene files (.json), or bare .gltf or .glb")
       ->required();
-  command
-      .add_option("--model", options.subjects.models,
-                  "replaces a scene file's model; several scenes: STEM=PATH, repeatable")
-      ->type_name("[STEM=]PATH");
-  command
-      .add_option("--camera", options.subjects.cameras,
-                  "by name, repeatable (default: all cameras of all scenes)")
-      ->type_name("NAME");
-  add_seconds(command, "--time", options.subjects.time, "the instant of scenes that move [s]");
+  add_subject_options(command, options.subjects);
   command
       .add_option("--vary", options.varied,
                   "a render option and its values, repeatable: every combination is a variant. Bases and "
@@ -168,9 +216,7 @@ void add_options(CLI::App& command, Options& options) {
                   "over all there are, unless --preset, --basis, --centres or --transport fixes them or "
                   "--vary names them")
       ->type_name("OPTION=a,b,c");
-  command.add_option("--view", options.view, fmt::format("{}", fmt::join(names_of<Show>(), "|")))
-      ->type_name("VIEW")
-      ->capture_default_str();
+  add_choice(command, "--view", options.view, "what is compared");
   command
       .add_option("--frames", options.frames,
                   "timed frames a cell, after one to warm up; their median counts")

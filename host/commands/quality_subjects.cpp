@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "commands/options.hpp"
 #include "commands/tracing_options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -29,6 +30,17 @@ std::filesystem::path model_for(const std::string& scene, const QualitySubjects&
 }
 
 }  // namespace
+
+void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
+  command
+      .add_option("--model", subjects.models,
+                  "replaces a scene file's model; several scenes: STEM=PATH, repeatable")
+      ->type_name("[STEM=]PATH");
+  command
+      .add_option("--camera", subjects.cameras, "by name, repeatable (default: all cameras of all scenes)")
+      ->type_name("NAME");
+  add_seconds(command, "--time", subjects.time, "the instant of scenes that move [s]");
+}
 
 std::filesystem::path quality_cache(const std::string& given) {
   if (!given.empty()) return given;

@@ -2,6 +2,7 @@
 // What a quality run looks at: scenes, their cameras, the truth of each view, and where truths are kept.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct QualitySubjects {
   std::vector<std::string> cameras;  ///< names; none: all there are
   double time = 0;                   ///< the instant shown [s]
 };
+
+/// --model, --camera and --time.
+void add_subject_options(CLI::App& command, QualitySubjects& subjects);
 
 /// A scene, the cameras chosen, and the truth of what each of them sees.
 struct Subject {

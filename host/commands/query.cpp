@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "commands/commands.hpp"
+#include "commands/options.hpp"
 #include "commands/render_request.hpp"
-#include "commands/time_option.hpp"
 #include "evaluate/light_field.hpp"
 #include "evaluate/points_file.hpp"
 #include "scene/load.hpp"

@@ -10,7 +10,8 @@
 
 #include "clpv/version.hpp"
 #include "commands/commands.hpp"
-#include "commands/time_option.hpp"
+#include "commands/options.hpp"
+#include "commands/render_request.hpp"
 #include "commands/tracing_options.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -26,7 +27,7 @@ namespace {
 
 struct Options {
   std::string scene, model, camera, output, stats;
-  std::vector<std::string> views = {std::string(name_of(Show::full))};
+  std::vector<Show> views = {Show::full};
   int width = 960, height = 540;
   double time = 0;
   TracingOptions tracing;
@@ -58,11 +59,10 @@ nlohmann::json resolved(const Options& options, const Camera& camera) {
   return json;
 }
 
-Image compose(const reference::TracedImage& traced, const std::vector<std::string>& views) {
-  if (views.size() == 1) return traced_view(traced, named<Show>("--view", views[0]));
+Image compose(const reference::TracedImage& traced, const std::vector<Show>& views) {
+  if (views.size() == 1) return traced_view(traced, views[0]);
   Image image;
-  for (const std::string& view : views)
-    append_layer(image, traced_view(traced, named<Show>("--view", view)), view);
+  for (const Show view : views) append_layer(image, traced_view(traced, view), std::string(name_of(view)));
   return image;
 }
 
@@ -71,12 +71,12 @@ void write_outputs(const Options& options, const Camera& camera, const reference
   const nlohmann::json asked = resolved(options, camera);
   const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
   Image image = compose(traced, options.views);
-  for (const auto& [name, value] : asked.items()) {
-    image.metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
-  }
+  std::vector<std::string_view> views;
+  for (const Show view : options.views) views.push_back(name_of(view));
+  image.metadata = metadata_of(asked);
   image.metadata["command"] = "reference";
   image.metadata["version"] = version();
-  image.metadata["view"] = fmt::format("{}", fmt::join(options.views, ","));
+  image.metadata["view"] = fmt::format("{}", fmt::join(views, ","));
   image.metadata["spp_traced"] = std::to_string(traced.samples);
   image.metadata["noise_reached"] = noise.dump();
   write_exr(options.output, image);
@@ -86,33 +86,21 @@ void write_outputs(const Options& options, const Camera& camera, const reference
   write_file(options.stats, stats.dump(2) + "\n");
 }
 
-/// The scene as it is at the instant shown.
-std::unique_ptr<MovingScene> prepare(const Options& options) {
-  for (const std::string& view : options.views) named<Show>("--view", view);
-  check_outputs(options);
-  auto moving = std::make_unique<MovingScene>(options.scene, LoadOptions{options.model});
-  for (const std::string& note : moving->scene().notes) spdlog::info("{}", note);
-  moving->pose(options.time);
-  moving->scene().camera(options.camera);  // throws where there is none
-  return moving;
-}
-
 void run(const Options& options, Shared& shared) {
   Team& team = shared.team();
-  reference::PathTracerOptions tracing;
-  std::unique_ptr<MovingScene> moving;
-  team.agree([&] {
-    tracing = options.tracing.resolved();
-    moving = prepare(options);
-  });
-  const Scene& scene = moving->scene();
+  const reference::PathTracerOptions tracing = options.tracing.resolved();
+  check_outputs(options);
+  MovingScene moving(options.scene, {options.model});
+  for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
+  moving.pose(options.time);
+  const Scene& scene = moving.scene();
   const Camera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
   TraceBar bar("path tracing");
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       [&](double share) { bar.show(share); }, team);
-  if (!team.leads()) return;
+  if (!team.is_root()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
@@ -131,10 +119,7 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("--model", options.model, "replaces the scene file's model")->type_name("PATH");
   command.add_option("--camera", options.camera, "by name (default: the scene's first)")->type_name("NAME");
   add_seconds(command, "--time", options.time, "the instant shown of a scene that moves [s]");
-  command.add_option("--view", options.views, fmt::format("{}", fmt::join(names_of<Show>(), "|")))
-      ->delimiter(',')
-      ->type_name("VIEW")
-      ->capture_default_str();
+  add_choices(command, "--view", options.views, "what to write; several: layers")->default_str("full");
   command.add_option("--width", options.width, "[pixels]")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();

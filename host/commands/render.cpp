@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/options.hpp"
 #include "commands/render_request.hpp"
-#include "commands/time_option.hpp"
 #include "evaluate/normal_weights.hpp"
 #include "image/image_io.hpp"
-#include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
 #include "scene/load.hpp"
@@ -32,7 +31,7 @@ struct Options {
   std::string output, stats, dump, normals;
   int frames = 5;
   double time = 0;
-  std::vector<std::string> views;
+  std::vector<Show> views = {Show::full};
 };
 
 /// FILE.png, or FILE.VIEW.png where there are several.
@@ -42,37 +41,29 @@ fs::path png_path(const fs::path& output, Show view, bool several) {
   return path.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
 }
 
-std::vector<Show> parse_views(const std::vector<std::string>& names) {
-  std::vector<Show> views;
-  for (const std::string& name : names) views.push_back(named<Show>("--view", name));
-  if (views.empty()) views.push_back(Show::full);
-  return views;
-}
-
 /// Everything that can be known to be wrong before the device is touched.
-void check_outputs(const Options& options, const std::vector<Show>& views) {
+void check_outputs(const Options& options) {
   const std::string extension = fs::path(options.output).extension().string();
   if (extension != ".exr" && extension != ".png") {
     throw Error(ExitCode::usage, "--output {}: found extension '{}', allowed: .exr, .png", options.output,
                 extension);
   }
   if (extension == ".exr") check_writable(options.output);
-  for (const Show view : views) {
-    if (extension == ".png") check_writable(png_path(options.output, view, views.size() > 1));
+  for (const Show view : options.views) {
+    if (extension == ".png") check_writable(png_path(options.output, view, options.views.size() > 1));
   }
   if (!options.stats.empty()) check_writable(options.stats);
   if (!options.normals.empty()) check_writable(options.normals);
   if (!options.dump.empty()) {
-    std::error_code failed;
-    fs::create_directories(options.dump, failed);
-    if (failed) throw Error(ExitCode::run_time, "--dump-volume {}: {}", options.dump, failed.message());
+    create_folder("--dump-volume", options.dump);
     check_writable(fs::path(options.dump) / "cascade0.npy");
   }
 }
 
-void write_images(Frame& frame, const Options& options, const std::vector<Show>& views, float exposure,
+void write_images(Frame& frame, const Options& options, float exposure,
                   const std::map<std::string, std::string>& metadata) {
   const fs::path output = options.output;
+  const std::vector<Show>& views = options.views;
   if (output.extension() == ".exr") {
     Image all;
     for (const Show view : views) {
@@ -82,9 +73,8 @@ void write_images(Frame& frame, const Options& options, const std::vector<Show>&
     all.metadata = metadata;
     return write_exr(output, all);
   }
-  const ToneMap curve = named<ToneMap>("--tonemap", options.request.tonemap);
   for (const Show view : views) {
-    Image shown = display_image(view_image(frame, view), exposure, curve);
+    Image shown = display_image(view_image(frame, view), exposure, options.request.tonemap);
     shown.metadata = metadata;
     write_png(png_path(output, view, views.size() > 1), shown);
   }
@@ -100,9 +90,7 @@ void dump_volume(Session& session, const Options& options, const CascadeVolumes&
 }
 
 void run(const Options& options, const Shared& shared) {
-  const std::vector<Show> views = parse_views(options.views);
-  named<ToneMap>("--tonemap", options.request.tonemap);
-  check_outputs(options, views);
+  check_outputs(options);
   FrameStats stats;
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
@@ -138,7 +126,7 @@ void run(const Options& options, const Shared& shared) {
   }
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
-  write_images(frame, options, views, request.exposure_of(scene), metadata_of(described));
+  write_images(frame, options, request.exposure_of(scene), metadata_of(described));
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
   if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, described).dump(2) + "\n");
@@ -160,12 +148,8 @@ void add_render(CLI::App& app, Shared& shared) {
       ->required()
       ->type_name("FILE");
   add_seconds(*command, "--time", options->time, "the instant shown of a scene that moves [s]");
-  command
-      ->add_option("--view", options->views,
-                   fmt::format("what to write ({}); several: layers of one EXR, or FILE.VIEW.png",
-                               fmt::join(names_of<Show>(), "|")))
-      ->delimiter(',')
-      ->type_name("VIEW")
+  add_choices(*command, "--view", options->views,
+              "what to write; several: layers of one EXR, or FILE.VIEW.png")
       ->default_str("full");
   command
       ->add_option("--stats", options->stats,

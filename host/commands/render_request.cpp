@@ -21,8 +21,7 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
 void add_shown_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--exposure", request.exposure, "brightness of a PNG [EV]; default: the scene's")
       ->type_name("EV");
-  command.add_option("--tonemap", request.tonemap, "tone curve of a PNG: none|reinhard|aces")
-      ->capture_default_str();
+  add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 
 void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {
@@ -49,7 +48,7 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
               {"camera", camera.name},
               {"time", seconds},
               {"exposure", request.exposure_of(shown)},
-              {"tonemap", request.tonemap}});
+              {"tonemap", name_of(request.tonemap)}});
   return all;
 }
 

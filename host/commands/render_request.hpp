@@ -9,14 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "commands/frame_options.hpp"
+#include "commands/options.hpp"
 #include "image/image.hpp"
+#include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
 
 namespace clpv {
 
 struct RenderRequest {
-  std::string scene, model, camera, tonemap = "aces";
+  std::string scene, model, camera;
+  ToneMap tonemap = ToneMap::aces;
   std::optional<float> exposure;
   GivenOptions frame;
 

@@ -10,9 +10,8 @@
 #include "clpv/version.hpp"
 #include "commands/commands.hpp"
 #include "commands/drawing.hpp"
-#include "commands/frame_options.hpp"
+#include "commands/options.hpp"
 #include "commands/quality_subjects.hpp"
-#include "commands/time_option.hpp"
 #include "commands/tracing_options.hpp"
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
@@ -150,13 +149,11 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
 
 void run(const Options& options, const Shared& shared) {
   check_models(options.subjects);
-  std::error_code failed;
-  fs::create_directories(options.folder, failed);
-  if (failed) throw Error(ExitCode::run_time, "{}: {}", options.folder, failed.message());
+  create_folder("DIR", options.folder);
   const fs::path output = fs::path(options.folder) / "index.html";
   check_writable(output);
 
-  const Drawing drawing(Picture::report, "clpv report");
+  const Drawing drawing("report", "clpv report");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
                         {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
   Session session(choose_device(shared.device), ProgramCache::of_user());
@@ -183,13 +180,7 @@ void add_report(CLI::App& app, Shared& shared) {
   command->add_option("DIR", options->folder, "where index.html is written")->required();
   command->add_option("SCENE", options->subjects.scenes,
                       "scene files whose views are shown beside path tracing");
-  command
-      ->add_option("--model", options->subjects.models,
-                   "replaces a scene file's model; several scenes: STEM=PATH, repeatable")
-      ->type_name("[STEM=]PATH");
-  command->add_option("--camera", options->subjects.cameras, "by name, repeatable (default: all)")
-      ->type_name("NAME");
-  add_seconds(*command, "--time", options->subjects.time, "the instant of scenes that move [s]");
+  add_subject_options(*command, options->subjects);
   command->add_option("--quality", options->quality, "figures made by clpv quality --json, repeatable")
       ->type_name("FILE.json");
   command

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <sstream>
 
 #include "support/error.hpp"
 #include "support/output_file.hpp"
@@ -17,18 +19,22 @@ namespace {
 namespace fs = std::filesystem;
 
 // Players want even sides and half as many colours; 18 is where x264's loss is hardly seen.
-constexpr const char* kEvenSides = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
-constexpr const char* kQuality = "18";
+constexpr const char* kEncoding =
+    "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart -f mp4 -y";
 
 std::vector<std::uint8_t> rgb_bytes(const Image& shown) {
   const std::size_t channels = shown.channels.size();
-  const auto pixels = static_cast<std::size_t>(shown.width) * static_cast<std::size_t>(shown.height);
-  std::vector<std::uint8_t> bytes(3 * pixels);
+  std::vector<std::uint8_t> bytes(3 * shown.pixel_count());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const float value = shown.pixels[i / 3 * channels + i % 3];
     bytes[i] = static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
   }
   return bytes;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
 }
 
 }  // namespace
@@ -54,41 +60,15 @@ void Video::fail(const Process::Ended& ended) const {
               ended.said);
 }
 
-void Video::start(const Image& first) {
-  process_ =
-      std::make_unique<Process>(ffmpeg_,
-                                std::vector<std::string>{"-hide_banner",
-                                                         "-loglevel",
-                                                         "error",
-                                                         "-f",
-                                                         "rawvideo",
-                                                         "-pixel_format",
-                                                         "rgb24",
-                                                         "-video_size",
-                                                         fmt::format("{}x{}", first.width, first.height),
-                                                         "-framerate",
-                                                         fmt::format("{}", frames_per_second_),
-                                                         "-i",
-                                                         "pipe:0",
-                                                         "-vf",
-                                                         kEvenSides,
-                                                         "-c:v",
-                                                         "libx264",
-                                                         "-crf",
-                                                         kQuality,
-                                                         "-pix_fmt",
-                                                         "yuv420p",
-                                                         "-movflags",
-                                                         "+faststart",
-                                                         "-f",
-                                                         "mp4",
-                                                         "-y",
-                                                         part_.string()},
-                                true);
-}
-
 void Video::add(const Image& shown) {
-  if (!process_) start(shown);
+  if (!process_) {
+    std::vector<std::string> words =
+        words_of(fmt::format("-hide_banner -loglevel error -f rawvideo -pixel_format rgb24 -video_size {}x{} "
+                             "-framerate {} -i pipe:0 {}",
+                             shown.width, shown.height, frames_per_second_, kEncoding));
+    words.push_back(part_.string());
+    process_ = std::make_unique<Process>(ffmpeg_, words, true);
+  }
   const std::vector<std::uint8_t> bytes = rgb_bytes(shown);
   if (!process_->feed(std::as_bytes(std::span(bytes)))) fail(process_->end());
 }

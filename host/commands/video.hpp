@@ -27,7 +27,6 @@ class Video {
 
  private:
   [[noreturn]] void fail(const Process::Ended& ended) const;
-  void start(const Image& first);
 
   std::filesystem::path file_, part_, ffmpeg_;
   double frames_per_second_;

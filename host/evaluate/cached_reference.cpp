@@ -113,25 +113,18 @@ Reference cached_reference(const std::filesystem::path& folder, const Scene& sce
   const std::filesystem::path file =
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
                            key(scene, camera, view, options));
-  std::optional<Reference> reference;
-  const std::string found = team.from_first([&] {
-    reference = kept_reference(file);
-    if (!reference) check_place(file);
-    return reference ? "there" : "";
+  std::optional<Reference> kept;
+  const std::string found = team.from_root([&] {
+    kept = kept_reference(file);
+    if (!kept) check_place(file);
+    return kept ? "there" : "";
   });
-  if (!found.empty()) {
-    team.agree([&] {
-      if (!reference) reference = read_reference(file);
-    });
-    return *std::move(reference);
-  }
+  if (!found.empty()) return kept ? *std::move(kept) : read_reference(file);
   const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, team);
-  reference = Reference{all_views(traced), file, true, traced.samples, traced.noise};
-  describe(reference->image, scene, camera, traced, options);
-  team.agree([&] {
-    if (team.leads()) write_exr(file, reference->image);
-  });
-  return *std::move(reference);
+  Reference reference{all_views(traced), file, true, traced.samples, traced.noise};
+  describe(reference.image, scene, camera, traced, options);
+  if (team.is_root()) write_exr(file, reference.image);
+  return reference;
 }
 
 }  // namespace clpv::reference

@@ -20,8 +20,17 @@
 namespace clpv {
 namespace {
 
-// What a frame costs whatever its volumes are, in coefficients of a cell moved by a step.
-constexpr double kFixedCost = 1e7;
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
 
 Image shown(Frame& frame, Show show) {
   Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
@@ -53,9 +62,45 @@ std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bo
 
 }  // namespace
 
-double estimated_cost(const RenderOptions& options) {
-  const double n = make_basis(options)->size(), cells = std::pow(options.grid, 3) * options.cascades;
-  return kFixedCost + cells * n * (options.transport == TransportKind::sweep ? 1 : options.iterations);
+VariedOption parse_varied(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos) throw Error(ExitCode::usage, "vary {}: allowed: OPTION=a,b,c", text);
+  VariedOption varied{text.substr(0, equals), {}};
+  for (const std::string& value : split(text.substr(equals + 1), ',')) {
+    RenderOptions probe;
+    set_option(probe, varied.name, value);  // throws for an unknown option or a bad value
+    if (std::ranges::count(varied.values, value) > 0) {
+      throw Error(ExitCode::usage, "vary {}: {} comes twice", text, value);
+    }
+    varied.values.push_back(value);
+  }
+  return varied;
+}
+
+std::vector<Variant> combinations(const std::vector<VariedOption>& varied) {
+  std::vector<Variant> all(1);
+  for (const VariedOption& option : varied) {
+    const auto same = [&](const VariedOption& other) { return other.name == option.name; };
+    if (std::ranges::count_if(varied, same) > 1) {
+      throw Error(ExitCode::usage, "vary {}: the option comes twice", option.name);
+    }
+    std::vector<Variant> longer;
+    for (const Variant& variant : all) {
+      for (const std::string& value : option.values) {
+        longer.push_back(variant);
+        longer.back().emplace_back(option.name, value);
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::string describe(const Variant& variant) {
+  std::string text;
+  for (const auto& [name, value] : variant)
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
+  return text;
 }
 
 QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,

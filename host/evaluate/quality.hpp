@@ -1,18 +1,37 @@
 // SPDX-License-Identifier: MIT
-// How far a frame is from the path-traced truth, and what it costs: one cell a variant and view.
+// How far frames are from the path-traced truth, and what they cost: one cell a variant and view.
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "evaluate/cached_reference.hpp"
-#include "evaluate/quality_matrix.hpp"
 #include "pipeline/frame.hpp"
 
 namespace clpv {
+
+/// One option that varies, and its values.
+struct VariedOption {
+  std::string name;
+  std::vector<std::string> values;
+};
+
+/// From "OPTION=a,b,c". Throws Error(usage) where the form, the option or a value is wrong, or a value comes twice.
+VariedOption parse_varied(const std::string& text);
+
+/// Values of the varied options, by name, in the order they were given.
+using Variant = std::vector<std::pair<std::string, std::string>>;
+
+/// Every combination, the last option varying fastest; one empty variant where nothing varies.
+/// Throws Error(usage) where an option comes twice.
+std::vector<Variant> combinations(const std::vector<VariedOption>& varied);
+
+/// "basis=sh2 transport=upwind"
+std::string describe(const Variant& variant);
 
 /// What one variant makes of one view of a scene.
 struct QualityCell {
@@ -35,9 +54,6 @@ struct QualityCell {
 /// Fills all but names and variant. Throws what Frame and compare throw.
 QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
                     Show show, int frames);
-
-/// What a frame of these options takes, set next to that of others: for the order of work whose times nobody knows yet.
-double estimated_cost(const RenderOptions& options);
 
 /// Names everything a cell's errors depend on: truth, device (but not into how many parts it is split), options, what is shown
 /// and how it is timed, kernels and program.

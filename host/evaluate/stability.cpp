@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pathtracer/path_tracer.hpp"
 #include "reference/view.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv {
 namespace {
@@ -73,6 +75,58 @@ LightChange change_of_light(const std::vector<bool>& counted, const std::vector<
   std::nth_element(changes.begin(), nth, changes.end());
   found.p95 = *nth * static_cast<double>(changes.size()) / light;
   return found;
+}
+
+namespace {
+
+std::uint64_t content_of(const Scene& scene, const Camera& camera) {
+  Fingerprint print;
+  add_moving(print, scene);
+  for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  return print.value();
+}
+
+std::vector<int> moved(const std::vector<ClpvGrid>& before, const std::vector<ClpvGrid>& now) {
+  std::vector<int> cascades;
+  for (std::size_t c = 0; c < now.size(); ++c) {
+    if (!std::equal(now[c].origin, now[c].origin + 3, before[c].origin))
+      cascades.push_back(static_cast<int>(c));
+  }
+  return cascades;
+}
+
+}  // namespace
+
+void Stability::add(int number, double seconds, const Scene& scene, const Camera& camera) {
+  Seen now{read_surface(session_, frame_.seen()), frame_.read(Show::irradiance), frame_.light().grids,
+           content_of(scene, camera)};
+  if (before_) {
+    const std::vector<bool> counted = still_seen(before_->surfaces, now.surfaces);
+    const auto surfaces = std::ranges::count_if(before_->surfaces.depth, [](float d) { return d > 0; });
+    const LightChange change =
+        change_of_light(counted, before_->irradiance, frame_.irradiance_on(before_->surfaces));
+    const double seen =
+        surfaces > 0 ? static_cast<double>(change.points) / static_cast<double>(surfaces) : 0.0;
+    steps_.push_back({number, seconds, now.content == before_->content, moved(before_->grids, now.grids),
+                      seen, change, noise(scene, camera, counted)});
+  }
+  before_ = std::move(now);
+}
+
+/// Two path-traced images of the surfaces of the frame before, under the light of now, one against the other.
+std::optional<double> Stability::noise(const Scene& scene, const Camera& camera,
+                                       const std::vector<bool>& counted) const {
+  if (traced_ == 0) return {};
+  const auto traced = [&](std::uint64_t seed) {
+    reference::PathTracerOptions options;
+    options.samples = traced_, options.seed = seed;
+    const auto image =
+        reference::trace_paths(scene, scene.lights_for(camera), before_->surfaces.view, options);
+    std::vector<float> values;
+    for (const glm::vec3& e : image.irradiance) values.insert(values.end(), {e.x, e.y, e.z, 0});
+    return values;
+  };
+  return change_of_light(counted, traced(1), traced(2)).mean;
 }
 
 }  // namespace clpv

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Processes that do one job together, each with its share of it; one process alone is a team too, so that work is written
-// once.
+// Ranks that share one job: each takes every size()-th item of it. A process without a launcher is a team of one.
 #pragma once
 
 #include <functional>
@@ -10,85 +9,65 @@
 #include <string>
 #include <vector>
 
-#include "parallel/messages.hpp"
+#include "parallel/communicator.hpp"
 #include "support/error.hpp"
-#include "support/progress.hpp"
 
 namespace clpv {
 
-struct Failure;
+struct Device;
 
-/// What all ranks throw when some of them failed, in place of what these threw; it is rank 0 that tells it.
-class TeamFailure : public Error {
- public:
-  using Error::Error;
-};
-
-/// A job of many items, any of which any rank can do.
-struct SharedWork {
-  std::size_t items = 0;  ///< from 0 on, in the order they are handed out in: longest first
-  std::function<void(std::size_t)> work = {};  ///< on one of them; tells of its progress by Team::done
-  std::function<std::string()> place = {};  ///< what this rank is at, for those who read that it failed there
-  Progress* progress = nullptr;             ///< shows, at rank 0, what all have done
-  std::function<std::string()> kept = {};   ///< what an interrupt leaves, in the user's words
-};
-
-/// Functions are to be called by all ranks, in the same order and by one thread, where nothing else is said. While they wait
-/// for others they throw Interrupted where a user interrupts; anything else that leaves a rank between two of them unheard
-/// must end all (abort()).
+/// A rank that fails ends all others by abort(): no function below waits for a rank that will not come.
 class Team {
  public:
-  Team();  ///< of one: this process
-  explicit Team(std::unique_ptr<Messages> messages);
+  Team();  ///< this process alone
+  explicit Team(std::unique_ptr<Communicator> communicator) : communicator_(std::move(communicator)) {}
 
-  int rank() const { return messages_->rank(); }
-  int size() const { return messages_->size(); }
-  int local_rank() const { return messages_->local_rank(); }
-  int local_size() const { return messages_->local_size(); }
+  int rank() const { return communicator_->rank(); }
+  int size() const { return communicator_->size(); }
   bool alone() const { return size() == 1; }
-  /// Whether this is rank 0, which writes what is written once, and tells what is told once.
-  bool leads() const { return rank() == 0; }
-  /// "rank 3 on node7"
-  std::string name() const;
-  /// Processors that this rank may take: those it is bound to, or where it is bound to none its part of its machine's.
+  bool is_root() const { return rank() == 0; }
+  std::string name() const;  ///< "rank 3 on node7"
+  /// Processors for this rank: those it is bound to; where it is not bound, its part of the machine's.
   int processors() const;
-  int bound_processors() const;  ///< all of the machine's where it is bound to none
 
-  /// Does `work` on each rank. Where it throws on some, all throw: alone, what was thrown; else TeamFailure with what they
-  /// said, and which of them where they are not of one voice.
-  void agree(const std::function<void()>& work);
+  /// Whether this rank does that item of a job.
+  bool takes(std::size_t item) const {
+    return item % static_cast<std::size_t>(size()) == static_cast<std::size_t>(rank());
+  }
 
-  /// Begins to hand out `items`, from 0 on, one by one.
-  void begin(std::size_t items);
-  /// The next item that nobody has taken; nothing where all are. By any rank and thread.
-  std::optional<std::size_t> take();
-  /// Tells that so much more is done. How much all have done. By any rank and thread.
-  std::uint64_t done(std::uint64_t amount);
+  /// The device for this rank. Alone, choose_device(choice). Else the ranks of a machine take the devices that `choice` fits
+  /// in turn; ranks that share one take equal parts of it, or all of it where it cannot be split. Logs what it is, and warns
+  /// where the rank is bound to fewer processors. Throws what choose_devices throws.
+  Device device(const std::string& choice) const;
 
-  /// Does each item on whichever rank is free. A rank whose work throws says where it was and takes no more; the others go
-  /// on, and once all items are taken all throw TeamFailure. Alone, what was thrown.
-  void share(const SharedWork& job);
+  // Collective: all ranks call them in the same order, each from one thread.
+  void barrier() { communicator_->barrier(); }
+  void sum(std::span<double> values) { communicator_->sum(values.data(), values.size()); }
+  /// By rank, at rank 0; elsewhere empty.
+  std::vector<std::string> gather(const std::string& mine) { return communicator_->gather(mine); }
+  /// What `make` returns at rank 0, on all ranks.
+  std::string from_root(const std::function<std::string()>& make);
 
-  void barrier();
-  void sum(std::span<double> values);  ///< of each over all ranks, in place
-  /// By rank, at rank 0; elsewhere nothing.
-  std::vector<std::string> gather(const std::string& mine);
-  /// What rank 0 makes. What that throws, all throw, as of agree().
-  std::string from_first(const std::function<std::string()>& make);
-
-  /// Ends all ranks at once, with that exit code.
-  [[noreturn]] void abort(ExitCode code);
+  /// Ends all ranks with that exit code.
+  [[noreturn]] void abort(ExitCode code) { communicator_->abort(static_cast<int>(code)); }
 
  private:
-  Messages::Idle idle();
-  void settle(const std::optional<Failure>& mine, bool told);
-
-  std::unique_ptr<Messages> messages_;
-  std::size_t items_ = 0;
-  const SharedWork* job_ = nullptr;  ///< under way
+  std::unique_ptr<Communicator> communicator_;
 };
 
-/// Of one: for work that nobody shares.
+/// A team of one, for work that nobody shares.
 Team& alone();
+
+/// What the environment says of a launcher: Open MPI's variables (OMPI_COMM_WORLD_*), those of PMI (PMI_*) or of PMIx
+/// (PMIX_RANK, with the size of Slurm's step).
+struct Launched {
+  int rank = 0;
+  std::optional<int> size;  ///< not every launcher tells
+};
+/// Nothing where this process works alone.
+std::optional<Launched> launched();
+
+/// Starts MPI, from a module beside the program or where the installation puts it. Throws Error(run_time) without it.
+std::unique_ptr<Communicator> start_mpi();
 
 }  // namespace clpv

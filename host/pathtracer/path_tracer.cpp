@@ -44,7 +44,7 @@ class Work {
         progress_(progress),
         team_(team),
         hits_(std::size_t{view.width} * view.height),
-        sums_(2 * hits_.size(), glm::dvec3(0)) {
+        mine_(2 * hits_.size(), glm::dvec3(0)) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
     threads_ = options.threads > 0 ? options.threads : team.processors();
@@ -58,34 +58,31 @@ class Work {
          {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance}) {
       layer->assign(hits_.size(), glm::vec3(0));
     }
-    std::atomic<std::uint32_t> next{0};
-    const auto take = [&]() -> std::optional<std::size_t> {
-      const std::uint32_t tile = next.fetch_add(1);
-      return tile < tiles() ? std::optional<std::size_t>(tile) : std::nullopt;
-    };
-    by_threads(take, [&](PathSampler& sampler, std::size_t tile) {
+    by_threads({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
       each_pixel(tile, [&](std::size_t i, std::uint32_t x, std::uint32_t y) { look(sampler, i, x, y); });
     });
-    if (!team_.leads()) image_.rays = 0;  // they are counted once
+    if (!team_.is_root()) image_.rays = 0;  // they are counted once
   }
 
   /// Paths until there are `samples` a pixel, half of them in each half (the first takes an odd one).
   void trace(std::uint32_t samples) {
-    // Each sum goes on at one rank from where it was; the others add nothing to it.
-    const std::vector<glm::dvec3> before = std::exchange(sums_, std::vector(sums_.size(), glm::dvec3(0)));
-    team_.begin(2 * std::size_t{tiles()});
-    by_threads([&] { return team_.take(); },
-               [&](PathSampler& sampler, std::size_t item) {
-                 const auto half = static_cast<std::uint32_t>(item % 2);
-                 each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
-                   if (!hits_[i]) return;
-                   glm::dvec3& sum = sums_[2 * i + half] = before[2 * i + half];
-                   const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
-                   for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s)
-                     sum += sampler.indirect(*hits_[i], s, stream);
-                 });
-                 tell(team_.done(1));
-               });
+    const auto rank = static_cast<std::size_t>(team_.rank()), ranks = static_cast<std::size_t>(team_.size());
+    const Items items{rank, ranks, 2 * std::size_t{tiles()}};
+    std::size_t done = 0;
+    by_threads(items, [&](PathSampler& sampler, std::size_t item) {
+      const auto half = static_cast<std::uint32_t>(item % 2);
+      each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
+        if (!hits_[i]) return;
+        const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
+        for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s)
+          mine_[2 * i + half] += sampler.indirect(*hits_[i], s, stream);
+      });
+      const std::lock_guard lock(mutex_);
+      done += ranks;
+      if (progress_ && team_.is_root())
+        progress_(before_ + (after_ - before_) * std::min(1.0, static_cast<double>(done) / items.end));
+    });
+    sums_ = mine_;  // each sum is made by one rank; the others add zero
     team_.sum({&sums_[0].x, 3 * sums_.size()});
     image_.samples = samples;
     image_.noise = noise();
@@ -105,6 +102,11 @@ class Work {
   void expect(double share_before, double share_after) { before_ = share_before, after_ = share_after; }
 
  private:
+  /// first, first + step and so on, below end.
+  struct Items {
+    std::size_t first, step, end;
+  };
+
   static std::uint32_t share(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
 
   std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }
@@ -137,12 +139,14 @@ class Work {
     }
   }
 
-  /// Runs action(sampler, item) on each item that take() gives, on as many threads as there are.
-  template <typename Take, typename Action>
-  void by_threads(const Take& take, const Action& action) {
+  /// Runs action(sampler, item) on each item, on as many threads as there are.
+  template <typename Action>
+  void by_threads(const Items& items, const Action& action) {
+    std::atomic<std::size_t> next{items.first};
     const auto run = [&] {
       PathSampler sampler(rays_, lights_, emitters_, sky_, options_);
-      for (std::optional<std::size_t> item; !interrupted() && (item = take());) action(sampler, *item);
+      for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
+        action(sampler, item);
       const std::lock_guard lock(mutex_);
       image_.rays += sampler.rays_shot();
     };
@@ -152,12 +156,6 @@ class Work {
       run();
     }
     stop_if_interrupted();
-  }
-
-  void tell(std::uint64_t done) {
-    if (!progress_ || !team_.leads()) return;
-    const std::lock_guard lock(mutex_);
-    progress_(before_ + (after_ - before_) * static_cast<double>(done) / (2.0 * tiles()));
   }
 
   /// TracedImage::noise of the paths so far. The halves differ by twice the error of their mean, in the mean
@@ -184,8 +182,8 @@ class Work {
   const TraceProgress& progress_;
   Team& team_;
   std::vector<std::optional<Hit>> hits_;  // a pixel
-  // Irradiance [W/m^2], summed over paths: two independent halves of each pixel's estimate.
-  std::vector<glm::dvec3> sums_;
+  // Irradiance [W/m^2], summed over paths: two independent halves of each pixel's estimate, of this rank and of all.
+  std::vector<glm::dvec3> mine_, sums_;
   TracedImage image_;
   std::mutex mutex_;
   int threads_ = 1;
@@ -230,12 +228,9 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress, Team& team) {
-  std::optional<Work> made;
-  team.agree([&] {
-    check(scene, lights, options);
-    made.emplace(scene, lights, view, options, progress, team).look();
-  });
-  Work& work = *made;
+  check(scene, lights, options);
+  Work work(scene, lights, view, options, progress, team);
+  work.look();
   if (options.samples > 0) {
     work.expect(0, 1);
     work.trace(options.samples);

@@ -54,7 +54,7 @@ struct TracedImage {
 using TraceProgress = std::function<void(double)>;
 
 /// `lights` shine, whatever Scene::lights holds (Scene::lights_for).
-/// By all ranks of `team`, each of which has the image then: tiles, and the halves of their paths, go to whoever is free.
+/// By all ranks of `team`, each of which has the image then: they share the tiles, and the two halves of their paths.
 /// The same bytes for the same scene, lights, view, options and seed, whatever the number of threads and ranks.
 /// Throws Error(bad_input) for a scene without surface, without light, or with a value that is not finite;
 /// Error(usage) for options out of range.

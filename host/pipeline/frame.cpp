@@ -26,10 +26,6 @@ Transport transport_for(const RenderOptions& options, const Basis& basis, const 
   return transport;
 }
 
-glm::dvec3 vector(const float (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
-
 /// Gives pixels of an RGBA image without alpha the radiance of the sky that they look at, and alpha 1.
 void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) {
   const glm::dvec3 forward = vector(view.forward), right = vector(view.right), up = vector(view.up);

@@ -12,7 +12,6 @@ namespace {
 constexpr double kReach = 0.51;
 // Bases are as many grids apart, and stay while a cascade moves that far.
 constexpr int kGridsApart = 4;
-constexpr std::size_t kGroup = 64;
 
 /// Where a grid stands. Its first cell is at least two grids from the base along each axis, so that no number of a cell near
 /// it is negative.
@@ -180,7 +179,7 @@ void TriangleMarks::add_box(ClpvRegion& region, const ClpvBox& box) const {
 void TriangleMarks::clear(std::size_t cascade, const ClpvRegion& region) {
   const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
   const std::size_t along = shape_.cells;
-  const cl::NDRange cells(along, along, along), group(kGroup, 1, 1);
+  const cl::NDRange cells(along, along, along), group(kMarkGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(marks_, bytes, from);
   if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
     move_.set(region, marks_, slot(cascade), spare_).launch(cells, group);

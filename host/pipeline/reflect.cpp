@@ -10,14 +10,13 @@ namespace {
 
 static_assert(kReflectingSides == CLPV_SIDES);
 
-constexpr std::size_t kGroup = 64;
-constexpr unsigned kMostTriangles = 1u << 18;  // a launch
+constexpr unsigned kMostReflectors = 1u << 18;  // a launch
 
 MarksShape shape_of(int grid) {
   return {grid, grid, CLPV_SIDES * CLPV_SIDE_WORDS, 1};
 }
 
-ProgramSource triangles_program(const SceneBuffers& scene, int grid) {
+ProgramSource reflect_program(const SceneBuffers& scene, int grid) {
   ProgramSource source{"reflect.cl", {}, {}};
   source.literals.integer("CLPV_GRID", grid)
       .flag("CLPV_MASKED", scene.masked)
@@ -26,7 +25,7 @@ ProgramSource triangles_program(const SceneBuffers& scene, int grid) {
   return source;
 }
 
-ProgramSource shares_program(int grid, const VolumeFormat& format) {
+ProgramSource reflect_shares_program(int grid, const VolumeFormat& format) {
   ProgramSource source{"reflect_shares.cl", {}, coefficient_macros(kReflectingSides)};
   source.literals.integer("CLPV_GRID", grid).real("CLPV_EDGE_LOSS", edge_loss());
   add_format_literals(source.literals, format);
@@ -43,9 +42,9 @@ SceneReflector::SceneReflector(Session& session, const SceneBuffers& scene, int 
                                const VolumeFormat& format)
     : scene_(scene),
       grid_(grid),
-      sides_(session, scene, shape_of(grid), kMostTriangles, "sides of triangles that reflect"),
-      triangles_(session, triangles_program(scene, grid), "reflect_triangles"),
-      shares_(session, shares_program(grid, format), "reflect_shares") {
+      sides_(session, scene, shape_of(grid), kMostReflectors, "sides of triangles that reflect"),
+      triangles_(session, reflect_program(scene, grid), "reflect_triangles"),
+      shares_(session, reflect_shares_program(grid, format), "reflect_shares") {
   for (int c = 0; c < cascades; ++c) {
     reflectors_.push_back(
         std::make_unique<Volume>(session, VolumeShape{grid, kReflectingSides, 3}, "reflectors", format));
@@ -56,7 +55,7 @@ void SceneReflector::reflect(std::size_t cascade, const ClpvGrid& grid) {
   sides_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, sides_.buffer());
   shares_.set(sides_.buffer(), reflectors_[cascade]->memory());
   const std::size_t cells = grid_;
-  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kGroup, 1, 1));
+  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMarkGroup, 1, 1));
 }
 
 }  // namespace clpv

@@ -39,10 +39,6 @@ void store(float out[3], const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i]);
 }
 
-glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
-
 ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int height) {
   ClpvView view{};
   store(view.eye, eye);

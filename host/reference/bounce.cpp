@@ -11,24 +11,19 @@
 namespace clpv::reference {
 namespace {
 
-template <typename Visit>
-void for_each_cell(int n, Visit visit) {
-  for (int i = 0; i < n * n * n; ++i) visit(i % n, i / n % n, i / n / n);
-}
-
 /// Six fluxes that fall on a cell's sides, of a channel.
 using Arriving = std::function<std::vector<double>(int, const glm::ivec3&)>;
 
 /// Adds the light of surfaces on which that falls.
 void send_back(Volume& light, const Volume& reflectors, const Arriving& arriving) {
   const Matrix leaving = leaving_light();
-  for_each_cell(light.n, [&](int x, int y, int z) {
+  for_each_cell(light.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < 3; ++channel) {
-      std::vector<double> flux = arriving(channel, {x, y, z});
+      std::vector<double> flux = arriving(channel, p);
       for (int side = 0; side < kReflectingSides; ++side)
-        flux[side] *= reflectors.value(channel, side, x, y, z);
+        flux[side] *= reflectors.value(channel, side, p.x, p.y, p.z);
       const std::vector<double> sent = leaving * std::span<const double>(flux);
-      for (int bin = 0; bin < kSweepBins; ++bin) light.at(channel, bin, x, y, z) += sent[bin];
+      for (int bin = 0; bin < kSweepBins; ++bin) light.at(channel, bin, p.x, p.y, p.z) += sent[bin];
     }
   });
 }
@@ -45,11 +40,11 @@ Volume in_bins(const Basis& basis, const Volume& injected) {
   const Matrix means = bin_means(basis);
   Volume light(injected.n, kSweepBins);
   std::vector<double> c(basis.size());
-  for_each_cell(light.n, [&](int x, int y, int z) {
+  for_each_cell(light.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < 3; ++channel) {
-      for (int i = 0; i < basis.size(); ++i) c[i] = injected.value(channel, i, x, y, z);
+      for (int i = 0; i < basis.size(); ++i) c[i] = injected.value(channel, i, p.x, p.y, p.z);
       const std::vector<double> in = means * std::span<const double>(c);
-      for (int bin = 0; bin < kSweepBins; ++bin) light.at(channel, bin, x, y, z) = in[bin];
+      for (int bin = 0; bin < kSweepBins; ++bin) light.at(channel, bin, p.x, p.y, p.z) = in[bin];
     }
   });
   return light;
@@ -130,11 +125,12 @@ Volume reflectors_in_all(const Transport& transport, const SweptCascade& cascade
     send_back(sent, in_all,
               [](int, const glm::ivec3&) { return std::vector<double>(kReflectingSides, 1.0); });
     const std::vector<Volume> swept = sweep(*bins, transport, {{cascade.grid, &sent, cascade.geometry, 1}});
-    for_each_cell(in_all.n, [&](int x, int y, int z) {
+    for_each_cell(in_all.n, [&](const glm::ivec3& p) {
       for (int channel = 0; channel < 3; ++channel) {
-        const std::vector<double> met = arriving_at(flux, swept[0], channel, {x, y, z});
+        const std::vector<double> met = arriving_at(flux, swept[0], channel, p);
         for (int side = 0; side < kReflectingSides; ++side) {
-          in_all.at(channel, side, x, y, z) = reflectors.value(channel, side, x, y, z) * (1 + met[side]);
+          in_all.at(channel, side, p.x, p.y, p.z) =
+              reflectors.value(channel, side, p.x, p.y, p.z) * (1 + met[side]);
         }
       }
     });

@@ -16,10 +16,8 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kSamples = 8;          // of a face along each axis
-constexpr double kSeam = 1.0 / 256;  // [samples] outside an edge that still count
-constexpr double kHair = 4e-3;       // [samples], [cells / 8]: what float32 may decide either way
-constexpr double kAlphaHair = 0.03;  // as in block.cpp
+constexpr double kReflectHair = 4e-3;  // [samples], [cells / 8]: what float32 may decide either way
+constexpr double kAlphaHair = 0.03;    // as in block.cpp
 
 /// What is counted of a cell's side.
 struct Side {
@@ -168,18 +166,18 @@ class Sides {
   void look(std::uint32_t triangle, const Facing& facing, int u, int v, std::map<int, Row>& rows) const {
     const glm::dvec2 at = (glm::dvec2(u, v) + 0.5) / double{kSamples};
     const double within = facing.inside(at);
-    if (within < -kHair) return;
+    if (within < -kReflectHair) return;
     const double solid = materials_.solidity({triangle, on_triangle(facing.weights(at))});
     if (solid < -kAlphaHair) return;
     const auto [nearest, farthest] = facing.depths();
     const glm::dvec2 slope = facing.slope();
-    const double steep = kHair * (1 + std::abs(slope.x) + std::abs(slope.y));
+    const double steep = kReflectHair * (1 + std::abs(slope.x) + std::abs(slope.y));
     const double depth = std::clamp(facing.depth(at), nearest, farthest);
-    const int first =
-        static_cast<int>(std::floor(std::clamp(depth - steep, nearest - kHair, farthest + kHair)));
-    const int last =
-        static_cast<int>(std::floor(std::clamp(depth + steep, nearest - kHair, farthest + kHair)));
-    const bool sure = within > kHair && solid > kAlphaHair && first == last;
+    const int first = static_cast<int>(
+        std::floor(std::clamp(depth - steep, nearest - kReflectHair, farthest + kReflectHair)));
+    const int last = static_cast<int>(
+        std::floor(std::clamp(depth + steep, nearest - kReflectHair, farthest + kReflectHair)));
+    const bool sure = within > kReflectHair && solid > kAlphaHair && first == last;
     for (int k = first; k <= last; ++k) {
       Row& row = rows[k];
       row.unsure = row.unsure || !sure;

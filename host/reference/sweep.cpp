@@ -49,7 +49,7 @@ class Sweep {
         sources_(n_, kSweepBins, 3) {
     const Matrix means = bin_means(basis);
     const Volume& from = *cascade.injected;
-    for_each_cell([&](const glm::ivec3& p) {
+    for_each_cell(n_, [&](const glm::ivec3& p) {
       std::vector<double> c(basis.size());
       for (int channel = 0; channel < 3; ++channel) {
         for (int i = 0; i < basis.size(); ++i) c[i] = from.value(channel, i, p.x, p.y, p.z);
@@ -63,7 +63,7 @@ class Sweep {
   Volume direction(int bin, const SweepBin& of, int part) const {
     const SweepDirection& d = of.directions[part];
     Volume field(n_, 1, 3);
-    for_each_cell([&](const glm::ivec3& along) {
+    for_each_cell(n_, [&](const glm::ivec3& along) {
       glm::ivec3 p;  // upstream ones first
       const std::array<int, 3> order = {of.axis, of.v, of.u};
       for (int i = 0; i < 3; ++i) {
@@ -86,15 +86,6 @@ class Sweep {
   }
 
  private:
-  template <typename Visit>
-  void for_each_cell(Visit visit) const {
-    for (int z = 0; z < n_; ++z) {
-      for (int y = 0; y < n_; ++y) {
-        for (int x = 0; x < n_; ++x) visit(glm::ivec3(x, y, z));
-      }
-    }
-  }
-
   static std::size_t way_of(const glm::ivec3& offset) {
     return static_cast<std::size_t>(offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1));
   }
@@ -103,7 +94,7 @@ class Sweep {
     open_.assign(27, Volume(n_, 1, 1));
     for (const SweepWay& way : ways) {
       Volume& open = open_[way_of(way.offset)];
-      for_each_cell([&](const glm::ivec3& p) {
+      for_each_cell(n_, [&](const glm::ivec3& p) {
         open.at(0, 0, p.x, p.y, p.z) = cascade_.geometry == nullptr
                                            ? 1
                                            : transmitted(*cascade_.geometry, p, -way.offset, way.blocked_by);

@@ -9,7 +9,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/light_kind.hpp"
-#include "support/refuse.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 namespace {

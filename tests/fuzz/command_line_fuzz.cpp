@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "commands/parse.hpp"
+#include "commands/options.hpp"
 #include "support/log.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -13,18 +13,20 @@
 #include <vector>
 
 #include "support/text.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::test {
 
 struct HostileInput {
   std::string name;
-  std::string command;  ///< "render @/a.gltf": arguments of clpv, through the shell; @ is the folder
+  std::string command;  ///< "render @/a.gltf": arguments of clpv; @ is the folder
   int exit_code;
   std::vector<std::string> words;                            ///< on stderr
   std::vector<std::pair<std::string, std::string>> files{};  ///< made in the folder: name, bytes
   std::function<void(const TemporaryFolder&)> prepare{};     ///< what is no plain file
-  std::string surroundings{};                                ///< "HOME=@ XDG_CACHE_HOME=" before the program
+  /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the shell; without, the command
+  /// runs in this process.
+  std::string surroundings{};
 };
 
 inline std::string with_folder(std::string text, const TemporaryFolder& folder) {
@@ -41,8 +43,11 @@ inline void expect_refused(const HostileInput& input) {
   const TemporaryFolder folder;
   for (const auto& [name, bytes] : input.files) folder.write(name, bytes);
   if (input.prepare) input.prepare(folder);
-  const Outcome outcome = run(with_folder("cd @ && " + input.surroundings + " ", folder) + kPatience +
-                              CLPV_PROGRAM + " " + with_folder(input.command, folder));
+  const std::string command = with_folder(input.command, folder);
+  const Outcome outcome = input.surroundings.empty()
+                              ? run_here(command, folder.path())
+                              : run(with_folder("cd @ && " + input.surroundings + " ", folder) + kPatience +
+                                    CLPV_PROGRAM + " " + command);
   EXPECT_EQ(outcome.exit_code, input.exit_code) << outcome.err;
   for (const std::string& word : input.words) EXPECT_THAT(outcome.err, ::testing::HasSubstr(word));
   for (const char* foreign : {"basic_", "std::", "what()", "terminate", "[json.exception.type_error"})

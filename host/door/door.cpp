@@ -1,19 +1,80 @@
 // SPDX-License-Identifier: MIT
-#include "clpv/renderer.hpp"
+// What include/clpv promises to other programs, by what is inside.
+#include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "door/scene_contents.hpp"
+#include "clpv/device.hpp"
+#include "clpv/image.hpp"
+#include "clpv/options.hpp"
+#include "clpv/renderer.hpp"
+#include "clpv/scene.hpp"
+#include "device/device.hpp"
 #include "evaluate/light_field.hpp"
 #include "image/image.hpp"
+#include "image/image_io.hpp"
+#include "image/tone_map.hpp"
+#include "options/render_options.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/given_options.hpp"
 #include "scene/bounds.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
+
+std::vector<DeviceDescription> all_devices() {
+  std::vector<DeviceDescription> all;
+  for (const Device& device : list_devices().devices)
+    all.push_back({device.index, device.name, device.platform, device.driver, device.type, device.missing});
+  return all;
+}
+
+void save_image(const std::filesystem::path& path, const Image& image, float exposure) {
+  const std::string extension = path.extension().string();
+  if (extension == ".exr") return write_exr(path, image);
+  if (extension == ".png") return write_png(path, display_image(image, exposure, ToneMap::aces));
+  throw Error(ExitCode::usage, "{}: found extension '{}', allowed: .exr, .png", path.string(), extension);
+}
+
+Options& Options::set(std::string_view name, std::string_view value) {
+  RenderOptions probe;
+  set_option(probe, name, value);
+  given_[std::string(name)] = value;
+  return *this;
+}
+
+std::vector<OptionDescription> Options::all() {
+  std::vector<OptionDescription> all;
+  for (const OptionInfo& info : list_options(RenderOptions{}))
+    all.push_back({info.name, info.help, info.allowed, info.value});
+  return all;
+}
+
+struct SceneFile::Contents {
+  MovingScene moving;  ///< at 0 s
+};
+
+SceneFile::SceneFile(const std::filesystem::path& path, const std::filesystem::path& model)
+    : contents_(std::make_shared<const Contents>(Contents{MovingScene(path, {model})})) {}
+
+std::vector<std::string> SceneFile::cameras() const {
+  std::vector<std::string> names;
+  for (const Camera& camera : contents_->moving.scene().cameras) names.push_back(camera.name);
+  return names;
+}
+
+bool SceneFile::moves() const {
+  return contents_->moving.moves();
+}
+
+std::vector<std::string> SceneFile::notes() const {
+  return contents_->moving.scene().notes;
+}
+
 namespace {
 
 /// Without a default: a view that is not listed does not compile.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A team of threads in one process, for what is to be found out about teams without MPI.
+// A team of threads in one process, to test without MPI what teams do.
 #pragma once
 
-#include <atomic>
+#include <algorithm>
 #include <barrier>
 #include <cstdlib>
 #include <functional>
@@ -22,44 +22,40 @@ struct Meeting {
   std::vector<std::string> texts;
   std::vector<double> sums;
   std::barrier<> all;
-  std::atomic<std::int64_t> counters[Messages::kCounters] = {};
 };
 
-class ThreadMessages : public Messages {
+class ThreadCommunicator : public Communicator {
  public:
-  ThreadMessages(Meeting& meeting, int rank) : meeting_(meeting), rank_(rank) {}
+  ThreadCommunicator(Meeting& meeting, int rank) : meeting_(meeting), rank_(rank) {}
 
   int rank() const override { return rank_; }
   int size() const override { return meeting_.size; }
   int local_rank() const override { return rank_; }
   int local_size() const override { return meeting_.size; }
   std::string host() const override { return "threads"; }
-  std::int64_t add(int counter, std::int64_t amount) override {
-    return meeting_.counters[counter].fetch_add(amount);
-  }
-  void barrier(const Idle&) override { meeting_.all.arrive_and_wait(); }
-  void sum(double* values, std::size_t count, const Idle&) override {
+  void barrier() override { meeting_.all.arrive_and_wait(); }
+  void sum(double* values, std::size_t count) override {
     if (rank_ == 0) meeting_.sums.assign(count, 0);
     for (int turn = 0; turn < meeting_.size; ++turn) {
-      meeting_.all.arrive_and_wait();
+      barrier();
       for (std::size_t i = 0; turn == rank_ && i < count; ++i) meeting_.sums[i] += values[i];
     }
-    meeting_.all.arrive_and_wait();
+    barrier();
     std::copy_n(meeting_.sums.begin(), count, values);
-    meeting_.all.arrive_and_wait();
+    barrier();
   }
-  std::vector<std::string> gather(const std::string& mine, const Idle&) override {
+  std::vector<std::string> gather(const std::string& mine) override {
     meeting_.texts[static_cast<std::size_t>(rank_)] = mine;
-    meeting_.all.arrive_and_wait();
+    barrier();
     const std::vector<std::string> all = rank_ == 0 ? meeting_.texts : std::vector<std::string>();
-    meeting_.all.arrive_and_wait();
+    barrier();
     return all;
   }
-  void broadcast(std::string& text, const Idle&) override {
+  void broadcast(std::string& text) override {
     if (rank_ == 0) meeting_.texts[0] = text;
-    meeting_.all.arrive_and_wait();
+    barrier();
     text = meeting_.texts[0];
-    meeting_.all.arrive_and_wait();
+    barrier();
   }
   [[noreturn]] void abort(int code) override { std::_Exit(code); }
 
@@ -74,7 +70,7 @@ inline void as_team(int size, const std::function<void(Team&)>& work) {
   std::vector<std::jthread> threads;
   for (int rank = 0; rank < size; ++rank) {
     threads.emplace_back([&meeting, &work, rank] {
-      Team team(std::make_unique<ThreadMessages>(meeting, rank));
+      Team team(std::make_unique<ThreadCommunicator>(meeting, rank));
       work(team);
     });
   }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The program in this process: what it says and its exit code, without the seconds that starting it many times takes. For
+// environment variables, signals and streams that go nowhere: run_program.hpp.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace clpv::test {
+
+/// Words between blanks; '...' keeps blanks together.
+inline std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words;
+  bool quoted = false, begun = false;
+  for (const char c : text) {
+    if (c == '\'') quoted = !quoted;
+    if (c == ' ' && !quoted) {
+      begun = false;
+      continue;
+    }
+    if (!begun) words.emplace_back();
+    begun = true;
+    if (c != '\'') words.back() += c;
+  }
+  return words;
+}
+
+/// `clpv arguments`, in that folder.
+inline Outcome run_here(std::string_view arguments, const std::filesystem::path& folder = ".") {
+  std::vector<std::string> words = words_of(arguments);
+  words.insert(words.begin(), "clpv");
+  std::vector<const char*> pointers;
+  for (const std::string& word : words) pointers.push_back(word.c_str());
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  Outcome outcome;
+  outcome.exit_code = run_program(static_cast<int>(pointers.size()), pointers.data());
+  outcome.out = ::testing::internal::GetCapturedStdout();
+  outcome.err = ::testing::internal::GetCapturedStderr();
+  std::filesystem::current_path(before);
+  return outcome;
+}
+
+}  // namespace clpv::test
