@@ -28,7 +28,7 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
 #define CLPV_OFFSET(axis) ((axis) == 0 ? dx : ((axis) == 1 ? dy : dz))
   const int layer = (sign > 0 ? -1 : CLPV_GRID) + CLPV_OFFSET(across);
   const int r = row + CLPV_OFFSET(row_axis), c = column + CLPV_OFFSET(column_axis);
-  const int pitch = CLPV_SHELL_PITCH(shell), next = shell.side * pitch;
+  const int pitch = CLPV_SWEEP_SHELL_PITCH_OF(shell.side), next = shell.side * pitch;
   const int from = swept / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
   CLPV_BUFFER_IN light = kept + clpv_shell_at(shell, from, face, 0, CLPV_LOWER(r) - CLPV_SHELL_FIRST(shell, row_axis),
                                                      CLPV_LOWER(c) - CLPV_SHELL_FIRST(shell, column_axis));
