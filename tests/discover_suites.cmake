@@ -4,6 +4,7 @@
 #
 #   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -P discover_suites.cmake
 #
+# PATH begins with /usr/bin: drawing takes Debian's Python, which has the modules it needs.
 # LONG_SUITES begin first, so that none of them is left to run alone at the end.
 cmake_minimum_required(VERSION 3.22)
 set(LONG_SUITES Killed Names/EveryBasis HostileSurroundings TuneProgram Names/PropagateKernels Starved HostileCommandLines
@@ -18,6 +19,7 @@ foreach(line IN LISTS lines)
     set(cost 100)
   endif()
   string(APPEND text "add_test([[${suite}]] [[${PROGRAM}]] [[--gtest_filter=${suite}.*]])\n"
-    "set_tests_properties([[${suite}]] PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT CLPV_PROGRAM_CACHE=off)\n")
+    "set_tests_properties([[${suite}]] PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT CLPV_PROGRAM_CACHE=off
+    ENVIRONMENT_MODIFICATION PATH=path_list_prepend:/usr/bin)\n")
 endforeach()
 file(WRITE ${OUTPUT} "${text}")
