@@ -122,7 +122,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {quality + "--vary grid", {"vary grid", "OPTION=a,b,c"}},
                        {quality + "--vary width=8,16", {"--vary", "one size"}},
                        {quality + "--view inside", {"--view", "inside"}},
-                       {quality + "--camera nobody --cache @/c", {"nobody", "allowed"}},
+                       {quality + "--camera nobody --cache @/c", {"nobody", "there are"}},
                        {truth + "-o @/out.exr --spp 0", {"--spp"}},
                        {truth + "-o @/out.exr --noise 0", {"--noise"}},
                        {truth + "-o @/out.exr --spp 4 --noise 0.1", {"--spp", "--noise"}},

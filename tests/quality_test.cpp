@@ -10,6 +10,7 @@
 
 #include "evaluate/quality_report.hpp"
 #include "support/error.hpp"
+#include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 
 namespace clpv::quality_test {
@@ -131,43 +132,14 @@ TEST(QualityStore, DamagedCellsAreMeasuredAnew) {
 
 /// A floor and a wall, both 4 x 4 m, lit from the front.
 void write_room(const test::TemporaryFolder& folder) {
-  // Positions of both quads, then 16-bit indices.
-  const nlohmann::json gltf = {
-      {"asset", {{"version", "2.0"}}},
-      {"scene", 0},
-      {"scenes", {{{"nodes", {0, 1}}}}},
-      {"nodes",
-       {{{"mesh", 0}},
-        {{"mesh", 0}, {"rotation", {0.70710678, 0, 0, 0.70710678}}, {"translation", {0, 0, -2}}}}},
-      {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
-      {"accessors",
-       {{{"bufferView", 0},
-         {"componentType", 5126},
-         {"count", 4},
-         {"type", "VEC3"},
-         {"min", {-2, 0, -2}},
-         {"max", {2, 0, 2}}},
-        {{"bufferView", 1}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}}},
-      {"bufferViews",
-       {{{"buffer", 0}, {"byteLength", 48}}, {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}}},
-      {"buffers",
-       {{{"byteLength", 60},
-         {"uri",
-          "data:application/octet-stream;base64,"
-          "AAAAwAAAAAAAAADAAAAAwAAAAAAAAABAAAAAQAAAAAAAAABAAAAAQAAAAAAAAADAAAABAAIAAAACAAMA"}}}}};
-  const auto camera = [](const char* name, double x) {
-    return nlohmann::json{
-        {"name", name}, {"eye", {x, 1.5, 3}}, {"target", {0, 0.5, -1}}, {"vertical_fov_degrees", 60}};
-  };
-  const nlohmann::json scene = {
-      {"model", "room.gltf"},
-      {"metres_per_unit", 1},
-      {"cameras", {camera("left", -1), camera("right", 1)}},
-      {"lights",
-       {{{"name", "sun"}, {"kind", "directional"}, {"direction", {0, -1, -0.5}}, {"illuminance_lux", 5}}}},
-      {"cascades", {{"count", 1}, {"size_metres", 20}}}};
-  folder.write("room.gltf", gltf.dump());
-  folder.write("room.json", scene.dump());
+  test::GltfBuilder room;
+  room.square(2);
+  room.add("nodes", {{"mesh", 0}, {"rotation", {0.70710678, 0, 0, 0.70710678}}, {"translation", {0, 0, -2}}});
+  room.write(folder);
+  folder.write("room.json", R"({"model": "model.gltf", "cascades": {"count": 1, "size_metres": 20},
+    "cameras": [{"name": "left", "eye": [-1, 1.5, 3], "target": [0, 0.5, -1]},
+                {"name": "right", "eye": [1, 1.5, 3], "target": [0, 0.5, -1]}],
+    "lights": [{"name": "sun", "kind": "directional", "direction": [0, -1, -0.5], "illuminance_lux": 5}]})");
 }
 
 class QualityCommand : public ::testing::Test {

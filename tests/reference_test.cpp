@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
+#include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 
 namespace clpv::reference_test {
@@ -16,36 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-/// A floor of 4 x 4 m at y = 0, facing up (positions, then 16-bit indices), and without its mesh an empty room.
-std::string floor_gltf(bool with_floor) {
-  nlohmann::json gltf = {
-      {"asset", {{"version", "2.0"}}},
-      {"scenes", {{{"nodes", nlohmann::json::array()}}}},
-      {"scene", 0},
-  };
-  if (!with_floor) return gltf.dump();
-  gltf["scenes"][0]["nodes"] = {0};
-  gltf["nodes"] = {{{"mesh", 0}}};
-  gltf["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}};
-  gltf["accessors"] = {{{"bufferView", 0},
-                        {"componentType", 5126},
-                        {"count", 4},
-                        {"type", "VEC3"},
-                        {"min", {-2, 0, -2}},
-                        {"max", {2, 0, 2}}},
-                       {{"bufferView", 1}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}};
-  gltf["bufferViews"] = {{{"buffer", 0}, {"byteLength", 48}},
-                         {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}};
-  gltf["buffers"] = {{{"byteLength", 60},
-                      {"uri",
-                       "data:application/octet-stream;base64,"
-                       "AAAAwAAAAAAAAADAAAAAwAAAAAAAAABAAAAAQAAAAAAAAABAAAAAQAAAAAAAAADAAAABAAIAAAACAAMA"}}};
-  return gltf.dump();
-}
-
 nlohmann::json floor_scene() {
-  return {{"model", "floor.gltf"},
-          {"metres_per_unit", 1},
+  return {{"model", "model.gltf"},
           {"cameras",
            {{{"name", "down"}, {"eye", {0, 1, 0}}, {"target", {0.01, 0, 0}}, {"vertical_fov_degrees", 90}}}},
           {"lights",
@@ -55,8 +28,10 @@ nlohmann::json floor_scene() {
 class ReferenceCommand : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_.write("floor.gltf", floor_gltf(true));
-    folder_.write("empty.gltf", floor_gltf(false));
+    test::GltfBuilder floor;
+    floor.square(2);
+    floor.write(folder_);
+    folder_.write("empty.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "scene": 0})");
     folder_.write("floor.json", floor_scene().dump());
   }
 

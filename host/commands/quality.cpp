@@ -180,7 +180,6 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
 
 void run(const Options& options, Shared& shared) {
   Team& team = shared.team();
-  check_models(options.subjects);
   const std::vector<Variant> variants = variants_of(options);
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   for (const std::string& output : {options.json, options.csv}) {

@@ -48,16 +48,13 @@ std::filesystem::path quality_cache(const std::string& given) {
   throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
 }
 
-void check_models(const QualitySubjects& given) {
+std::vector<Subject> load_subjects(const QualitySubjects& given) {
   for (const std::string& model : given.models) {
     const auto meant = [&](const std::string& scene) { return !path_in(model, scene).empty(); };
     if (given.scenes.size() == 1 || std::ranges::any_of(given.scenes, meant)) continue;
     throw Error(ExitCode::usage,
                 "--model {}: allowed with several scenes: STEM=PATH, STEM that of a scene's file", model);
   }
-}
-
-std::vector<Subject> load_subjects(const QualitySubjects& given) {
   std::vector<Subject> subjects;
   for (const std::string& path : given.scenes) {
     Subject& subject = subjects.emplace_back();

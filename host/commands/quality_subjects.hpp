@@ -34,10 +34,8 @@ struct Subject {
 /// where there is neither.
 std::filesystem::path quality_cache(const std::string& given);
 
-/// Throws Error(usage) for a model that belongs to none of the scenes.
-void check_models(const QualitySubjects& given);
-
-/// Loads the scenes as they are at that instant, without truths. Throws like load_scene, and Error(usage) for a camera that no scene has.
+/// Loads the scenes as they are at that instant, without truths. Throws like load_scene, and Error(usage) for a
+/// camera that no scene has or a model that belongs to none.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
 /// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced. By all ranks.

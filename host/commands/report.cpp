@@ -148,7 +148,6 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
 }
 
 void run(const Options& options, const Shared& shared) {
-  check_models(options.subjects);
   create_folder("DIR", options.folder);
   const fs::path output = fs::path(options.folder) / "index.html";
   check_writable(output);

@@ -82,7 +82,8 @@ SequenceTimes read_times(const std::filesystem::path& file, int frames) {
   if (!text) return {};
   SequenceTimes times;
   try {
-    for (const json& frame : json::parse(*text).at("frames")) {
+    const json before = json::parse(*text);
+    for (const json& frame : before.at("frames")) {
       summary_of({&frame});  // throws where a field that is summed up is missing
       frame.at("time").get<double>(), frame.at("first").get<bool>();
       if (const int number = frame.at("frame"); number < frames) times[number] = frame;

@@ -77,6 +77,13 @@ struct GltfBuilder {
     return mesh({{"POSITION", accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})}}, std::move(more));
   }
 
+  /// A square at y = 0, facing up, of twice that edge round the origin, without normals.
+  json& square(float half) {
+    const int corners =
+        accessor<float>("VEC3", {-half, 0, -half, -half, 0, half, half, 0, half, half, 0, -half});
+    return mesh({{"POSITION", corners}}, {{"indices", accessor<std::uint8_t>("SCALAR", {0, 1, 2, 0, 2, 3})}});
+  }
+
   void finish(const std::string& uri) {
     if (binary.empty()) return;
     document["buffers"] = {{{"byteLength", binary.size()}}};
