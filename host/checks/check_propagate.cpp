@@ -152,7 +152,7 @@ void check_formats(Session& session, const CheckScope& scope, CheckResults& resu
 }  // namespace
 
 CheckResults check_propagate(Session& session, const CheckScope& scope) {
-  // One basis with mirrors and orthogonal, one with mirrors alone, one with neither in full; of the others each basis and
+  // One orthogonal basis, one of antipodal centres and one of neither kind in full; of the others each basis and
   // each transport, not each pair: building kernels is what takes the time.
   const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
   CheckResults results;
