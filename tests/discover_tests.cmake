@@ -5,7 +5,7 @@
 #   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -DCACHE=FOLDER -P discover_tests.cmake
 #
 # All take compiled programs from CACHE, and leave theirs there: neither the user's nor, where POCL_CACHE_DIR is not set, PoCL's.
-# LONG begin first, so that none of them is left to run alone at the end.
+# PATH begins with /usr/bin: drawing takes Debian's Python, which has the modules it needs. LONG begin first, so that none of them is left to run alone at the end.
 cmake_minimum_required(VERSION 3.22)
 set(LONG killed drawing starved bench soak quality hostile_surroundings sequence propagate frame gather inject)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
@@ -32,6 +32,7 @@ foreach(stem IN LISTS stems)
   endif()
   list(JOIN filter_${stem} ":" filter)
   string(APPEND text "add_test([[${stem}]] [[${PROGRAM}]] [[--gtest_filter=${filter}]])\n"
-    "set_tests_properties([[${stem}]] PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]])\n")
+    "set_tests_properties([[${stem}]] PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]]\n"
+    "  ENVIRONMENT_MODIFICATION PATH=path_list_prepend:/usr/bin)\n")
 endforeach()
 file(WRITE ${OUTPUT} "${text}")
