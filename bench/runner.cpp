@@ -187,9 +187,10 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
 }
 
 Results run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
+  const std::vector<Group> groups = suite.groups(session, options.suite);  // cases refer to what they keep
   std::vector<std::vector<Case>> wanted;
   std::size_t count = 0;
-  for (const Group& group : suite.groups(session, options.suite)) {
+  for (const Group& group : groups) {
     wanted.push_back(filtered(group.cases(), options.filter));
     count += wanted.back().size();
   }

@@ -101,36 +101,10 @@ TEST(BenchCompare, RefusesWhatIsNoReport) {
       Error);
 }
 
-/// The paper's Table 1 as its page has it: small/medium/big of injection, the same of propagation, light buffer.
-struct PublishedLine {
-  const char* basis;
-  bool shadows;
-  const char* cells;
-};
-constexpr PublishedLine kPublishedLines[] = {{"sh2", true, "2.028 2.292 2.339 2.241 2.565 2.275 1.086"},
-                                             {"srbf4", true, "2.090 2.314 2.351 4.139 4.974 4.200 1.214"},
-                                             {"srbf8v2", true, "3.544 4.488 4.299 9.663 10.602 9.386 1.723"},
-                                             {"sh2", false, "2.025 2.294 2.340 1.957 2.125 1.986 1.135"},
-                                             {"srbf4", false, "2.086 2.281 2.344 3.183 3.797 3.177 1.206"},
-                                             {"srbf8v2", false, "3.511 4.460 4.276 7.427 7.794 7.019 1.721"}};
-
-TEST(BenchPublished, HoldsAllCellsOfTheTable) {
-  int cells = 0;
-  for (const PublishedLine& line : kPublishedLines) {
-    std::istringstream text(line.cells);
-    const auto expect = [&](Pass pass, std::optional<int> cascade) {
-      double printed = 0;
-      text >> printed;
-      const auto held = published_ms(pass, line.basis, line.shadows, cascade);
-      ASSERT_TRUE(held.has_value());
-      EXPECT_EQ(*held, printed) << line.basis << ' ' << line.shadows << ' ' << name_of(pass);
-      ++cells;
-    };
-    for (int cascade = 0; cascade < 3; ++cascade) expect(Pass::inject_light, cascade);
-    for (int cascade = 0; cascade < 3; ++cascade) expect(Pass::propagate, cascade);
-    expect(Pass::gather, std::nullopt);
-  }
-  EXPECT_EQ(cells, 42);
+TEST(BenchPublished, CellsAreThoseOfTheTable) {
+  EXPECT_EQ(published_ms(Pass::inject_light, "sh2", true, 1), 2.292);
+  EXPECT_EQ(published_ms(Pass::propagate, "srbf8v2", false, 2), 7.019);
+  EXPECT_EQ(published_ms(Pass::gather, "srbf4", true, std::nullopt), 1.214);
   EXPECT_FALSE(published_ms(Pass::inject_geometry, "sh2", true, 0));
   EXPECT_FALSE(published_ms(Pass::propagate, "sh2", true, 3));
   EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));

@@ -30,7 +30,7 @@ using Variant = std::vector<std::pair<std::string, std::string>>;
 /// Throws Error(usage) where an option comes twice.
 std::vector<Variant> combinations(const std::vector<VariedOption>& varied);
 
-/// "basis=sh2 transport=upwind"
+/// "basis=sh2 transport=exact"
 std::string describe(const Variant& variant);
 
 /// What one variant makes of one view of a scene.
