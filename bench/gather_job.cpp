@@ -14,7 +14,7 @@
 namespace clpv::bench {
 namespace {
 
-struct Gathering {
+struct GatherJob {
   std::unique_ptr<Basis> basis;
   GatherOptions options;
   std::vector<ClpvGrid> grids;
@@ -23,7 +23,7 @@ struct Gathering {
   Gatherer gatherer;
   Buffer irradiance;
 
-  Gathering(Session& session, const Variant& v)
+  GatherJob(Session& session, const Variant& v)
       : basis(make_basis(v.options)),
         options(gather_options(v.options)),
         gatherer(session, *basis, v.options.transport, with_filter(options, v.filtered)) {}
@@ -50,7 +50,7 @@ glm::dvec3 position(const ClpvView& view, std::size_t pixel, double depth) {
 }
 
 /// Irradiance of every kCheckedPixels-th pixel, three channels each.
-std::vector<double> twin_of(const Gathering& p, TransportKind transport, Inputs& inputs,
+std::vector<double> twin_of(const GatherJob& p, TransportKind transport, Inputs& inputs,
                             const SurfaceImage& camera) {
   std::vector<reference::Volume> volumes;
   std::vector<reference::Cascade> cascades;
@@ -87,7 +87,7 @@ Deviation compare(const std::vector<cl_float4>& device, const std::vector<double
 
 Job gather_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
-  const auto p = std::make_shared<Gathering>(session, variant);
+  const auto p = std::make_shared<GatherJob>(session, variant);
   p->grids = bench.inputs().grids();
   for (std::size_t c = 0; c < p->grids.size(); ++c) {
     p->volumes.push_back(std::make_unique<Volume>(session,

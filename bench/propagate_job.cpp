@@ -15,8 +15,6 @@
 namespace clpv::bench {
 namespace {
 
-constexpr double kChannels = 3;
-
 /// All that one propagation needs, alive as long as its job.
 struct Propagation {
   Variant variant;

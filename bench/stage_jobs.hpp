@@ -18,6 +18,8 @@
 
 namespace clpv::bench {
 
+inline constexpr double kChannels = 3;  // red, green, blue
+
 /// What the jobs of a suite share.
 struct Bench {
   Session& session;

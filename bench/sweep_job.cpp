@@ -17,8 +17,6 @@
 namespace clpv::bench {
 namespace {
 
-constexpr double kChannels = 3;
-
 struct Sweeping {
   Variant variant;
   std::size_t cascade;
@@ -95,7 +93,7 @@ Cost cost_of(const Sweeping& p) {
   return cost;
 }
 
-std::string twin_key(const Variant& v) {
+std::string sweep_twin_key(const Variant& v) {
   const RenderOptions& o = v.options;
   return fmt::format("sweep {} {} {} {} {} {}", o.basis, name_of(o.directions), name_of(o.blocking),
                      o.occlusion, o.grid, v.cascade.value_or(0));
@@ -128,7 +126,7 @@ Job sweep_job(Bench& bench, const Variant& variant) {
   job.run = [p] { p->run(); };
   job.verify = [p, &bench] {
     const auto twin =
-        bench.twin(twin_key(p->variant), [&] { return swept_twin(bench.inputs(), p->variant); });
+        bench.twin(sweep_twin_key(p->variant), [&] { return swept_twin(bench.inputs(), p->variant); });
     return compare_volumes(p->accumulated.read(bench.session), *twin, p->options.grid,
                            reference::tolerance_in("sweep", p->options.format));
   };

@@ -79,7 +79,7 @@ const Row* native_row(const std::vector<Row>& rows, const Row& row) {
   return found == rows.end() || row.stage == kNative ? nullptr : &*found;
 }
 
-std::string table(const std::vector<Row>& rows) {
+std::string baseline_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string head = fmt::format(
       "{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>10} {:>9} {:>9}\n", "row", width, "median ms",
@@ -110,7 +110,7 @@ Suite baseline_suite() {
             const auto bench = make_bench(session, options, options.settings);
             return std::vector<Group>{{[bench, options] { return cases(*bench, options); }}};
           },
-          table};
+          baseline_table};
 }
 
 }  // namespace clpv::bench

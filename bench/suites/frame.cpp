@@ -161,7 +161,7 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   return result;
 }
 
-std::string table(const std::vector<Row>& rows) {
+std::string frame_table(const std::vector<Row>& rows) {
   std::string text =
       fmt::format("{:<62} {:>10} {:>9} {:>9} {:>9} {:>7}\n", "row", "median ms", "p95", "max", "mad", "fps");
   for (const Row& row : rows) {
@@ -193,7 +193,7 @@ Suite frame_suite() {
         }
         return groups;
       },
-      table};
+      frame_table};
 }
 
 }  // namespace clpv::bench

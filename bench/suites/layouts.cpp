@@ -46,7 +46,7 @@ const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
   return nullptr;
 }
 
-std::string table(const std::vector<Row>& rows) {
+std::string layouts_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string text =
       fmt::format("{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
@@ -88,7 +88,7 @@ Suite layouts_suite() {
         add({kGather, false}, bases);
         return groups;
       },
-      table};
+      layouts_table};
 }
 
 }  // namespace clpv::bench

@@ -39,7 +39,7 @@ double wall_of(const std::vector<Row>& rows, const std::string& name) {
   return found == rows.end() || found->status == Status::unsupported ? 0 : found->wall_ms;
 }
 
-std::string table(const std::vector<Row>& rows) {
+std::string rasterize_table(const std::vector<Row>& rows) {
   constexpr std::size_t kWidth = 28;
   const std::string text =
       fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", kWidth, "wall ms", "mad",
@@ -61,7 +61,7 @@ Suite rasterize_suite() {
           [](Session& session, const SuiteOptions& options) {
             return std::vector<Group>{{[&session, options] { return cases(session, options); }}};
           },
-          table};
+          rasterize_table};
 }
 
 }  // namespace clpv::bench

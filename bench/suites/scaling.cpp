@@ -156,7 +156,7 @@ std::string a_cell_step(const Row& row) {
   return fmt::format("{:.3f}", row.times.median * 1e6 / (std::pow(o.grid, 3) * o.iterations));
 }
 
-std::string table(const std::vector<Row>& rows) {
+std::string scaling_table(const std::vector<Row>& rows) {
   std::map<std::pair<std::string, std::string>, std::pair<std::vector<double>, std::vector<double>>> all;
   constexpr std::size_t kWidth = 44;
   std::string text = fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>14}\n", "row", kWidth, "median ms", "mad",
@@ -197,7 +197,7 @@ Suite scaling_suite() {
                                                                  units_case(session, options, basis, 2)};
                                       }}};
           },
-          table};
+          scaling_table};
 }
 
 }  // namespace clpv::bench

@@ -160,7 +160,7 @@ std::string part_text(const Measured& measured, Part part, bool shadows) {
   return shadows ? text + line_text("with geometry volume", with_geometry) : text;
 }
 
-std::string table(const std::vector<Row>& rows) {
+std::string table1_table(const std::vector<Row>& rows) {
   const Measured measured(rows);
   std::string text = head(measured.bases());
   for (const Part part : {Part::published, Part::constants}) {
@@ -213,7 +213,7 @@ Suite table1_suite() {
             }
             return groups;
           },
-          table, "scenes/atrium.json"};
+          table1_table, "scenes/atrium.json"};
 }
 
 }  // namespace clpv::bench

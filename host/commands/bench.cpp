@@ -20,7 +20,7 @@
 #include "support/output_file.hpp"
 
 namespace clpv {
-namespace {
+namespace bench_command {
 
 struct Options {
   std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
@@ -161,12 +161,13 @@ void run(Options options, const Shared& shared) {
   judge(results.rows);
 }
 
-}  // namespace
+}  // namespace bench_command
 
 void add_bench(CLI::App& app, Shared& shared) {
+  using namespace bench_command;
   CLI::App* command =
       app.add_subcommand("bench", "Time stages and frames on this device, and check what was timed");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<bench_command::Options>();
   std::string suites = "what to time:";
   for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
   command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));

@@ -20,7 +20,7 @@
 #include "support/progress.hpp"
 
 namespace clpv {
-namespace {
+namespace check_command {
 
 struct Options {
   std::vector<Stage> only;
@@ -100,12 +100,13 @@ void run(const Options& options, const Shared& shared) {
                 session.device().name);
 }
 
-}  // namespace
+}  // namespace check_command
 
 void add_check(CLI::App& app, Shared& shared) {
+  using namespace check_command;
   CLI::App* command =
       app.add_subcommand("check", "Hold every stage's kernels against double-precision twins on this device");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<check_command::Options>();
   add_choices(*command, "--stage", options->only, "only these stages; default: all");
   command->add_flag("--thorough", options->thorough,
                     "every basis with every choice of lobes, tables, transport and state; takes minutes");

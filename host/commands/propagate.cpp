@@ -18,7 +18,7 @@
 #include "volume/volume_files.hpp"
 
 namespace clpv {
-namespace {
+namespace propagate_command {
 
 struct Source {
   glm::ivec3 at{0};
@@ -195,12 +195,13 @@ void run(const Options& options, const Shared& shared) {
   session.store_programs();
 }
 
-}  // namespace
+}  // namespace propagate_command
 
 void add_propagate(CLI::App& app, Shared& shared) {
+  using namespace propagate_command;
   CLI::App* command =
       app.add_subcommand("propagate", "Propagate sources in an empty grid; energy of each step as JSON [W]");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<propagate_command::Options>();
   command
       ->add_option_function<std::string>(
           "--preset",

@@ -30,7 +30,7 @@
 #include "support/progress.hpp"
 
 namespace clpv {
-namespace {
+namespace quality_command {
 
 struct Options {
   QualitySubjects subjects;
@@ -239,12 +239,13 @@ void add_options(CLI::App& command, Options& options) {
   }
 }
 
-}  // namespace
+}  // namespace quality_command
 
 void add_quality(CLI::App& app, Shared& shared) {
+  using namespace quality_command;
   CLI::App* command =
       app.add_subcommand("quality", "Errors against path tracing, and times, of many variants");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<quality_command::Options>();
   add_options(*command, *options);
   command->footer(
       "nrmse: root mean square error over the reference's root mean square, over the valid pixels; best "

@@ -15,7 +15,7 @@
 #include "support/output_file.hpp"
 
 namespace clpv {
-namespace {
+namespace query_command {
 
 struct Options {
   RenderRequest request;
@@ -58,12 +58,13 @@ void run(const Options& options, const Shared& shared) {
   session.store_programs();
 }
 
-}  // namespace
+}  // namespace query_command
 
 void add_query(CLI::App& app, Shared& shared) {
+  using namespace query_command;
   CLI::App* command =
       app.add_subcommand("query", "Indirect light at points of a file, seen by the camera or not");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<query_command::Options>();
   command
       ->add_option("--points", options->points,
                    "lines of x,y,z,nx,ny,nz: where, in the scene's world [m], and the surface's normal")

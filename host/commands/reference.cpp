@@ -23,7 +23,7 @@
 #include "support/output_file.hpp"
 
 namespace clpv {
-namespace {
+namespace reference_command {
 
 struct Options {
   std::string scene, model, camera, output, stats;
@@ -131,11 +131,12 @@ void add_options(CLI::App& command, Options& options) {
       ->type_name("FILE.json");
 }
 
-}  // namespace
+}  // namespace reference_command
 
 void add_reference(CLI::App& app, Shared& shared) {
+  using namespace reference_command;
   CLI::App* command = app.add_subcommand("reference", "Path-traced truth of a scene, on the CPU");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<reference_command::Options>();
   add_options(*command, *options);
   command->footer(
       "Diffuse surfaces, hard shadows, one ray a pixel through its centre: `clpv compare` holds a rendered "

@@ -22,7 +22,7 @@
 #include "volume/volume_files.hpp"
 
 namespace clpv {
-namespace {
+namespace render_command {
 
 namespace fs = std::filesystem;
 
@@ -134,12 +134,13 @@ void run(const Options& options, const Shared& shared) {
   session.store_programs();
 }
 
-}  // namespace
+}  // namespace render_command
 
 void add_render(CLI::App& app, Shared& shared) {
+  using namespace render_command;
   CLI::App* command =
       app.add_subcommand("render", "Render a scene with indirect light from light propagation volumes");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<render_command::Options>();
   add_render_request(*command, options->request);
   add_shown_options(*command, options->request);
   command

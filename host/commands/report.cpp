@@ -24,7 +24,7 @@
 #include "support/progress.hpp"
 
 namespace clpv {
-namespace {
+namespace report_command {
 
 namespace fs = std::filesystem;
 
@@ -170,12 +170,13 @@ void run(const Options& options, const Shared& shared) {
   fmt::print("{}\n", output.string());
 }
 
-}  // namespace
+}  // namespace report_command
 
 void add_report(CLI::App& app, Shared& shared) {
+  using namespace report_command;
   CLI::App* command = app.add_subcommand(
       "report", "One HTML page: images beside the truth, errors against costs, benchmarks");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<report_command::Options>();
   command->add_option("DIR", options->folder, "where index.html is written")->required();
   command->add_option("SCENE", options->subjects.scenes,
                       "scene files whose views are shown beside path tracing");

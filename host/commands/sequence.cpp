@@ -32,7 +32,7 @@ enum class FrameFormat : unsigned { exr, png };
 template <>
 inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
 
-namespace {
+namespace sequence_command {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
@@ -284,11 +284,12 @@ void run(const Options& options, Shared& shared) {
   if (video) sequence.film(*video);
 }
 
-}  // namespace
+}  // namespace sequence_command
 
 void add_sequence(CLI::App& app, Shared& shared) {
+  using namespace sequence_command;
   CLI::App* command = app.add_subcommand("sequence", "Render a scene that moves, frame by frame");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<sequence_command::Options>();
   command
       ->add_option("-o,--output", options->output,
                    "folder of frame-0000.exr and so on, and of times.json; made where it is not there")
