@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one comparison of results with their twins.
+// The one comparison of results with the CPU reference, and its report as test cases.
 #include "checks/comparison.hpp"
 
 #include <gmock/gmock.h>
@@ -9,10 +9,15 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "checks/junit.hpp"
 #include "reference/inject.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::reference::comparison_test {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 TEST(Comparison, TellsTheWorstAndItsPlace) {
   std::vector<double> twin(2 * 8, 0.5);
@@ -31,7 +36,7 @@ TEST(Comparison, NaNIsWorseThanAnyNumberAndStays) {
   found[2] = NAN;
   found[5] = 1000;
   EXPECT_TRUE(std::isnan(compare_volumes(found, twin, 2).worst));
-  EXPECT_THAT(compare_volumes(found, twin, 2).place, ::testing::HasSubstr("cell 0,1,0"));
+  EXPECT_THAT(compare_volumes(found, twin, 2).place, HasSubstr("cell 0,1,0"));
 }
 
 TEST(Comparison, ATwinOfNothingAllowsNothing) {
@@ -57,6 +62,27 @@ TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
     EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
     EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));
   }
+}
+
+TEST(Junit, TellsStagesCasesAndWhatFailed) {
+  const std::string xml = junit({{"inject", "sh2", 1e-7, 1e-6, ""},
+                                 {"gather", "a<b", 0.5, 1e-6, "cell \"1\" & more"},
+                                 {"gather", "nan", NAN, 1e-6, "cell 2"}},
+                                "A & B");
+  EXPECT_THAT(xml,
+              AllOf(HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"3\" failures=\"2\">"),
+                    HasSubstr("<testsuite name=\"inject\" tests=\"1\" failures=\"0\">"),
+                    HasSubstr("<testsuite name=\"gather\" tests=\"2\" failures=\"2\">"),
+                    HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\"/>"),
+                    HasSubstr("name=\"a&lt;b\">"), HasSubstr("cell &quot;1&quot; &amp; more</failure>")));
+}
+
+TEST(Junit, IsWrittenByTheCheck) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "check.xml").string();
+  const test::Outcome outcome = test::run_here("check --stage sizes --junit " + file);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(test::read_file(file), HasSubstr("<testsuite name=\"sizes\""));
 }
 
 }  // namespace
