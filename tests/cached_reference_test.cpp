@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "support/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -89,12 +89,7 @@ TEST_F(CachedReference, DamagedFilesAreTracedAnew) {
 
 TEST_F(CachedReference, AFolderThatCannotBeIsToldBeforeTracing) {
   temporary_.write("references", "a file where the folder should be");
-  try {
-    get();
-    FAIL() << "traced";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::run_time);
-  }
+  test::error_of(ExitCode::run_time, [&] { get(); });
 }
 
 }  // namespace

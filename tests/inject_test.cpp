@@ -329,17 +329,6 @@ TEST(Inject, ASmallerSurfaceOfMoreSegmentsFollowsALargerOne) {
   EXPECT_EQ(found, light(fresh, smaller));
 }
 
-TEST(Inject, VolumesOfAnotherShapeAreRefused) {
-  const auto basis = make_basis("sh2");
-  Session& session = test_session();
-  Injector injector(session, *basis, {.grid = kGrid});
-  const Surface surface = upload_surface(session, plane(from_above(2, 2, 0.1f), 0));
-  Volume small(session, {kGrid - 1, basis->size(), 3}, "light"),
-      corners(session, {kGrid, basis->size(), 1}, "corners");
-  EXPECT_THROW(injector.inject_light(surface, kCells, small), Error);
-  EXPECT_THROW(injector.inject_geometry(surface, kCells, corners), Error);
-}
-
 TEST(Inject, KernelsAgreeWithTheTwin) {
   expect_passed(reference::check_inject(test_session(), test::few_variants()));
 }

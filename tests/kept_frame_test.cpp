@@ -52,6 +52,7 @@ class KeptFrame : public ::testing::Test {
   static RenderOptions options(const std::function<void(RenderOptions&)>& change) {
     RenderOptions options;
     options.directions = options.coarser_directions = Directions::of24;
+    options.bounces = Bounces::all;
     if (change) change(options);
     options.width = 32, options.height = 18, options.grid = kGrid, options.rsm_size = 64,
     options.shadow_size = 64;
@@ -106,7 +107,7 @@ Passes with(Passes passes, const Passes& more) {
 }
 
 const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light, Pass::propagate};
-const Passes kOfCells{Pass::block, Pass::see};
+const Passes kOfCells{Pass::block, Pass::see, Pass::reflect};
 
 TEST_F(KeptFrame, MakesWhatChanged) {
   Instants at;
@@ -176,42 +177,13 @@ TEST_F(KeptFrame, AnObserverSeesWhatCascadesShare) {
   EXPECT_TRUE(observed() == anew);
 }
 
-/// Light that bounces on.
-class KeptBouncingFrame : public KeptFrame {
- protected:
-  KeptBouncingFrame() : KeptFrame([](RenderOptions& options) { options.bounces = Bounces::all; }) {}
-};
-
-TEST_F(KeptBouncingFrame, MakesWhatChanged) {
-  Instants at;
-  const Passes cells = with(kOfCells, {Pass::reflect});
-  const Passes all = with(with(kOfEveryFrame, kOfLight), cells);
-  EXPECT_EQ(passes(at), all);
-  EXPECT_EQ(passes(at), kOfEveryFrame);
-  at.eye.x += 0.5f * kCell;
-  EXPECT_EQ(passes(at), kOfEveryFrame) << "a camera that moves inside a cell";
-  at.sun = 0.3;
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
-  at.wall = 0.6;
-  EXPECT_EQ(passes(at), all);
-  at.eye.x += kCell;
-  EXPECT_EQ(passes(at),
-            with(with(kOfEveryFrame, cells), {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}));
-  for (int i = 0; i < 5; ++i) {
-    at.eye += glm::vec3(0.6f, 0.0f, -0.55f) * kCell;
-    if (i % 3 == 1) at.sun += 0.1;
-    passes(at);
-  }
-  frame_.forget();
-  EXPECT_EQ(passes(at), all);
-}
-
 /// What the camera sees blocks: what follows from it changes with the view.
 class KeptPublishedFrame : public KeptFrame {
  protected:
   KeptPublishedFrame()
       : KeptFrame([](RenderOptions& options) {
           apply_preset(options, PresetName::paper);
+          options.bounces = Bounces::one;
           options.basis = "sh2", options.layout = Layout::soa, options.lobe_time = LobeTime::host;
           options.iterations = 3;
         }) {}

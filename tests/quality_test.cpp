@@ -10,6 +10,7 @@
 
 #include "evaluate/quality_report.hpp"
 #include "support/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 
@@ -22,14 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Pair;
 
 std::string refusal(const std::string& vary) {
-  try {
-    parse_varied(vary);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    return error.what();
-  }
-  ADD_FAILURE() << vary << " was taken";
-  return {};
+  return test::error_of(ExitCode::usage, [&] { parse_varied(vary); });
 }
 
 TEST(QualityMatrix, EveryCombinationOnceTheLastFastest) {

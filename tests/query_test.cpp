@@ -10,6 +10,7 @@
 #include "pipeline/view.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
@@ -102,15 +103,9 @@ struct PointsFile : ::testing::Test {
   TemporaryFolder folder;
   std::vector<SurfacePoint> read(const std::string& text) { return read_points(folder.write("p.csv", text)); }
   std::string refused(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input);
-      EXPECT_THAT(error.what(), HasSubstr("p.csv"));
-      return error.what();
-    }
-    ADD_FAILURE() << text << " was accepted";
-    return {};
+    const std::string message = error_of(ExitCode::bad_input, [&] { read(text); });
+    EXPECT_THAT(message, HasSubstr("p.csv"));
+    return message;
   }
 };
 

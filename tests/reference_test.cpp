@@ -66,16 +66,6 @@ TEST_F(ReferenceCommand, WritesLayersMetadataAndStats) {
   EXPECT_GT(stats["rays"], 45);
 }
 
-TEST_F(ReferenceCommand, SameSeedSameBytesWhateverTheThreads) {
-  const std::string options = " --width 33 --height 21 --spp 3 --bounces all -o ";
-  for (const auto& [threads, output] : {std::pair{"1", "a.exr"}, {"2", "b.exr"}}) {
-    const test::Outcome outcome =
-        reference("floor.json", std::string("--threads ") + threads + options + file(output));
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  }
-  EXPECT_EQ(test::read_file(file("a.exr")), test::read_file(file("b.exr")));
-}
-
 TEST_F(ReferenceCommand, BackgroundHasNoAlpha) {
   nlohmann::json scene = floor_scene();
   scene["cameras"][0]["target"] = {0.01, 2, 0};

@@ -119,10 +119,6 @@ TEST(View, DirectionalRsmMovesByWholeTexels) {
   }
 }
 
-TEST(View, RsmOfOneTexelIsRefused) {
-  EXPECT_THROW(directional_rsm_view(directional_light({0, -1, 0}), {{0, 0, 0}, 1, 4, {}}, kBounds, 1), Error);
-}
-
 TEST(View, SpotSeesItsConeAndNotMuchMore) {
   const float outer = 0.7f;
   for (const glm::vec3& direction : directions(12)) {

@@ -27,10 +27,10 @@ inline void expect_passed(const reference::CheckResults& results, std::size_t le
   }
 }
 
-/// A check's variants that differ in code, not in numbers alone. Bases: harmonics, centres with mirrors and without, direction
-/// bins. Formats: each layout, and halves.
+/// A check's variants that differ in code, not in numbers alone. Bases: harmonics, centres, direction bins. Formats: each
+/// layout, and halves.
 inline reference::CheckScope few_variants() {
-  return {.bases = {"sh2", "srbf8v2", "srbf4", "bins24"},
+  return {.bases = {"sh2", "srbf4", "bins24"},
           .formats = {{Layout::soa, Storage::float16},
                       {Layout::aos, Storage::float32},
                       {Layout::tiled, Storage::float16},
