@@ -3,7 +3,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "pipeline/scene_buffers.hpp"
-#include "tests/support/animation_fixture.hpp"
+#include "tests/support/bad_input.hpp"
 #include "tests/support/on_device.hpp"
 
 namespace clpv::test::animation_test {

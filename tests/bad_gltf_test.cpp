@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Hostile and broken models: each is refused in words, as exit code 3 (bad_input), before anything of the size it asks for is
 // allocated.
-#include "tests/support/animation_fixture.hpp"
+#include "tests/support/bad_input.hpp"
 
 namespace clpv::test::bad_gltf_test {
 namespace {

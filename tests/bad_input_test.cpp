@@ -15,7 +15,7 @@ TEST_F(BadInputTest, Files) {
   EXPECT_THAT(refusal(folder / "none.gltf"), AllOf(HasSubstr("none.gltf"), HasSubstr("no file")));
   EXPECT_THAT(refusal(folder / "none.json"), HasSubstr("no file"));
   EXPECT_THAT(refusal(folder / "folder.gltf"), HasSubstr("a folder"));
-  EXPECT_THAT(refusal(folder / "zero.gltf"), HasSubstr("no regular file"));
+  EXPECT_THAT(refusal(folder / "zero.gltf"), HasSubstr("not a regular file"));
   EXPECT_THAT(refusal(folder.write("model.obj", "")), AllOf(HasSubstr("'.obj'"), HasSubstr(".json")));
 }
 

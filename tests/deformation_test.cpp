@@ -2,7 +2,7 @@
 // Skins and morph targets against closed forms, still and animated.
 #include <glm/gtc/constants.hpp>
 
-#include "tests/support/animation_fixture.hpp"
+#include "tests/support/bad_input.hpp"
 
 namespace clpv::test::deformation_test {
 namespace {

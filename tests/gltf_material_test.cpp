@@ -2,7 +2,7 @@
 // glTF materials, textures and texture coordinates, feature by feature.
 #include <glm/gtc/constants.hpp>
 
-#include "tests/support/gltf_fixture.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::gltf_material_test {
 namespace {

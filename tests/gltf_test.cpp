@@ -3,7 +3,7 @@
 // out in world space.
 #include <glm/gtc/constants.hpp>
 
-#include "tests/support/gltf_fixture.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::gltf_test {
 namespace {

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "image/image_io.hpp"
-#include "tests/support/base64.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/tiny_images.hpp"
 

@@ -169,8 +169,8 @@ TEST_F(ImageFiles, RefusesWhatIsNoImageOrTooLarge) {
   for (float& value : image.pixels) value /= 400;
   write_png(folder_ / "good.png", image);
   fs::create_directories(folder_ / "folder.exr");
-  EXPECT_NE(refusal("missing.exr").find("no such file"), std::string::npos);
-  EXPECT_NE(refusal("folder.exr").find("not a regular file"), std::string::npos);
+  EXPECT_NE(refusal("missing.exr").find("no file"), std::string::npos);
+  EXPECT_NE(refusal("folder.exr").find("a folder"), std::string::npos);
 
   const std::string exr = read_file(folder_ / "good.exr"), png = read_file(folder_ / "good.png");
   const std::string window("dataWindow\0box2i\0", 17), compression("compression\0compression\0", 24);

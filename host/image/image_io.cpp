@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "image/exr_header.hpp"
 #include "image/image_header.hpp"
 #include "image/memory_reader.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -31,24 +31,6 @@ constexpr std::int64_t kLargestTile = 1024;
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
-}
-
-std::vector<unsigned char> read_bytes(const fs::path& path, const ImageLimits& limits) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) refuse(path, "no such file");
-  if (!fs::is_regular_file(status)) refuse(path, "not a regular file");
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) refuse(path, error.message());
-  if (size > limits.file_bytes) {
-    refuse(path, fmt::format("{} bytes; an image file may have {}", size, limits.file_bytes));
-  }
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
-    refuse(path, "cannot be read");
-  }
-  return bytes;
 }
 
 /// "openexr", "png", "hdr", or empty: by the first bytes, whatever the file is called.
@@ -155,7 +137,7 @@ struct OpenImage {
   OIIO::ImageSpec spec;
 
   OpenImage(const fs::path& path, const ImageLimits& limits)
-      : bytes(read_bytes(path, limits)),
+      : bytes(read_file(path, limits.file_bytes, path.string())),
         format(checked_format(path, bytes)),
         input(OIIO::ImageInput::create(format)) {
     if (!input)

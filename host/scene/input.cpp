@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -69,30 +68,6 @@ std::string shown(std::string_view text) {
   std::string out(text.substr(0, kShown));
   std::replace(out.begin(), out.end(), '\n', ' ');
   return text.size() > kShown ? out + "..." : out;
-}
-
-Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
-  std::error_code failure;
-  const fs::file_status status = fs::status(path, failure);
-  if (!fs::exists(status))
-    refuse(file, place, fmt::format("no file '{}'", path.string()), "an existing file");
-  if (!fs::is_regular_file(status)) {
-    refuse(file, place,
-           fmt::format("'{}', {}", path.string(), fs::is_directory(status) ? "a folder" : "no regular file"),
-           "a regular file");
-  }
-  const std::uint64_t size = fs::file_size(path, failure);
-  if (failure || size > limit) {
-    refuse(file, place, fmt::format("'{}' of {} bytes", path.string(), size),
-           fmt::format("at most {} bytes", limit));
-  }
-  Bytes bytes(size);
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size) {
-    refuse(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
-  }
-  return bytes;
 }
 
 nlohmann::json parse_json(std::string_view text, const std::string& file) {

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "support/error.hpp"
+
 namespace clpv {
 
 namespace fs = std::filesystem;
@@ -16,6 +18,31 @@ std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t most)
   std::ifstream in(path, std::ios::binary);
   std::string bytes(static_cast<std::size_t>(size), '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) return std::nullopt;
+  return bytes;
+}
+
+Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (!fs::exists(status))
+    refuse(file, place, fmt::format("no file '{}'", path.string()), "an existing file");
+  if (!fs::is_regular_file(status)) {
+    refuse(
+        file, place,
+        fmt::format("'{}', {}", path.string(), fs::is_directory(status) ? "a folder" : "not a regular file"),
+        "a regular file");
+  }
+  const std::uint64_t size = fs::file_size(path, failure);
+  if (failure || size > limit) {
+    refuse(file, place, fmt::format("'{}' of {} bytes", path.string(), size),
+           fmt::format("at most {} bytes", limit));
+  }
+  Bytes bytes(size);
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size) {
+    refuse(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
+  }
   return bytes;
 }
 

@@ -9,6 +9,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace clpv {
 
@@ -18,6 +20,13 @@ inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{1}
 /// A regular file's bytes. Nothing where there is none, where it cannot be read, or where it is longer than `most`.
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       std::uintmax_t most = kMostFileBytes);
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A regular file's contents. `place` names who asked for it. Throws Error(bad_input) where it is missing, no
+/// regular file, unreadable, or longer than `limit` bytes.
+Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const std::string& file,
+                std::string_view place = {});
 
 /// $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv; nothing where neither variable is set. Not created.
 std::optional<std::filesystem::path> user_cache_folder();

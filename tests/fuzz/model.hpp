@@ -8,7 +8,6 @@
 
 #include "scene/load.hpp"
 #include "tests/fuzz/fuzz.hpp"
-#include "tests/support/base64.hpp"
 #include "tests/support/tiny_images.hpp"
 
 namespace clpv::fuzz {
