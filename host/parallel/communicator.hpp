@@ -20,8 +20,8 @@ class Communicator {
   virtual int local_size() const = 0;
   virtual std::string host() const = 0;
 
-  virtual void barrier() = 0;                               ///< collective, as are those below
-  virtual void sum(double* values, std::size_t count) = 0;  ///< over all ranks, element by element, in place
+  /// Over all ranks, element by element, in place. Collective, as are those below.
+  virtual void sum(double* values, std::size_t count) = 0;
   virtual std::vector<std::string> gather(
       const std::string& mine) = 0;               ///< by rank, at rank 0; elsewhere empty
   virtual void broadcast(std::string& text) = 0;  ///< from rank 0

@@ -49,8 +49,6 @@ class MpiCommunicator : public Communicator {
     return {name, static_cast<std::size_t>(length)};
   }
 
-  void barrier() override { MPI_Barrier(MPI_COMM_WORLD); }
-
   void sum(double* values, std::size_t count) override {
     for (std::size_t first = 0; first < count; first += kMostAtOnce) {
       const int some = static_cast<int>(std::min(kMostAtOnce, count - first));

@@ -24,7 +24,6 @@ class Alone : public Communicator {
   int local_rank() const override { return 0; }
   int local_size() const override { return 1; }
   std::string host() const override { return "this machine"; }
-  void barrier() override {}
   void sum(double*, std::size_t) override {}
   std::vector<std::string> gather(const std::string& mine) override { return {mine}; }
   void broadcast(std::string&) override {}

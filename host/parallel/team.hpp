@@ -41,7 +41,6 @@ class Team {
   Device device(const std::string& choice) const;
 
   // Collective: all ranks call them in the same order, each from one thread.
-  void barrier() { communicator_->barrier(); }
   void sum(std::span<double> values) { communicator_->sum(values.data(), values.size()); }
   /// By rank, at rank 0; elsewhere empty.
   std::vector<std::string> gather(const std::string& mine) { return communicator_->gather(mine); }

@@ -33,7 +33,6 @@ class ThreadCommunicator : public Communicator {
   int local_rank() const override { return rank_; }
   int local_size() const override { return meeting_.size; }
   std::string host() const override { return "threads"; }
-  void barrier() override { meeting_.all.arrive_and_wait(); }
   void sum(double* values, std::size_t count) override {
     if (rank_ == 0) meeting_.sums.assign(count, 0);
     for (int turn = 0; turn < meeting_.size; ++turn) {
@@ -60,6 +59,8 @@ class ThreadCommunicator : public Communicator {
   [[noreturn]] void abort(int code) override { std::_Exit(code); }
 
  private:
+  void barrier() { meeting_.all.arrive_and_wait(); }
+
   Meeting& meeting_;
   int rank_;
 };
