@@ -75,34 +75,25 @@ void add_basis(CLI::App& app, Shared&) {
   CLI::App* command = app.add_subcommand(
       "basis", "Tell of each basis: conditioning, error of its clamped cosine, energy after 8 and 24 steps");
   auto options = std::make_shared<Options>();
-  CLI::Option* name =
-      command->add_option("name", options->name, "one basis; all, if not given")->type_name("NAME");
-  command
-      ->add_option(
-          "--centres", options->centres_file,
-          "an SRBF set of your own: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "
-          "name and lambda (a number, or one for each centre) may be missing")
-      ->type_name("FILE")
+  CLI::Option* name = add(*command, "name", "NAME", options->name, "one basis; all, if not given");
+  add(*command, "--centres", "FILE", options->centres_file,
+      "an SRBF set of your own: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "
+      "name and lambda (a number, or one for each centre) may be missing")
       ->excludes(name);
   command
       ->add_option("--lambda", options->lambda,
                    "bandwidth of the SRBF kernels, between 0 and 1; a file's own replaces it")
       ->capture_default_str();
-  command->add_option("--axis", options->axis, "axis of the clamped cosine, any length")
-      ->type_name("X,Y,Z")
-      ->capture_default_str();
+  add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
   add_choice(*command, "--lobe", options->lobes.kind,
              "clamped cosine: projected exactly, or along +z and rotated through a table");
   command->add_option("--table-size", options->lobes.table_size, "entries of the table of rotated lobes")
       ->capture_default_str();
   add_search_options(*command, options->search);
   CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
-  command
-      ->add_option(
-          "--figures", options->figures,
-          "draw the paper's figures 2, 3 and 6 into this folder instead: kernels, and lobes as spherical "
-          "plots")
-      ->type_name("DIR")
+  add(*command, "--figures", "DIR", options->figures,
+      "draw the paper's figures 2, 3 and 6 into this folder instead: kernels, and lobes as spherical "
+      "plots")
       ->excludes(json);
   command->callback([options] { run(*options); });
 }

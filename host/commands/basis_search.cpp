@@ -55,12 +55,9 @@ nlohmann::json beside_others(const Basis& found, double lambda, const BasisView&
 
 void add_search_options(CLI::App& command, BasisSearchOptions& options) {
   CLI::Option* search =
-      command
-          .add_option(
-              "--search", options.centres,
-              "look for N centres that hold clamped cosines best, by a descent from each of many starts; the "
-              "same seed gives the same set")
-          ->type_name("N")
+      add(command, "--search", "N", options.centres,
+          "look for N centres that hold clamped cosines best, by a descent from each of many starts; the "
+          "same seed gives the same set")
           ->excludes("name")
           ->excludes("--centres");
   command.add_option("--seed", options.search.seed, "of a search's random starts")
@@ -74,10 +71,8 @@ void add_search_options(CLI::App& command, BasisSearchOptions& options) {
       add_choice(command, "--over", options.over,
                  "cosines that a search is for: along all directions alike, or along the six axes");
   over->needs(search);
-  command
-      .add_option("--weights", options.weights,
-                  "or along directions of their own weights, JSON as of clpv render --dump-normals")
-      ->type_name("FILE")
+  add(command, "--weights", "FILE", options.weights,
+      "or along directions of their own weights, JSON as of clpv render --dump-normals")
       ->needs(search)
       ->excludes(over);
   add_choice(command, "--lambdas", options.search.lambdas,
@@ -88,9 +83,7 @@ void add_search_options(CLI::App& command, BasisSearchOptions& options) {
                   "largest condition number of the Gram matrix that a search may end with")
       ->needs(search)
       ->capture_default_str();
-  command.add_option("-o,--output", options.output, "the set found, for --centres")
-      ->type_name("FILE.json")
-      ->needs(search);
+  add(command, "-o,--output", "FILE.json", options.output, "the set found, for --centres")->needs(search);
 }
 
 void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {

@@ -171,20 +171,16 @@ void add_bench(CLI::App& app, Shared& shared) {
   std::string suites = "what to time:";
   for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
   command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
-  command
-      ->add_option("--scene", options->scene,
-                   "scene file or model; default: a hall made on the spot, and for table1 scenes/atrium.json")
-      ->type_name("SCENE");
-  command->add_option("--model", options->model, "replaces the scene file's model")->type_name("PATH");
-  command->add_option("--camera", options->bench.suite.camera, "camera by name; default: the scene's first")
-      ->type_name("NAME");
-  command
-      ->add_option("--basis", options->bench.suite.bases,
-                   "bases, between commas; table1 adds them to its own")
-      ->delimiter(',')
-      ->type_name("NAME");
-  command->add_option("--filter", options->filter, "only rows in whose name this regular expression is found")
-      ->type_name("REGEX");
+  add(*command, "--scene", "SCENE", options->scene,
+      "scene file or model; default: a hall made on the spot, and for table1 scenes/atrium.json");
+  add(*command, "--model", "PATH", options->model, "replaces the scene file's model");
+  add(*command, "--camera", "NAME", options->bench.suite.camera,
+      "camera by name; default: the scene's first");
+  add(*command, "--basis", "NAME", options->bench.suite.bases,
+      "bases, between commas; table1 adds them to its own")
+      ->delimiter(',');
+  add(*command, "--filter", "REGEX", options->filter,
+      "only rows in whose name this regular expression is found");
   command->add_option("--repetitions", options->bench.repetitions, "how often each row is timed")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMostRepetitions));
@@ -193,18 +189,12 @@ void add_bench(CLI::App& app, Shared& shared) {
                    "table|json|csv, or github-action: name, unit and value of each row, smaller is better")
       ->capture_default_str()
       ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
-  command
-      ->add_option(
-          "--log", options->log,
-          "rows as they begin and end, a line of JSON each: what a crash, or a kernel that hangs, leaves")
-      ->type_name("FILE.jsonl");
-  command->add_option("-o,--out", options->out, "file to write in place of stdout")->type_name("FILE");
-  command
-      ->add_option("--compare", options->compare,
-                   "JSON of an earlier run: prints what changed, and by what spread")
-      ->type_name("OLD.json");
-  command->add_option("--plot", options->plot, "charts of the rows as SVG and PNG, by matplotlib")
-      ->type_name("DIR");
+  add(*command, "--log", "FILE.jsonl", options->log,
+      "rows as they begin and end, a line of JSON each: what a crash, or a kernel that hangs, leaves");
+  add(*command, "-o,--out", "FILE", options->out, "file to write in place of stdout");
+  add(*command, "--compare", "OLD.json", options->compare,
+      "JSON of an earlier run: prints what changed, and by what spread");
+  add(*command, "--plot", "DIR", options->plot, "charts of the rows as SVG and PNG, by matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

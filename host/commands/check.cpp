@@ -111,9 +111,8 @@ void add_check(CLI::App& app, Shared& shared) {
   command->add_flag("--thorough", options->thorough,
                     "every basis with every choice of lobes, tables, transport and state; takes minutes");
   command->add_flag("--json", options->json, "JSON on stdout");
-  command
-      ->add_option("--junit", options->junit, "every comparison as a test case, for what shows test results")
-      ->type_name("FILE.xml");
+  add(*command, "--junit", "FILE.xml", options->junit,
+      "every comparison as a test case, for what shows test results");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "clpv/version.hpp"
+#include "commands/options.hpp"
 #include "device/cl_error.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
@@ -117,9 +118,8 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.name("clpv");
   app.set_version_flag("--version", "clpv " + version());
   app.set_help_all_flag("--help-all", "help of all commands");
-  app.add_option("--device", shared.device,
-                 "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)")
-      ->type_name("DEVICE");
+  add(app, "--device", "DEVICE", shared.device,
+      "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)");
   app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
   app.add_flag("-v,--verbose", shared.verbosity, "tell more; twice: still more");
   app.require_subcommand(1);

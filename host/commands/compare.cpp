@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/options.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "support/error.hpp"
@@ -26,12 +27,8 @@ bool is_png(const std::filesystem::path& path) {
 
 void check_output(const std::string& output) {
   if (output.empty()) return;
-  const std::filesystem::path path(output);
-  if (!is_png(path) && path.extension() != ".exr") {
-    throw Error(ExitCode::usage, "{}: extension '{}'; a difference image is .png or .exr", output,
-                path.extension().string());
-  }
-  check_writable(path);
+  require_extension("--output", output, {".png", ".exr"});
+  check_writable(output);
 }
 
 void write_difference(const std::string& output, const Image& difference) {
@@ -61,15 +58,12 @@ void add_compare(CLI::App& app, Shared&) {
   auto options = std::make_shared<CompareOptions>();
   command->add_option("A", options->a, "the image: .exr, .png or .hdr")->required();
   command->add_option("B", options->b, "its reference, of the same size")->required();
-  command->add_option("-o,--output", options->output, "difference image |A-B| x amplify, .png or .exr")
-      ->type_name("FILE");
+  add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
-  command
-      ->add_option("--layer", options->layer,
-                   "compare this layer of both EXR files (default: the unnamed one)")
-      ->type_name("NAME");
+  add(*command, "--layer", "NAME", options->layer,
+      "compare this layer of both EXR files (default: the unnamed one)");
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
       "linear in EXR\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "commands/options.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,6 +117,13 @@ void add_some_frame_options(CLI::App& command, RenderOptions& options,
 
 nlohmann::json to_json(const Device& device) {
   return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
+}
+
+void require_extension(const std::string& option, const std::filesystem::path& file,
+                       const std::vector<std::string>& allowed) {
+  if (std::ranges::count(allowed, file.extension().string()) > 0) return;
+  throw Error(ExitCode::usage, "{} {}: found extension '{}', allowed: {}", option, file.string(),
+              file.extension().string(), fmt::join(allowed, ", "));
 }
 
 void create_folder(const std::string& option, const std::filesystem::path& folder) {

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,17 @@
 #include "support/named_enum.hpp"
 
 namespace clpv {
+
+/// An option with the word that stands for its value in --help, and its default where `member` holds one.
+template <typename T>
+CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T& member,
+                 const std::string& help) {
+  CLI::Option* option = command.add_option(name, member, help)->type_name(type);
+  if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    if (member != T{}) option->capture_default_str();
+  }
+  return option;
+}
 
 /// One value of an enumeration; what `member` holds is the default.
 template <NamedEnum E>
@@ -70,6 +82,10 @@ void set_given(RenderOptions& options, const std::string& name, const std::strin
 
 /// "platform", "name" and "driver".
 nlohmann::json to_json(const Device& device);
+
+/// Throws Error(usage) for a file whose extension is none of these (".exr").
+void require_extension(const std::string& option, const std::filesystem::path& file,
+                       const std::vector<std::string>& allowed);
 
 /// Makes the folder that an option names, where it is not there. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);

@@ -265,9 +265,9 @@ void add_propagate(CLI::App& app, Shared& shared) {
           "repeatable")
       ->take_all()
       ->type_name("i0,j0,k0:i1,j1,k1");
-  command->add_option("-o,--out", options->npy, "accumulated light as .npy, float32, shape 3,N,z,y,x [W/sr]")
-      ->type_name("FILE.npy");
-  command->add_option("--vti", options->vti, "accumulated light for ParaView")->type_name("FILE.vti");
+  add(*command, "-o,--out", "FILE.npy", options->npy,
+      "accumulated light as .npy, float32, shape 3,N,z,y,x [W/sr]");
+  add(*command, "--vti", "FILE.vti", options->vti, "accumulated light for ParaView");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

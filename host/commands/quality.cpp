@@ -208,13 +208,11 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.subjects.scenes, "scene files (.json), or bare .gltf or .glb")
       ->required();
   add_subject_options(command, options.subjects);
-  command
-      .add_option("--vary", options.varied,
-                  "a render option and its values, repeatable: every combination is a variant. Bases and "
-                  "transports vary\n"
-                  "over all there are, unless --preset, --basis, --centres or --transport fixes them or "
-                  "--vary names them")
-      ->type_name("OPTION=a,b,c");
+  add(command, "--vary", "OPTION=a,b,c", options.varied,
+      "a render option and its values, repeatable: every combination is a variant. Bases and "
+      "transports vary\n"
+      "over all there are, unless --preset, --basis, --centres or --transport fixes them or "
+      "--vary names them");
   add_choice(command, "--view", options.view, "what is compared");
   command
       .add_option("--frames", options.frames,
@@ -222,16 +220,14 @@ void add_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
-  command
-      .add_option("--cache", options.cache,
-                  "where references and finished cells are kept (default: the user's cache)")
-      ->type_name("DIR");
+  add(command, "--cache", "DIR", options.cache,
+      "where references and finished cells are kept (default: the user's cache)");
   command.add_flag("--fresh", options.fresh, "measures every cell anew; references are kept");
   command.add_option("--format", options.format, "of stdout")
       ->check(CLI::IsMember({"table", "json", "csv"}))
       ->capture_default_str();
-  command.add_option("--json", options.json, "the same run as JSON")->type_name("FILE");
-  command.add_option("--csv", options.csv, "the same run as CSV")->type_name("FILE");
+  add(command, "--json", "FILE", options.json, "the same run as JSON");
+  add(command, "--csv", "FILE", options.csv, "the same run as CSV");
   add_frame_options(command, options.given);
   for (const auto& [name, size] : {std::pair{"width", "240"}, {"height", "135"}}) {
     options.given[name] = size;  // references of a frame's usual size take hours

@@ -32,13 +32,10 @@ std::filesystem::path model_for(const std::string& scene, const QualitySubjects&
 }  // namespace
 
 void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
-  command
-      .add_option("--model", subjects.models,
-                  "replaces a scene file's model; several scenes: STEM=PATH, repeatable")
-      ->type_name("[STEM=]PATH");
-  command
-      .add_option("--camera", subjects.cameras, "by name, repeatable (default: all cameras of all scenes)")
-      ->type_name("NAME");
+  add(command, "--model", "[STEM=]PATH", subjects.models,
+      "replaces a scene file's model; several scenes: STEM=PATH, repeatable");
+  add(command, "--camera", "NAME", subjects.cameras,
+      "by name, repeatable (default: all cameras of all scenes)");
   add_seconds(command, "--time", subjects.time, "the instant of scenes that move [s]");
 }
 
@@ -78,9 +75,9 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
                   const std::filesystem::path& folder, Team& team) {
   for (const Camera& camera : subject.cameras) {
-    TraceBar bar(fmt::format("reference {} {}", subject.scene.name, camera.name));
-    subject.truths.push_back(reference::cached_reference(
-        folder, subject.scene, camera, width, height, options, [&](double share) { bar.show(share); }, team));
+    Progress progress(fmt::format("reference {} {}", subject.scene.name, camera.name), kTraceSteps);
+    subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
+                                                         options, shown_on(progress), team));
     const reference::Reference& truth = subject.truths.back();
     spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }

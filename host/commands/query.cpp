@@ -65,12 +65,10 @@ void add_query(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("query", "Indirect light at points of a file, seen by the camera or not");
   auto options = std::make_shared<query_command::Options>();
-  command
-      ->add_option("--points", options->points,
-                   "lines of x,y,z,nx,ny,nz: where, in the scene's world [m], and the surface's normal")
-      ->required()
-      ->type_name("FILE.csv");
-  command->add_option("-o,--output", options->output, "the table; default: stdout")->type_name("FILE.csv");
+  add(*command, "--points", "FILE.csv", options->points,
+      "lines of x,y,z,nx,ny,nz: where, in the scene's world [m], and the surface's normal")
+      ->required();
+  add(*command, "-o,--output", "FILE.csv", options->output, "the table; default: stdout");
   add_seconds(*command, "--time", options->time, "the instant of a scene that moves [s]");
   add_render_request(*command, options->request);
   command->footer(

@@ -35,9 +35,7 @@ struct Options {
 
 /// Everything that is wrong with the outputs, before any time is spent on them.
 void check_outputs(const Options& options) {
-  if (std::filesystem::path(options.output).extension() != ".exr") {
-    throw Error(ExitCode::usage, "--output {}: a reference is linear and goes into a .exr", options.output);
-  }
+  require_extension("--output", options.output, {".exr"});
   check_writable(options.output);
   if (!options.stats.empty()) check_writable(options.stats);
 }
@@ -96,10 +94,10 @@ void run(const Options& options, Shared& shared) {
   const Scene& scene = moving.scene();
   const Camera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
-  TraceBar bar("path tracing");
+  Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
-      [&](double share) { bar.show(share); }, team);
+      shown_on(progress), team);
   if (!team.is_root()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
@@ -113,11 +111,10 @@ void run(const Options& options, Shared& shared) {
 
 void add_options(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scene, "scene file (.json), or a bare .gltf or .glb")->required();
-  command.add_option("-o,--output", options.output, "linear EXR; several views become its layers")
-      ->type_name("FILE.exr")
+  add(command, "-o,--output", "FILE.exr", options.output, "linear EXR; several views become its layers")
       ->required();
-  command.add_option("--model", options.model, "replaces the scene file's model")->type_name("PATH");
-  command.add_option("--camera", options.camera, "by name (default: the scene's first)")->type_name("NAME");
+  add(command, "--model", "PATH", options.model, "replaces the scene file's model");
+  add(command, "--camera", "NAME", options.camera, "by name (default: the scene's first)");
   add_seconds(command, "--time", options.time, "the instant shown of a scene that moves [s]");
   add_choices(command, "--view", options.views, "what to write; several: layers")->default_str("full");
   command.add_option("--width", options.width, "[pixels]")
@@ -127,8 +124,7 @@ void add_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
-  command.add_option("--stats", options.stats, "paths, noise, rays and seconds as JSON")
-      ->type_name("FILE.json");
+  add(command, "--stats", "FILE.json", options.stats, "paths, noise, rays and seconds as JSON");
 }
 
 }  // namespace reference_command

@@ -43,11 +43,8 @@ fs::path png_path(const fs::path& output, Show view, bool several) {
 
 /// Everything that can be known to be wrong before the device is touched.
 void check_outputs(const Options& options) {
+  require_extension("--output", options.output, {".exr", ".png"});
   const std::string extension = fs::path(options.output).extension().string();
-  if (extension != ".exr" && extension != ".png") {
-    throw Error(ExitCode::usage, "--output {}: found extension '{}', allowed: .exr, .png", options.output,
-                extension);
-  }
   if (extension == ".exr") check_writable(options.output);
   for (const Show view : options.views) {
     if (extension == ".png") check_writable(png_path(options.output, view, options.views.size() > 1));
@@ -143,32 +140,24 @@ void add_render(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<render_command::Options>();
   add_render_request(*command, options->request);
   add_shown_options(*command, options->request);
-  command
-      ->add_option("-o,--output", options->output,
-                   "image: .exr (linear) or .png (tone-mapped, sRGB); options in its metadata")
-      ->required()
-      ->type_name("FILE");
+  add(*command, "-o,--output", "FILE", options->output,
+      "image: .exr (linear) or .png (tone-mapped, sRGB); options in its metadata")
+      ->required();
   add_seconds(*command, "--time", options->time, "the instant shown of a scene that moves [s]");
   add_choices(*command, "--view", options->views,
               "what to write; several: layers of one EXR, or FILE.VIEW.png")
       ->default_str("full");
-  command
-      ->add_option("--stats", options->stats,
-                   "stage times of frames whose light is made anew, options and energies, as JSON")
-      ->type_name("FILE.json");
+  add(*command, "--stats", "FILE.json", options->stats,
+      "stage times of frames whose light is made anew, options and energies, as JSON");
   command
       ->add_option("--frames", options->frames,
                    "frames that --stats times, after one to warm up; their medians are told")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command
-      ->add_option("--dump-volume", options->dump,
-                   "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]")
-      ->type_name("DIR");
-  command
-      ->add_option("--dump-normals", options->normals,
-                   "normals that the lights see, weighted by the flux they send on, for clpv basis --weights")
-      ->type_name("FILE.json");
+  add(*command, "--dump-volume", "DIR", options->dump,
+      "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]");
+  add(*command, "--dump-normals", "FILE.json", options->normals,
+      "normals that the lights see, weighted by the flux they send on, for clpv basis --weights");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "commands/options.hpp"
 #include "pipeline/cascade.hpp"
 #include "scene/load.hpp"
 #include "support/log.hpp"
@@ -12,15 +13,13 @@ namespace clpv {
 
 void add_render_request(CLI::App& command, RenderRequest& request) {
   command.add_option("scene", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
-  command.add_option("--model", request.model, "replaces the scene file's model")->type_name("PATH");
-  command.add_option("--camera", request.camera, "camera by name; default: the scene's first")
-      ->type_name("NAME");
+  add(command, "--model", "PATH", request.model, "replaces the scene file's model");
+  add(command, "--camera", "NAME", request.camera, "camera by name; default: the scene's first");
   add_frame_options(command, request.frame);
 }
 
 void add_shown_options(CLI::App& command, RenderRequest& request) {
-  command.add_option("--exposure", request.exposure, "brightness of a PNG [EV]; default: the scene's")
-      ->type_name("EV");
+  add(command, "--exposure", "EV", request.exposure, "brightness of a PNG [EV]; default: the scene's");
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 

@@ -181,17 +181,14 @@ void add_report(CLI::App& app, Shared& shared) {
   command->add_option("SCENE", options->subjects.scenes,
                       "scene files whose views are shown beside path tracing");
   add_subject_options(*command, options->subjects);
-  command->add_option("--quality", options->quality, "figures made by clpv quality --json, repeatable")
-      ->type_name("FILE.json");
-  command
-      ->add_option("--bench", options->benchmarks,
-                   "figures made by clpv bench table1 or layouts --format json, repeatable")
-      ->type_name("FILE.json");
+  add(*command, "--quality", "FILE.json", options->quality,
+      "figures made by clpv quality --json, repeatable");
+  add(*command, "--bench", "FILE.json", options->benchmarks,
+      "figures made by clpv bench table1 or layouts --format json, repeatable");
   command->add_option("--width", options->width, "of views and references [pixels]")->capture_default_str();
   command->add_option("--height", options->height, "of views and references [pixels]")->capture_default_str();
   add_tracing_options(*command, options->tracing);
-  command->add_option("--cache", options->cache, "where references are kept (default: the user's cache)")
-      ->type_name("DIR");
+  add(*command, "--cache", "DIR", options->cache, "where references are kept (default: the user's cache)");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -255,10 +255,7 @@ void check_outputs(const Options& options) {
     throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
                 last, bounds::kSeconds);
   }
-  if (!options.video.empty() && fs::path(options.video).extension() != ".mp4") {
-    throw Error(ExitCode::usage, "--video {}: found extension '{}', allowed: .mp4", options.video,
-                fs::path(options.video).extension().string());
-  }
+  if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
   if (options.traced > 0 && !options.stability)
     throw Error(ExitCode::usage, "--traced {}: found no --stability, whose noise it tells of; allowed: both",
                 options.traced);
@@ -290,15 +287,10 @@ void add_sequence(CLI::App& app, Shared& shared) {
   using namespace sequence_command;
   CLI::App* command = app.add_subcommand("sequence", "Render a scene that moves, frame by frame");
   auto options = std::make_shared<sequence_command::Options>();
-  command
-      ->add_option("-o,--output", options->output,
-                   "folder of frame-0000.exr and so on, and of times.json; made where it is not there")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--frames", options->frames, "how many")
-      ->check(CLI::Range(1, kMostFrames))
-      ->required()
-      ->type_name("N");
+  add(*command, "-o,--output", "DIR", options->output,
+      "folder of frame-0000.exr and so on, and of times.json; made where it is not there")
+      ->required();
+  add(*command, "--frames", "N", options->frames, "how many")->check(CLI::Range(1, kMostFrames))->required();
   add_number(*command, "--fps", options->frames_per_second, "frames a second of the scene's time",
              {std::numeric_limits<double>::min(), kMostFramesPerSecond,
               fmt::format("more than 0, up to {}", kMostFramesPerSecond)})
@@ -307,16 +299,13 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_seconds(*command, "--from", options->from, "the instant of the first frame [s]");
   add_choice(*command, "--view", options->view, "what frames show");
   add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
-  command->add_option("--video", options->video, "all frames as a film too, through ffmpeg")
-      ->type_name("FILE.mp4");
+  add(*command, "--video", "FILE.mp4", options->video, "all frames as a film too, through ffmpeg");
   command->add_flag(
       "--stability", options->stability,
       "stability.json: how light changes from frame to frame on surfaces that stay where they are");
-  command
-      ->add_option("--traced", options->traced,
-                   "with --stability: the same of path tracing by so many paths a pixel, its noise")
-      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples))
-      ->type_name("SPP");
+  add(*command, "--traced", "SPP", options->traced,
+      "with --stability: the same of path tracing by so many paths a pixel, its noise")
+      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples));
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(

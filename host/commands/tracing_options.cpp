@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "commands/tracing_options.hpp"
 
+#include "commands/options.hpp"
 #include "support/error.hpp"
+#include "support/number.hpp"
 
 namespace clpv {
 
@@ -9,22 +11,20 @@ reference::PathTracerOptions TracingOptions::resolved() const {
   reference::PathTracerOptions result = values;
   if (bounces == "all") {
     result.bounces = reference::PathTracerOptions::kAllBounces;
-  } else if (!CLI::detail::lexical_cast(bounces, result.bounces) || result.bounces < 1) {
-    throw Error(ExitCode::usage, "--bounces {}: allowed: a number from 1, or all", bounces);
+  } else {
+    result.bounces = parse_number<int>(bounces).value_or(0);
+    if (result.bounces < 1)
+      throw Error(ExitCode::usage, "--bounces {}: allowed: a number from 1, or all", bounces);
   }
   return result;
 }
 
 void add_tracing_options(CLI::App& command, TracingOptions& options) {
   constexpr const char* kGroup = "Path tracing";
-  command
-      .add_option("--bounces", options.bounces,
-                  "surfaces between a light and the surface seen: 1, 2 and so on, or all")
-      ->type_name("N|all")
-      ->capture_default_str()
+  add(command, "--bounces", "N|all", options.bounces,
+      "surfaces between a light and the surface seen: 1, 2 and so on, or all")
       ->group(kGroup);
-  auto* samples = command.add_option("--spp", options.values.samples, "paths a pixel")
-                      ->type_name("N")
+  auto* samples = add(command, "--spp", "N", options.values.samples, "paths a pixel")
                       ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples))
                       ->group(kGroup);
   command
@@ -38,10 +38,13 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
   command.add_option("--seed", options.values.seed, "the same seed gives the same bytes")
       ->capture_default_str()
       ->group(kGroup);
-  command.add_option("--threads", options.values.threads, "that trace (default: one a processor)")
-      ->type_name("N")
+  add(command, "--threads", "N", options.values.threads, "that trace (default: one a processor)")
       ->check(CLI::Range(1, 1024))
       ->group(kGroup);
+}
+
+reference::TraceProgress shown_on(Progress& progress) {
+  return [&progress](double share) { progress.reach(static_cast<std::uint64_t>(share * kTraceSteps)); };
 }
 
 }  // namespace clpv

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The options of path tracing on the command line, shared by `reference` and `quality`, and its progress bar.
+// The options of path tracing on the command line, shared by `reference` and `quality`.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -23,20 +22,8 @@ struct TracingOptions {
 /// --bounces, --spp, --noise, --seed and --threads; `options` must outlive the parse.
 void add_tracing_options(CLI::App& command, TracingOptions& options);
 
-/// A bar fed with shares of the whole in [0, 1].
-class TraceBar {
- public:
-  explicit TraceBar(const std::string& title) : progress_(title, kSteps) {}
-  void show(double share) {
-    const auto step = static_cast<std::uint64_t>(share * kSteps);
-    if (step > shown_) progress_.advance(step - shown_);
-    shown_ = std::max(shown_, step);  // an estimate may turn out too hopeful; the bar then waits
-  }
-
- private:
-  static constexpr std::uint64_t kSteps = 10000;
-  Progress progress_;
-  std::uint64_t shown_ = 0;
-};
+/// Shows on a bar what trace_paths tells it.
+reference::TraceProgress shown_on(Progress& progress);
+inline constexpr std::uint64_t kTraceSteps = 10000;  ///< of such a bar
 
 }  // namespace clpv
