@@ -67,38 +67,31 @@ class Starved : public ::testing::Test {
     EXPECT_EQ(report()["live"], 0) << "memory objects left";
   }
 
+  /// Each `step`th call of a frame in turn, or as CLPV_STARVED_STEP says (1: every one).
+  void expect_told_at_some(const std::string& call, long step, const std::string& code,
+                           const std::string& name) {
+    const Outcome sound = run(program() + kTiny + "-o " + (folder_ / "sound.exr").string());
+    ASSERT_EQ(sound.exit_code, 0) << sound.err;
+    ASSERT_EQ(report()["live"], 0);
+    const long count = report()[call];
+    ASSERT_GT(count, 1);
+    if (const char* wish = std::getenv("CLPV_STARVED_STEP")) step = std::max(1, std::atoi(wish));
+    // The first asks whether the clock of events is to be trusted (device.cpp); its failure is an answer.
+    for (long n = 2; n <= count; n += step) expect_told(call, n, code, name);
+  }
+
   TemporaryFolder folder_;
   static TemporaryFolder* cache_;
 };
 
 TemporaryFolder* Starved::cache_ = nullptr;
 
-/// How many there are of a call in a frame that goes well, where nothing is left either.
-#define CLPV_COUNT_OF(call, most)                                                                                   \
-  const Outcome sound = run(program() + kTiny + "-o " + (folder_ / "sound.exr").string());                          \
-  ASSERT_EQ(sound.exit_code, 0) << sound.err;                                                                       \
-  ASSERT_EQ(report()["live"], 0);                                                                                   \
-  const long count = report()[call];                                                                                \
-  ASSERT_GT(count, 0);                                                                                              \
-  /* The first of them asks whether the clock of events is to be trusted (device.cpp); its failure is an answer. */ \
-  const long first = 1 + (most)
-
-/// From one failure to the next: of `usual`, or as CLPV_STARVED_STEP says (1: each).
-long step_or(long usual) {
-  const char* wish = std::getenv("CLPV_STARVED_STEP");
-  return wish != nullptr ? std::max(1, std::atoi(wish)) : usual;
-}
-
 TEST_F(Starved, OfDeviceMemoryAtSomeAllocations) {
-  CLPV_COUNT_OF("memory", 1);
-  for (long n = first; n <= count; n += step_or(23))
-    expect_told("memory", n, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
+  expect_told_at_some("memory", 23, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
 }
 
 TEST_F(Starved, OfItsDeviceAtSomeEnqueues) {
-  CLPV_COUNT_OF("enqueue", 1);
-  for (long n = first; n <= count; n += step_or(151))
-    expect_told("enqueue", n, "-2", "CL_DEVICE_NOT_AVAILABLE");
+  expect_told_at_some("enqueue", 151, "-2", "CL_DEVICE_NOT_AVAILABLE");
 }
 
 TEST_F(Starved, OfItsDeviceAtTheStart) {
