@@ -13,15 +13,13 @@
 #include "basis/rotated_lobe.hpp"
 #include "evaluate/normal_weights.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::centre_search_test {
 namespace {
 
 using ::testing::HasSubstr;
-
-const std::string kProgram = CLPV_PROGRAM;
 
 CentreSet uneven_set() {
   return {even_directions(6), {.2, .3, .25, .4, .33, .21}};
@@ -165,7 +163,7 @@ TEST(SearchCentres, WritesAFileThatIsABasis) {
   const test::TemporaryFolder folder;
   const std::string file = (folder.path() / "mine.json").string();
   const test::Outcome outcome =
-      test::run(kProgram + " basis --search 5 --starts 4 --lambdas each --json -o " + file);
+      test::run_here("basis --search 5 --starts 4 --lambdas each --json -o " + file);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json.at("search").at("valid"), 4);
@@ -179,11 +177,10 @@ TEST(SearchCentres, WritesAFileThatIsABasis) {
 TEST(SearchCentres, TakesAScenesNormals) {
   const test::TemporaryFolder folder;
   const std::string weights = (folder.path() / "normals.json").string();
-  const test::Outcome render = test::run(kProgram +
-                                         " render " CLPV_SOURCE_DIR
-                                         "/scenes/cornell.json --width 16 --height 9 --grid 8 "
-                                         "--rsm-size 32 --dump-normals " +
-                                         weights + " -o " + (folder.path() / "a.exr").string());
+  const test::Outcome render = test::run_here(" render " CLPV_SOURCE_DIR
+                                              "/scenes/cornell.json --width 16 --height 9 --grid 8 "
+                                              "--rsm-size 32 --dump-normals " +
+                                              weights + " -o " + (folder.path() / "a.exr").string());
   ASSERT_EQ(render.exit_code, 0) << render.err;
   const LobeAims aims = load_aims(weights);
   double upwards = 0, all = 0;
@@ -194,10 +191,10 @@ TEST(SearchCentres, TakesAScenesNormals) {
   EXPECT_NEAR(all, 1, 1e-12);
   EXPECT_GT(upwards, 0.2) << "the floor";
   EXPECT_LT(aims.directions.size(), 97u);
-  const test::Outcome search = test::run(kProgram + " basis --search 4 --starts 2 --weights " + weights);
+  const test::Outcome search = test::run_here("basis --search 4 --starts 2 --weights " + weights);
   EXPECT_EQ(search.exit_code, 0) << search.err;
-  EXPECT_EQ(test::run(kProgram + " basis --search 4 --over axes --weights " + weights).exit_code, 2);
-  EXPECT_EQ(test::run(kProgram + " basis --seed 4").exit_code, 2);
+  EXPECT_EQ(test::run_here("basis --search 4 --over axes --weights " + weights).exit_code, 2);
+  EXPECT_EQ(test::run_here("basis --seed 4").exit_code, 2);
 }
 
 TEST(LobeAims, OfFilesAreRefusedWithThePlace) {

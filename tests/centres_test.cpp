@@ -8,7 +8,7 @@
 
 #include "basis/basis.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::centres_test {
 namespace {
@@ -71,16 +71,15 @@ TEST_F(CentresFile, RefusesWithThePlace) {
 }
 
 TEST_F(CentresFile, IsDescribedByTheProgram) {
-  const std::string program = CLPV_PROGRAM;
-  const test::Outcome good = test::run(program + " basis --json --lambda 0.3 --centres " + file(kAxesFile));
+  const test::Outcome good = test::run_here("basis --json --lambda 0.3 --centres " + file(kAxesFile));
   ASSERT_EQ(good.exit_code, 0) << good.err;
   const auto json = nlohmann::json::parse(good.out);
   EXPECT_EQ(json.at("schema"), 1);
   EXPECT_EQ(json.at("bases").size(), 1u);
   EXPECT_EQ(json.at("bases")[0].at("name"), "axes");
-  EXPECT_EQ(test::run(program + " basis --centres " + file("{")).exit_code, 3);
-  EXPECT_EQ(test::run(program + " basis sh2 --centres " + file(kAxesFile)).exit_code, 2);
-  EXPECT_EQ(test::run(program + " basis --lambda 0.001 --centres " + file(kAxesFile)).exit_code, 2);
+  EXPECT_EQ(test::run_here("basis --centres " + file("{")).exit_code, 3);
+  EXPECT_EQ(test::run_here("basis sh2 --centres " + file(kAxesFile)).exit_code, 2);
+  EXPECT_EQ(test::run_here("basis --lambda 0.001 --centres " + file(kAxesFile)).exit_code, 2);
 }
 
 }  // namespace

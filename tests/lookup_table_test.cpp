@@ -16,7 +16,7 @@
 #include "pipeline/propagate.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::lookup_table_test {
 namespace {
@@ -179,9 +179,8 @@ TEST(RunTimeLobes, AreThereForUsers) {
       folder.write("mine.json", R"({"centres": [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]]})")
           .string();
   const auto run = [&](const std::string& given) {
-    const test::Outcome outcome = test::run(
-        CLPV_PROGRAM
-        " propagate --grid 5 --iterations 2 --at 2,2,2 --normal 1,2,3 --lobe rotate --evaluate table "
+    const test::Outcome outcome = test::run_here(
+        "propagate --grid 5 --iterations 2 --at 2,2,2 --normal 1,2,3 --lobe rotate --evaluate table "
         "--table-size 99 " +
         given);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

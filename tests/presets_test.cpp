@@ -10,7 +10,7 @@
 #include "image/image_io.hpp"
 #include "options/render_options.hpp"
 #include "support/error.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::presets_test {
 namespace {
@@ -55,8 +55,8 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   const std::string image = (folder.path() / "a.exr").string(), stats = (folder.path() / "a.json").string();
   // The preset comes last, and is overridden all the same; the scene's own cascades stand.
   const test::Outcome outcome =
-      test::run(std::string(CLPV_PROGRAM) + " render " + CLPV_SOURCE_DIR + "/scenes/cornell.json -o " +
-                image + " --stats " + stats + " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
+      test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " + stats +
+                     " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json options = nlohmann::json::parse(test::read_file(stats)).at("options");
   EXPECT_EQ(options["preset"], "paper");
@@ -70,22 +70,22 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
 }
 
 TEST(Presets, PropagateTakesThem) {
-  const std::string propagate = CLPV_PROGRAM " propagate --grid 5 --iterations 1 --at 2,2,2 ";
-  const test::Outcome paper = test::run(propagate + "--lambda 0.3 --preset paper");
+  const std::string propagate = "propagate --grid 5 --iterations 1 --at 2,2,2 ";
+  const test::Outcome paper = test::run_here(propagate + "--lambda 0.3 --preset paper");
   ASSERT_EQ(paper.exit_code, 0) << paper.err;
   const nlohmann::json options = nlohmann::json::parse(paper.out).at("options");
   EXPECT_EQ(options["preset"], "paper");
   EXPECT_EQ(options["basis"], "srbf8v2");
   EXPECT_EQ(options["lambda"], 0.3);
-  const test::Outcome swept = test::run(propagate + "--preset best");
+  const test::Outcome swept = test::run_here(propagate + "--preset best");
   EXPECT_EQ(swept.exit_code, 2);
   EXPECT_THAT(swept.err, HasSubstr("transport: found 'sweep', which takes no steps"));
 }
 
 TEST(Presets, QualityTakesAPresetsTransport) {
   const test::TemporaryFolder folder;
-  const test::Outcome outcome = test::run(
-      std::string(CLPV_PROGRAM) + " quality " + CLPV_SOURCE_DIR +
+  const test::Outcome outcome = test::run_here(
+      "quality " CLPV_SOURCE_DIR
       "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 --width 16 --height 9 --grid 8 "
       "--spp 1 --frames 1 --format json --cache " +
       folder.path().string());
@@ -96,7 +96,7 @@ TEST(Presets, QualityTakesAPresetsTransport) {
 }
 
 TEST(Presets, HelpStatesThem) {
-  const test::Outcome outcome = test::run(std::string(CLPV_PROGRAM) + " render --help");
+  const test::Outcome outcome = test::run_here("render --help");
   EXPECT_THAT(outcome.out, HasSubstr("paper: the published scheme --basis srbf8v2"));
 }
 
