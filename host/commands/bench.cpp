@@ -13,9 +13,9 @@
 #include "bench/runner.hpp"
 #include "commands/commands.hpp"
 #include "commands/drawing.hpp"
+#include "commands/options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
-#include "support/input_file.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -78,10 +78,7 @@ nlohmann::json earlier_run(const Options& options) {
                 "--compare with --format {}: both would be on stdout; allowed: --format table, or --out",
                 options.format);
   }
-  const auto text = file_bytes(options.compare);
-  if (!text) throw Error(ExitCode::bad_input, "--compare {}: cannot be read", options.compare);
-  nlohmann::json report = nlohmann::json::parse(*text, nullptr, false);
-  if (report.is_discarded()) throw Error(ExitCode::bad_input, "--compare {}: not JSON", options.compare);
+  nlohmann::json report = read_document(options.compare);
   bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
   return report;
 }
@@ -90,9 +87,7 @@ nlohmann::json earlier_run(const Options& options) {
 std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   if (options.plot.empty()) return nullptr;
   auto drawing = std::make_unique<const Drawing>("bench", "--plot");
-  std::error_code failed;
-  std::filesystem::create_directories(options.plot, failed);
-  if (failed) throw Error(ExitCode::run_time, "--plot {}: {}", options.plot, failed.message());
+  create_folder("--plot", options.plot);
   check_writable(std::filesystem::path(options.plot) / "roofline.svg");
   return drawing;
 }
@@ -115,11 +110,9 @@ void take_scene(Options& options, const bench::Suite& suite) {
 
 /// Tells of the rows that failed. Exit code 5 where an output was wrong.
 void judge(const std::vector<bench::Row>& rows) {
-  const auto wrong = std::count_if(rows.begin(), rows.end(),
-                                   [](const bench::Row& r) { return r.status == bench::Status::wrong; });
+  const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
   if (wrong == 0) return;
-  const auto& first = *std::find_if(rows.begin(), rows.end(),
-                                    [](const bench::Row& r) { return r.status == bench::Status::wrong; });
+  const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
   throw Error(ExitCode::validation, "{} of {} rows computed something wrong; {}: {:.3g} > {:.0e} at {}",
               wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
 }

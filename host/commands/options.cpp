@@ -11,11 +11,14 @@
 #include <string_view>
 
 #include "scene/bounds.hpp"
+#include "scene/input.hpp"
 #include "support/error.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
 namespace {
+
+constexpr std::uintmax_t kLargestDocument = std::uintmax_t{64} << 20;  // bytes; a full matrix takes 2 MB
 
 /// Nothing where the text is not three numbers between commas.
 template <typename T>
@@ -124,6 +127,11 @@ void require_extension(const std::string& option, const std::filesystem::path& f
   if (std::ranges::count(allowed, file.extension().string()) > 0) return;
   throw Error(ExitCode::usage, "{} {}: found extension '{}', allowed: {}", option, file.string(),
               file.extension().string(), fmt::join(allowed, ", "));
+}
+
+nlohmann::json read_document(const std::string& path) {
+  const Bytes bytes = read_file(path, kLargestDocument, path);
+  return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
 }
 
 void create_folder(const std::string& option, const std::filesystem::path& folder) {

@@ -12,12 +12,12 @@
 #include "commands/drawing.hpp"
 #include "commands/options.hpp"
 #include "commands/quality_subjects.hpp"
+#include "commands/render_request.hpp"
 #include "commands/tracing_options.hpp"
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
-#include "scene/input.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/output_file.hpp"
@@ -27,9 +27,6 @@ namespace clpv {
 namespace report_command {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kLargestDocument = std::uintmax_t{64}
-                                            << 20;  // bytes of JSON; a full matrix takes 2 MB
 
 struct Options {
   std::string folder, cache;
@@ -61,9 +58,7 @@ nlohmann::json read_documents(const std::vector<std::string>& paths, const char*
                               const char* command) {
   nlohmann::json all = nlohmann::json::array();
   for (const std::string& path : paths) {
-    const Bytes bytes = read_file(path, kLargestDocument, path);
-    const nlohmann::json document =
-        parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+    const nlohmann::json document = read_document(path);
     if (!document.is_object() || !document.contains(wanted)) {
       throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON", path, wanted,
                   command);
@@ -104,12 +99,9 @@ nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const 
 
 Image render_indirect(Session& session, const Subject& subject, const Camera& camera, const Options& options,
                       const Way& way) {
-  const RenderOptions resolved = resolve_options(sized(options, way.given), subject.scene);
-  Frame frame(session, subject.scene, resolved);
+  Frame frame(session, subject.scene, resolve_options(sized(options, way.given), subject.scene));
   frame.render(camera);
-  Image image = make_image(resolved.width, resolved.height, {"R", "G", "B", "A"});
-  image.pixels = frame.read(Show::indirect);
-  return image;
+  return view_image(frame, Show::indirect);
 }
 
 /// What one camera sees: the truth, and each way's image of it with its errors.

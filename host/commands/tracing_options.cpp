@@ -3,7 +3,7 @@
 
 #include "commands/options.hpp"
 #include "support/error.hpp"
-#include "support/number.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 
