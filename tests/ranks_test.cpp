@@ -20,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using ::testing::AllOf;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const std::string kSmall =
@@ -166,25 +165,6 @@ TEST_F(Ranks, ExitCodesComeThrough) {
   EXPECT_THAT(other.err,
               AllOf(HasSubstr("render: not for several processes (found: rank "), HasSubstr(" of 2)")));
   EXPECT_FALSE(fs::exists(folder / "a.exr"));
-}
-
-TEST_F(Ranks, AreAnAxisOfTheBenchmarks) {
-  const Outcome outcome = by(2,
-                             "bench scaling --filter frames-weak --repetitions 1 --format json --scene "
-                             "moving.json --out ranks.json");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const json told = json::parse(bytes("ranks.json"));
-  std::vector<int> ranks;
-  for (const json& row : told["benchmarks"]) {
-    EXPECT_EQ(row["axis"], "ranks");
-    EXPECT_EQ(row["status"], "ok");
-    EXPECT_GT(row["median"], 0);
-    ranks.push_back(row["value"]);
-  }
-  EXPECT_THAT(ranks, ElementsAre(1, 2));
-  const Outcome other = by(2, "bench frame");
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err, HasSubstr("frame: found 2 processes; allowed for several: scaling"));
 }
 
 TEST_F(Ranks, OneRankIsThePlainProgram) {
