@@ -13,6 +13,7 @@
 #include "scene/bounds.hpp"
 #include "scene/input.hpp"
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
