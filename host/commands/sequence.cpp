@@ -186,7 +186,8 @@ class Sequence {
 
   /// Whether it was not there yet.
   bool render(int number) {
-    FrameTimes times{.seconds = options_.instant(number)};
+    FrameTimes times;
+    times.seconds = options_.instant(number);
     Clock::time_point started = Clock::now();
     moving_.pose(times.seconds);
     times.pose_ms = milliseconds_since(started);

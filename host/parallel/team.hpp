@@ -2,6 +2,7 @@
 // Ranks that share one job: each takes every size()-th item of it. A process without a launcher is a team of one.
 #pragma once
 
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,7 +49,10 @@ class Team {
   std::string from_root(const std::function<std::string()>& make);
 
   /// Ends all ranks with that exit code.
-  [[noreturn]] void abort(ExitCode code) { communicator_->abort(static_cast<int>(code)); }
+  [[noreturn]] void abort(ExitCode code) {
+    communicator_->abort(static_cast<int>(code));
+    std::abort();  // never reached
+  }
 
  private:
   std::unique_ptr<Communicator> communicator_;
