@@ -56,7 +56,11 @@ void dump(const ProgramSource& source, const std::string& text) {
   if (folder == nullptr || *folder == '\0') return;
   const std::filesystem::path file =
       std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), source.file);
-  write_file(file, text);
+  try {
+    write_file(file, text);
+  } catch (const Error& error) {
+    throw Error(ExitCode::run_time, "CLPV_PROGRAM_DUMP: {}", error.what());
+  }
 }
 
 }  // namespace
