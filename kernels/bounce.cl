@@ -13,7 +13,7 @@
 // Of 1 W that leaves a side, others send back E, what falls on that side where each of them sends back what it does of 1 W on its
 // face: light goes both ways alike. Where they send back what they do in all their bounces, so is E.
 //
-// The host writes (host/codegen/bounce_source.cpp) Coefficients, of six sides; Swept, of 24 bins; CLPV_EACH_X_BIN and the
+// The host writes (host/codegen/sweep_source.cpp) Coefficients, of six sides; Swept, of 24 bins; CLPV_EACH_X_BIN and the
 // like (sweep_source.cl); and
 //   Coefficients clpv_arriving(Swept)    flux on each whole face [W]
 //   Swept clpv_leaving(Coefficients)     light of flux that leaves each side [W/sr]
