@@ -46,7 +46,8 @@ std::string sweep_bin_macros() {
 
 CountedText sweep_source_text(const Basis& basis) {
   LinearCode code;
-  const std::string means = code.function("Swept", "clpv_bin_means", "Coefficients", bin_means(basis));
+  const std::string means =
+      code.function("Swept", "clpv_bin_means", "Coefficients", bin_means(basis), mirrors_of(basis).list());
   return {coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
               means,
           code.operations()};
@@ -59,7 +60,8 @@ std::string sweep_ways_text(const Basis& basis, const Transport& transport) {
 CountedText sweep_collect_text() {
   const Matrix projection = swept_projection();
   LinearCode code;
-  const std::string projected = code.function("Coefficients", "clpv_projected", "Swept", projection);
+  const std::string projected = code.function("Coefficients", "clpv_projected", "Swept", projection,
+                                              mirrors_of(*make_basis("bins24")).list());
   return {coefficient_macros(projection.rows()) + sweep_bin_macros() +
               cell_macros("Swept", "SWEPT", kSweepBins) + projected,
           code.operations()};

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "codegen/linear_code.hpp"
 
 namespace clpv {
@@ -53,15 +55,18 @@ std::vector<std::string> blockers_towards(LinearCode& code, const glm::ivec3& no
 
 /// Gives ways.c<way> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each way, its blocker the mean over the corners
 /// towards `normal`, looked up by a row of `weights` each.
-void add_ways(TransmitCode& out, const glm::ivec3& normal, const std::vector<std::vector<double>>& weights,
-              const std::vector<int>& ways) {
+void add_ways(TransmitCode& out, const std::optional<Mirrors>& mirrors, const glm::ivec3& normal,
+              const std::vector<std::vector<double>>& weights, const std::vector<int>& ways) {
   LinearCode& code = out.code;
   const auto corners = static_cast<double>(corners_towards(normal).size());
   Matrix rows(static_cast<int>(weights.size()), static_cast<int>(weights.front().size()));
   for (int r = 0; r < rows.rows(); ++r) {
     for (int i = 0; i < rows.columns(); ++i) rows(r, i) = weights[r][i] * (0.5 / corners);
   }
-  const auto halves = code.product(rows, blockers_towards(code, normal, rows));
+  const int moving = (normal.x != 0) + (normal.y != 0) + (normal.z != 0);
+  const auto symmetries =
+      mirrors && moving == 1 ? mirrors->across(axis_of(normal)) : std::vector<SignedPermutation>{};
+  const auto halves = code.product(rows, blockers_towards(code, normal, rows), symmetries);
   for (std::size_t r = 0; r < ways.size(); ++r) {
     const std::string through =
         code.name(fmt::format("0.5f + (fabs(0.5f - {0}) - fabs({0}))", halves[r]), {.additions = 3});
@@ -70,7 +75,7 @@ void add_ways(TransmitCode& out, const glm::ivec3& normal, const std::vector<std
 }
 
 /// The 30 ways to faces: five lead to each face, whose corners they share.
-int add_faces(TransmitCode& out, const FaceTransport& scheme) {
+int add_faces(TransmitCode& out, const std::optional<Mirrors>& mirrors, const FaceTransport& scheme) {
   for (const glm::ivec3& normal : kAxes) {
     std::vector<std::vector<double>> weights;
     std::vector<int> ways;
@@ -79,15 +84,16 @@ int add_faces(TransmitCode& out, const FaceTransport& scheme) {
       weights.push_back(scheme.faces[f].blocked_by);
       ways.push_back(static_cast<int>(f));
     }
-    add_ways(out, normal, weights, ways);
+    add_ways(out, mirrors, normal, weights, ways);
   }
   return static_cast<int>(scheme.faces.size());
 }
 
 /// One way a neighbour, through the face, edge or corner that the two cells share.
-int add_neighbours(TransmitCode& out, const std::vector<SweepWay>& ways) {
+int add_neighbours(TransmitCode& out, const std::optional<Mirrors>& mirrors,
+                   const std::vector<SweepWay>& ways) {
   int number = 0;
-  for (const SweepWay& way : ways) add_ways(out, -way.offset, {way.blocked_by}, {number++});
+  for (const SweepWay& way : ways) add_ways(out, mirrors, -way.offset, {way.blocked_by}, {number++});
   return number;
 }
 
@@ -96,9 +102,13 @@ int add_neighbours(TransmitCode& out, const std::vector<SweepWay>& ways) {
 TransmitSource transmit_source(const Basis& basis, const Transport& transport) {
   TransmitCode out;
   TransmitSource result;
+  // Of three areas each way looks up one or two: nothing for mirrors to share.
+  std::optional<Mirrors> mirrors;
+  if (blocks_by_lobes(transport.blocking)) mirrors = mirrors_of(basis);
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
-  result.ways = faces != nullptr ? add_faces(out, *faces)
-                                 : add_neighbours(out, std::get<std::vector<SweepWay>>(transport.scheme));
+  result.ways = faces != nullptr
+                    ? add_faces(out, mirrors, *faces)
+                    : add_neighbours(out, mirrors, std::get<std::vector<SweepWay>>(transport.scheme));
   result.operations = out.code.operations();
   result.text = coefficient_macros(blocking_size(transport.blocking, basis)) + way_macros(result.ways) +
                 macro_text("CLPV_TRANSMITTANCE", "\n" + out.code.text() + "  Ways ways;\n" + out.assignments);

@@ -44,8 +44,10 @@ Matrix half_face_rows(const FaceTransport& faces, State source) {
   return source == State::fluxes ? rows * faces.lobes : rows;
 }
 
-void generate_faces(TransportCode& out, const FaceTransport& faces, const StepForm& form) {
+void generate_faces(TransportCode& out, const Basis& basis, const FaceTransport& faces,
+                    const StepForm& form) {
   const Matrix rows = half_face_rows(faces, form.source);
+  const Mirrors mirrors = form.source == State::fluxes ? mirrors_of_fluxes() : mirrors_of(basis);
   std::array<std::string, 6> through;
   through.fill("0.0f");
   for (int k = 0; k < 6; ++k) {
@@ -55,7 +57,8 @@ void generate_faces(TransportCode& out, const FaceTransport& faces, const StepFo
       std::copy(rows.row(5 * k + f).begin(), rows.row(5 * k + f).end(), five.row(f).begin());
     const auto fluxes = form.functions_at_run_time
                             ? std::vector<std::string>(5)
-                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()));
+                            : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
+                                                 mirrors.across(axis_of(travel)));
     for (int f = 0; f < 5; ++f) {
       const int way = 5 * k + f;
       const std::string& half = fluxes[f];
@@ -88,7 +91,7 @@ void generate_faces(TransportCode& out, const FaceTransport& faces, const StepFo
   if (form.target == State::fluxes) {
     out.gains = received;
   } else {
-    out.gains = out.arrive.product(faces.lobes, received);
+    out.gains = out.arrive.product(faces.lobes, received, mirrors_of_fluxes().list());
   }
 }
 
@@ -98,7 +101,8 @@ std::string expand_function(const FaceTransport& faces, const Basis& basis, Stat
     for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = a.c{0};\n", i);
     return text + "  return r;\n}\n";
   }
-  return LinearCode().function("Coefficients", "clpv_expand", "Target", faces.lobes);
+  return LinearCode().function("Coefficients", "clpv_expand", "Target", faces.lobes,
+                               mirrors_of_fluxes().list());
 }
 
 std::string arrive_macro(const TransportCode& out) {
@@ -114,7 +118,7 @@ std::string arrive_macro(const TransportCode& out) {
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form) {
   const auto& faces = std::get<FaceTransport>(transport.scheme);
   TransportCode out;
-  generate_faces(out, faces, form);
+  generate_faces(out, basis, faces, form);
   TransportSource result;
   result.source_count = form.source == State::fluxes ? 6 : basis.size();
   result.target_count = form.target == State::fluxes ? 6 : basis.size();

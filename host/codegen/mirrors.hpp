@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Mirrors of the grid, and what they do to the numbers a cell holds: the symmetries that generated code shares by.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "basis/basis.hpp"
+
+namespace clpv {
+
+/// Input i turns into sign[i] times input target[i]; its own inverse.
+struct SignedPermutation {
+  std::vector<int> target;
+  std::vector<int> sign;
+  bool exists() const { return !target.empty(); }
+};
+
+/// What the mirror of `axis` (0 x, 1 y, 2 z) does to the functions of a basis: b_i(mirrored w) = sign[i]
+/// b_target[i](w). Found numerically; does not exist() where the basis is not closed under it (srbf4 in y,
+/// say).
+SignedPermutation mirror(const Basis& basis, int axis);
+
+/// What the mirror of `axis` does to six fluxes in the order of kAxes: it swaps the two of its axis.
+SignedPermutation mirror_of_fluxes(int axis);
+
+/// The mirrors of x, y and z.
+struct Mirrors {
+  std::array<SignedPermutation, 3> all;
+  std::vector<SignedPermutation> list() const { return {all.begin(), all.end()}; }
+  /// Those that leave `axis` alone.
+  std::vector<SignedPermutation> across(int axis) const;
+};
+Mirrors mirrors_of(const Basis& basis);
+Mirrors mirrors_of_fluxes();
+
+/// The axis, 0 to 2, of a vector along one.
+int axis_of(const glm::ivec3& along);
+
+}  // namespace clpv
