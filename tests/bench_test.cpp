@@ -188,7 +188,7 @@ std::vector<std::string> names_of(const std::vector<Row>& rows) {
 void expect_right(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
-    if (row.max_rel_error) EXPECT_LE(*row.max_rel_error, row.tolerance) << row.name;
+    EXPECT_LE(row.max_rel_error.value_or(0), row.tolerance) << row.name;
   }
 }
 
