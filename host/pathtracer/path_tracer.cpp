@@ -15,7 +15,6 @@
 #include "pathtracer/sky_sampler.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
-#include "scene/light_kind.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 
@@ -199,15 +198,6 @@ void check(const Scene& scene, const std::vector<Light>& lights, const PathTrace
     throw Error(ExitCode::usage, "noise {}: above 0", options.noise);
   if (lights.empty() && !emits(scene) && !scene.sky) {
     throw Error(ExitCode::bad_input, "{}: no light: the whole image would be black", scene.path);
-  }
-  for (const Light& light : lights) {
-    const ClpvLight& d = light.data;
-    const auto finite = [](const float(&v)[3]) { return std::isfinite(v[0] + v[1] + v[2]); };
-    kind_of(d);  // throws for what is none
-    if (!finite(d.position) || !finite(d.direction) || !finite(d.intensity) ||
-        !std::isfinite(d.range + d.cone_scale + d.cone_offset)) {
-      throw Error(ExitCode::bad_input, "{}: light {}: a value that is not finite", scene.path, light.name);
-    }
   }
 }
 

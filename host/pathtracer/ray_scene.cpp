@@ -19,32 +19,6 @@ namespace {
 // Embree's geometries: masked triangles alone pay for the filter.
 constexpr unsigned kOpaque = 0, kMasked = 1;
 
-template <std::size_t size>
-bool finite(const float (&values)[size]) {
-  return std::all_of(std::begin(values), std::end(values), [](float v) { return std::isfinite(v); });
-}
-
-void check_vertices(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
-    const Vertex& v = scene.vertices[i];
-    if (!finite(v.position) || !finite(v.normal) || !finite(v.colour)) {
-      throw Error(ExitCode::bad_input, "{}: vertex {}: a position, normal or colour that is not finite",
-                  scene.path, i);
-    }
-  }
-}
-
-void check_triangles(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    const Triangle& t = scene.triangles[i];
-    const std::uint32_t vertex = std::max({t.vertex[0], t.vertex[1], t.vertex[2]});
-    if (vertex >= scene.vertices.size() || t.material >= scene.materials.size()) {
-      throw Error(ExitCode::bad_input, "{}: triangle {}: vertex {} of {}, material {} of {}", scene.path, i,
-                  vertex, scene.vertices.size(), t.material, scene.materials.size());
-    }
-  }
-}
-
 struct RtcRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -144,8 +118,6 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   if (scene.triangles.empty()) {
     throw Error(ExitCode::bad_input, "{}: no surface: there is nothing that light could reach", scene.path);
   }
-  check_vertices(scene);
-  check_triangles(scene);
   impl_->scene = &scene;
   impl_->materials.emplace(scene);
   for (const Vertex& v : scene.vertices) {

@@ -34,7 +34,7 @@ enum class Faces {
 /// Borrows the scene: it must outlive this. Safe to shoot rays through from several threads.
 class RayScene {
  public:
-  /// Throws Error(bad_input) where there is no triangle or a value is out of range or not finite, naming it;
+  /// Throws Error(bad_input) where there is no triangle;
   /// Error(run_time) where Embree fails (out of memory).
   explicit RayScene(const Scene& scene);
   ~RayScene();

@@ -23,6 +23,7 @@ namespace {
 constexpr double kAny = 1e30;           // finite, and its products with coordinates fit a double
 constexpr double kMany = 4294967295;    // counts and offsets: more than any bounded buffer holds
 constexpr double kInt = 2147483647;     // the same where tinygltf keeps an int
+constexpr double kBrightest = 1e15;     // of a light: intensity times colour fits a float
 constexpr std::size_t kTargets = 1024;  // of a primitive
 constexpr double kAboveZero = 1e-9;     // stands for "greater than 0"
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
@@ -165,8 +166,8 @@ Rules view_rules() {
           number("/cameras/*/perspective/yfov", kAboveZero, std::numbers::pi - kAboveZero).must(),
           number("/cameras/*/perspective/znear", kAboveZero, kAny).must(),
           text(light + "/type", names_of<LightKind>()).must(),
-          vector(light + "/color", 3, 0, kAny),
-          number(light + "/intensity", 0, kAny),
+          vector(light + "/color", 3, 0, kBrightest),
+          number(light + "/intensity", 0, kBrightest),
           number(light + "/range", kAboveZero, kAny),
           number(light + "/spot/innerConeAngle", 0, std::numbers::pi / 2),
           number(light + "/spot/outerConeAngle", kAboveZero, std::numbers::pi / 2 + kAboveZero)};
