@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pathtracer/sampling.hpp"
 #include "reference/triangle.hpp"
 #include "scene/emission.hpp"
 
@@ -67,10 +68,7 @@ Emitters::Emitters(const Scene& scene, const Materials& materials) : scene_(scen
 }
 
 EmitterPoint Emitters::pick(glm::dvec2 at) const {
-  const auto found = std::min(std::upper_bound(upto_.begin(), upto_.end(), at.x), upto_.end() - 1);
-  const auto i = static_cast<std::size_t>(found - upto_.begin());
-  const double before = i > 0 ? upto_[i - 1] : 0;
-  const double x = std::clamp((at.x - before) / (*found - before), 0.0, 1.0);  // even again within its share
+  const auto [i, x] = find_share(upto_, at.x);  // x: even again within its share
   // The square folded onto the triangle.
   const double root = std::sqrt(x), second = root * at.y, third = 1 - root;
   EmitterPoint point;

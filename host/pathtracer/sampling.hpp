@@ -4,10 +4,12 @@
 // 2020).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <numbers>
+#include <span>
 
 namespace clpv::reference {
 
@@ -83,6 +85,19 @@ inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& p
   const glm::dvec3 tangent{1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
   const glm::dvec3 bitangent{b, sign + normal.y * normal.y * a, -normal.y};
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + up * normal;
+}
+
+/// Where a share falls among those that rise to 1: which of them, and how far into it.
+struct ShareIn {
+  std::size_t index;
+  double within;
+};
+
+inline ShareIn find_share(std::span<const double> upto, double share) {
+  const auto at = std::min(std::upper_bound(upto.begin(), upto.end(), share), upto.end() - 1);
+  const double before = at == upto.begin() ? 0 : *(at - 1);
+  return {static_cast<std::size_t>(at - upto.begin()),
+          *at > before ? std::clamp((share - before) / (*at - before), 0.0, 1.0) : 0.5};
 }
 
 }  // namespace clpv::reference

@@ -6,21 +6,10 @@
 #include <numbers>
 #include <span>
 
+#include "pathtracer/sampling.hpp"
+
 namespace clpv::reference {
 namespace {
-
-/// Where a share falls among those that rise to 1: which of them, and how far into it.
-struct Found {
-  std::size_t index;
-  double within;
-};
-
-Found find(std::span<const double> upto, double share) {
-  const auto at = std::min(std::upper_bound(upto.begin(), upto.end(), share), upto.end() - 1);
-  const double before = at == upto.begin() ? 0 : *(at - 1);
-  return {static_cast<std::size_t>(at - upto.begin()),
-          *at > before ? std::clamp((share - before) / (*at - before), 0.0, 1.0) : 0.5};
-}
 
 /// Makes sums shares of the last one, which is returned.
 double to_shares(std::span<double> sums) {
@@ -54,8 +43,8 @@ SkySampler::SkySampler(const Sky* sky) : sky_(sky) {
 
 SkyDirection SkySampler::pick(const glm::dvec2& at) const {
   const auto width = static_cast<std::size_t>(sky_->width);
-  const Found row = find(upto_row_, at.y);
-  const Found column = find(std::span(upto_column_).subspan(row.index * width, width), at.x);
+  const ShareIn row = find_share(upto_row_, at.y);
+  const ShareIn column = find_share(std::span(upto_column_).subspan(row.index * width, width), at.x);
   const double top = std::cos(std::numbers::pi * static_cast<double>(row.index) / sky_->height),
                bottom = std::cos(std::numbers::pi * static_cast<double>(row.index + 1) / sky_->height);
   const double up = top + row.within * (bottom - top);  // even over the texel's solid angle
