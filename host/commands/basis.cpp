@@ -14,7 +14,7 @@
 #include "support/error.hpp"
 
 namespace clpv {
-namespace {
+namespace basis_command {
 
 struct Options {
   std::string name, centres_file, axis = "0,0,1", figures;
@@ -69,12 +69,13 @@ void run(const Options& options) {
   }
 }
 
-}  // namespace
+}  // namespace basis_command
 
 void add_basis(CLI::App& app, Shared&) {
+  using namespace basis_command;
   CLI::App* command = app.add_subcommand(
       "basis", "Tell of each basis: conditioning, error of its clamped cosine, energy after 8 and 24 steps");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<basis_command::Options>();
   CLI::Option* name = add(*command, "name", "NAME", options->name, "one basis; all, if not given");
   add(*command, "--centres", "FILE", options->centres_file,
       "an SRBF set of your own: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "

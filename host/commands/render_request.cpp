@@ -58,10 +58,4 @@ std::map<std::string, std::string> metadata_of(const nlohmann::json& described) 
   return metadata;
 }
 
-Image view_image(Frame& frame, Show view) {
-  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
-  image.pixels = frame.read(view);
-  return image;
-}
-
 }  // namespace clpv

@@ -41,7 +41,4 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
 /// The same as an image holds it.
 std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
 
-/// A view of the frame's last render, linear.
-Image view_image(Frame& frame, Show view);
-
 }  // namespace clpv

@@ -13,7 +13,6 @@
 #include "clpv/scene.hpp"
 #include "device/device.hpp"
 #include "evaluate/light_field.hpp"
-#include "image/image.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "options/render_options.hpp"
@@ -48,10 +47,7 @@ Options& Options::set(std::string_view name, std::string_view value) {
 }
 
 std::vector<OptionDescription> Options::all() {
-  std::vector<OptionDescription> all;
-  for (const OptionInfo& info : list_options(RenderOptions{}))
-    all.push_back({info.name, info.help, info.allowed, info.value});
-  return all;
+  return list_options(RenderOptions{});
 }
 
 struct SceneFile::Contents {
@@ -59,7 +55,7 @@ struct SceneFile::Contents {
 };
 
 SceneFile::SceneFile(const std::filesystem::path& path, const std::filesystem::path& model)
-    : contents_(std::make_shared<const Contents>(Contents{MovingScene(path, {model})})) {}
+    : contents_(std::make_shared<const Contents>(Contents{MovingScene(path, model)})) {}
 
 std::vector<std::string> SceneFile::cameras() const {
   std::vector<std::string> names;
@@ -74,32 +70,6 @@ bool SceneFile::moves() const {
 std::vector<std::string> SceneFile::notes() const {
   return contents_->moving.scene().notes;
 }
-
-namespace {
-
-/// Without a default: a view that is not listed does not compile.
-Show shown(View view) {
-  switch (view) {
-    case View::full:
-      return Show::full;
-    case View::direct:
-      return Show::direct;
-    case View::indirect:
-      return Show::indirect;
-    case View::irradiance:
-      return Show::irradiance;
-    case View::albedo:
-      return Show::albedo;
-    case View::normal:
-      return Show::normal;
-    case View::depth:
-      return Show::depth;
-  }
-  throw Error(ExitCode::usage, "view {}: allowed: 0..{}", static_cast<int>(view),
-              static_cast<int>(View::depth));
-}
-
-}  // namespace
 
 struct Renderer::State {
   SceneFile file;
@@ -145,14 +115,16 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Image Renderer::render(View view, const std::string& camera, double seconds) {
-  const Show wanted = shown(view);
+  if (name_of(view).empty())
+    throw Error(ExitCode::usage, "view {}: allowed: 0..{}", static_cast<int>(view),
+                static_cast<int>(View::depth));
   state_->light.reset();
   state_->show(seconds);
   const Camera& seen_by = state_->shown().camera(camera);
   state_->frame.render(seen_by);
-  Image image = make_image(state_->options.width, state_->options.height, {"R", "G", "B", "A"});
-  image.pixels = state_->frame.read(wanted);
-  for (const OptionInfo& option : list_options(state_->options)) image.metadata[option.name] = option.value;
+  Image image = view_image(state_->frame, view);
+  for (const OptionDescription& option : list_options(state_->options))
+    image.metadata[option.name] = option.value;
   image.metadata["camera"] = seen_by.name;
   image.metadata["time"] = fmt::format("{}", seconds);
   return image;

@@ -32,12 +32,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-Image shown(Frame& frame, Show show) {
-  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
-  image.pixels = frame.read(show);
-  return image;
-}
-
 void fill_errors(QualityCell& cell, const Image& image, const reference::Reference& truth, Show show) {
   const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
   const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
@@ -112,7 +106,7 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
   for (int i = 0; i <= frames; ++i) {
     frame.forget_light();
     frame.render(camera);
-    const Image image = shown(frame, show);
+    const Image image = view_image(frame, show);
     if (i == 0) continue;  // a first launch compiles
     double total = 0;
     for (const auto& [stage, ms] : stage_sums(session.timeline().times(), cell.from_events)) {

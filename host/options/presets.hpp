@@ -2,7 +2,7 @@
 // Presets: named sets of render options (--preset). Single options override what they set.
 #pragma once
 
-#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,17 +12,10 @@ namespace clpv {
 
 struct RenderOptions;
 
-struct Preset {
-  PresetName name;
-  std::string help;
-  std::vector<std::pair<std::string, std::string>> options;  ///< long name and value; all others: the default
-};
+/// Long names and values of the options that `paper`, the published scheme, sets; `best` leaves them at their defaults.
+const std::vector<std::pair<std::string_view, std::string_view>>& paper_options();
 
-/// `best`, which is the defaults, and `paper`, the published scheme.
-const std::vector<Preset>& presets();
-
-/// Gives every option that some preset sets its value in this one (else its default); the others, such as
-/// the image's size, stay as they are.
+/// Gives those options their values in this preset; the others, such as the image's size, stay as they are.
 void apply_preset(RenderOptions& options, PresetName name);
 
 }  // namespace clpv

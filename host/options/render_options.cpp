@@ -41,11 +41,11 @@ struct OnOff {};
 
 /// A line a preset.
 std::string preset_help() {
-  std::string text = "a set of options, overridden by any of them that is given";
-  for (const Preset& preset : presets()) {
-    text += fmt::format("\n{}: {}", name_of(preset.name), preset.help);
-    for (const auto& [name, value] : preset.options) text += fmt::format(" --{} {}", name, value);
-  }
+  std::string text =
+      "a set of options, overridden by any of them that is given\n"
+      "best: the defaults: closest to path tracing at about the published scheme's cost\n"
+      "paper: the published scheme";
+  for (const auto& [name, value] : paper_options()) text += fmt::format(" --{} {}", name, value);
   return text;
 }
 
@@ -177,8 +177,8 @@ Transport make_transport(const RenderOptions& options, const Basis& basis) {
   return make_transport(options.transport, basis, options.lobes(), options.blocking);
 }
 
-std::vector<OptionInfo> list_options(const RenderOptions& options) {
-  std::vector<OptionInfo> list;
+std::vector<OptionDescription> list_options(const RenderOptions& options) {
+  std::vector<OptionDescription> list;
   for_each_option(options,
                   [&](const char* name, const auto& member, const std::string& help, const auto& allowed) {
                     list.push_back({name, help, allowed_text(member, allowed), text_of(member)});

@@ -12,6 +12,7 @@
 #include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
+#include "clpv/options.hpp"
 #include "options/choices.hpp"
 
 namespace clpv {
@@ -58,16 +59,8 @@ struct RenderOptions {
 std::unique_ptr<Basis> make_basis(const RenderOptions& options);
 Transport make_transport(const RenderOptions& options, const Basis& basis);
 
-/// What a user is told of one option.
-struct OptionInfo {
-  std::string name;     ///< long name without dashes: "cascade-size"
-  std::string help;     ///< with the unit
-  std::string allowed;  ///< "on|off", "1..512"
-  std::string value;    ///< as text, of the given options
-};
-
 /// All options with their present values, in the order of --help.
-std::vector<OptionInfo> list_options(const RenderOptions& options);
+std::vector<OptionDescription> list_options(const RenderOptions& options);
 
 /// Sets one option from text; `preset` sets all that presets know of, so it comes before those that override it; a
 /// basis replaces a file of centres. Throws Error(usage) that names the option, the value found and the values

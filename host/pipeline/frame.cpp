@@ -129,4 +129,10 @@ std::vector<float> Frame::read(Show view) {
   return image;
 }
 
+Image view_image(Frame& frame, Show view) {
+  Image image = make_image(frame.options().width, frame.options().height, {"R", "G", "B", "A"});
+  image.pixels = frame.read(view);
+  return image;
+}
+
 }  // namespace clpv

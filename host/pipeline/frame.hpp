@@ -9,6 +9,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
+#include "image/image.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/cached.hpp"
 #include "pipeline/cascade.hpp"
@@ -81,5 +82,8 @@ class Frame {
   Buffer image_;
   Show shown_ = Show::full;
 };
+
+/// A view of the last render as a linear image.
+Image view_image(Frame& frame, Show view);
 
 }  // namespace clpv

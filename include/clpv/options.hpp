@@ -14,7 +14,7 @@ struct OptionDescription {
   std::string name;     ///< "cascade-size"
   std::string help;     ///< with the unit
   std::string allowed;  ///< "on|off", "1..512"
-  std::string value;    ///< by default
+  std::string value;    ///< by default, or as given
 };
 
 /// Options given, in any order: a preset comes before those that override it. What is not given is the scene's, where
