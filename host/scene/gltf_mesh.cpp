@@ -119,14 +119,14 @@ void append_meshes(const GltfDocument& document, PosedTree& posed, const Materia
       stands[mesh].push_back(i);
   }
   Appender appender(document, scene, motion, notes);
-  VertexMap map;
+  std::vector<std::uint32_t> slots;
   Room room{bounds::kVertices, bounds::kTriangles, bounds::kMorphNumbers};
   for (const auto& [mesh, at] : stands) {
     for (std::size_t i = 0; i < entry(document.model.meshes, mesh).primitives.size(); ++i) {
       check_targets(document, mesh, i);
       room.vertices = bounds::kVertices - scene.vertices.size();
       room.triangles = bounds::kTriangles - scene.triangles.size();
-      LocalPrimitive primitive = read_primitive(document, mesh, i, materials, room, map, notes);
+      LocalPrimitive primitive = read_primitive(document, mesh, i, materials, room, slots, notes);
       if (primitive.triangles.empty()) continue;
       appender.append(std::make_shared<const LocalPrimitive>(std::move(primitive)), at, posed);
     }

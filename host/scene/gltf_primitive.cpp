@@ -22,144 +22,8 @@ struct Attributes {
   std::uint64_t corners() const { return indices ? indices->count() : position.count(); }
 };
 
-class PrimitiveReader {
- public:
-  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source, std::string place,
-                  const UvMapping& mapping)
-      : document_(document), source_(source), place_(std::move(place)), mapping_(mapping) {}
-
-  Attributes attributes(bool textured, Notes& notes) const;
-  /// Of a mode that has triangles. Refuses what the mode or the room left does not allow.
-  std::uint64_t triangle_count(const Attributes& from, int mode, const Room& room) const;
-  void read_triangles(const Attributes& from, int mode, std::uint64_t count, VertexMap& map,
-                      LocalPrimitive& to) const;
-  /// Of the vertices there are: the joints they go with, and the morph targets.
-  void read_influences(const Attributes& from, LocalPrimitive& to) const;
-  void read_targets(const Attributes& from, Room& room, LocalPrimitive& to) const;
-
- private:
-  using Types = std::initializer_list<int>;
-  std::optional<GltfAccessor> attribute(const std::map<std::string, int>& attributes,
-                                        const std::string& place, const std::string& name, Types types,
-                                        std::optional<std::size_t> count,
-                                        const Numbers& numbers = kNumbers) const;
-  LocalVertex vertex(const Attributes& from, std::uint32_t index) const;
-  [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
-    refuse(document_.file, place_, found, allowed);
-  }
-
-  const GltfDocument& document_;
-  const tinygltf::Primitive& source_;
-  std::string place_;
-  const UvMapping& mapping_;
-};
-
-std::optional<GltfAccessor> PrimitiveReader::attribute(const std::map<std::string, int>& attributes,
-                                                       const std::string& place, const std::string& name,
-                                                       Types types, std::optional<std::size_t> count,
-                                                       const Numbers& numbers) const {
-  const auto found = attributes.find(name);
-  if (found == attributes.end()) return std::nullopt;
-  return GltfAccessor(document_, found->second, fmt::format("{}{}/{}", place_, place, name), types, numbers,
-                      count);
-}
-
-Attributes PrimitiveReader::attributes(bool textured, Notes& notes) const {
-  const auto find = [&](const std::string& name, Types types, std::optional<std::size_t> count) {
-    return attribute(source_.attributes, "/attributes", name, types, count);
-  };
-  const auto position = find("POSITION", {TINYGLTF_TYPE_VEC3}, std::nullopt);
-  if (!position) refuse_here("no attribute POSITION", "POSITION, a VEC3");
-  const std::size_t count = position->count();
-  Attributes made{*position, find("NORMAL", {TINYGLTF_TYPE_VEC3}, count), std::nullopt,
-                  find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count), std::nullopt};
-  if (source_.indices >= 0) {
-    made.indices =
-        GltfAccessor(document_, source_.indices, place_ + "/indices", {TINYGLTF_TYPE_SCALAR}, kIndices);
-  }
-  if (textured) {
-    const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
-    made.uv = find(set, {TINYGLTF_TYPE_VEC2}, count);
-    if (!made.uv)
-      notes.add(fmt::format("{}: its material wants {}, which it lacks: 0, 0 instead", place_, set));
-  }
-  return made;
-}
-
 glm::dvec3 vector_in(const GltfAccessor& from, std::uint32_t index) {
   return {from.finite(index, 0), from.finite(index, 1), from.finite(index, 2)};
-}
-
-LocalVertex PrimitiveReader::vertex(const Attributes& from, std::uint32_t index) const {
-  LocalVertex made{vector_in(from.position, index), {}, {}, glm::vec4(1), index};
-  if (from.normal) made.normal = vector_in(*from.normal, index);
-  if (from.uv) {
-    made.uv =
-        glm::vec2(mapping_.transform * glm::dvec3(from.uv->finite(index, 0), from.uv->finite(index, 1), 1));
-    if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
-      refuse_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
-                  "finite numbers");
-    }
-  }
-  for (int i = 0; from.colour && i < from.colour->components(); ++i)
-    made.colour[i] = static_cast<float>(std::clamp(from.colour->finite(index, i), 0.0, 1.0));
-  return made;
-}
-
-void PrimitiveReader::read_influences(const Attributes& from, LocalPrimitive& to) const {
-  const auto find = [&](const char* name, const Numbers& numbers) {
-    return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4}, from.position.count(),
-                     numbers);
-  };
-  const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kNumbers);
-  if (joints.has_value() != weights.has_value()) {
-    refuse(document_.file, place_ + "/attributes",
-           joints ? "JOINTS_0 without WEIGHTS_0" : "WEIGHTS_0 without JOINTS_0", "both or none");
-  }
-  if (!joints) return;
-  to.influences.reserve(to.vertices.size());
-  for (const LocalVertex& vertex : to.vertices) {
-    Influence made{};
-    double sum = 0;
-    for (int i = 0; i < 4; ++i) {
-      const double weight = weights->number(vertex.source, i);
-      if (!(weight >= 0 && weight <= kMostWeight)) {
-        refuse(document_.file, place_ + "/attributes/WEIGHTS_0",
-               fmt::format("{} in component {} of vertex {}", weight, i, vertex.source),
-               fmt::format("0 to {}", kMostWeight));
-      }
-      made.joints[i] = static_cast<std::uint16_t>(joints->index(vertex.source, i));
-      made.weights[i] = weight;
-      sum += weight;
-    }
-    for (double& weight : made.weights) weight = sum > 0 ? weight / sum : 0;
-    if (sum == 0) made.weights[0] = 1;
-    to.influences.push_back(made);
-  }
-}
-
-void PrimitiveReader::read_targets(const Attributes& from, Room& room, LocalPrimitive& to) const {
-  for (std::size_t t = 0; t < source_.targets.size(); ++t) {
-    const std::string place = fmt::format("/targets/{}", t);
-    const auto read = [&](const char* name) {
-      std::vector<glm::vec3> made;
-      const auto found =
-          attribute(source_.targets[t], place, name, {TINYGLTF_TYPE_VEC3}, from.position.count());
-      if (!found) return made;
-      const std::uint64_t numbers = 3 * to.vertices.size();
-      if (numbers > room.morph_numbers) {
-        refuse(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
-               fmt::format("{} left of {} in all", room.morph_numbers, bounds::kMorphNumbers));
-      }
-      room.morph_numbers -= numbers;
-      made.reserve(to.vertices.size());
-      for (const LocalVertex& vertex : to.vertices) made.emplace_back(vector_in(*found, vertex.source));
-      return made;
-    };
-    MorphTarget target{read("POSITION"), {}};
-    if (!to.flat) target.normals = read("NORMAL");
-    to.targets.push_back(std::move(target));
-  }
 }
 
 /// The corners of triangle `i`, in the order that makes its front counter-clockwise (glTF 2.0,
@@ -175,46 +39,174 @@ glm::uvec3 corners_of(int mode, std::uint32_t i) {
   }
 }
 
-std::uint64_t PrimitiveReader::triangle_count(const Attributes& from, int mode, const Room& room) const {
-  const std::uint64_t corners = from.corners();
-  const bool list = mode == TINYGLTF_MODE_TRIANGLES;
-  if (corners < 3 || (list && corners % 3 != 0)) {
-    refuse_here(fmt::format("{} corners", corners), list ? "a multiple of 3, at least 3" : "at least 3");
-  }
-  const std::uint64_t triangles = list ? corners / 3 : corners - 2;
-  if (triangles > room.triangles) {
-    refuse_here(fmt::format("{} more triangles", triangles),
-                fmt::format("{} left of {} in all", room.triangles, bounds::kTriangles));
-  }
-  const std::uint64_t stored = from.position.count(), split = from.normal ? 0 : 3 * triangles;
-  if (stored > bounds::kVertices || split > room.vertices) {
-    refuse_here(fmt::format("{} vertices", std::max(stored, split)),
-                fmt::format("{} left of {} in all", room.vertices, bounds::kVertices));
-  }
-  return triangles;
-}
+class PrimitiveReader {
+ public:
+  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source, std::string place,
+                  const UvMapping& mapping)
+      : document_(document), source_(source), place_(std::move(place)), mapping_(mapping) {}
 
-void PrimitiveReader::read_triangles(const Attributes& from, int mode, std::uint64_t count, VertexMap& map,
-                                     LocalPrimitive& to) const {
-  const std::size_t stored = from.position.count();
-  map.restart(stored);
-  to.vertices.reserve(std::min<std::uint64_t>(stored, 3 * count));
-  to.triangles.reserve(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::uvec3 corner = corners_of(mode, i);
-    glm::uvec3 triangle;
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t source = from.indices ? from.indices->index(corner[k]) : corner[k];
-      if (source >= stored) {
-        refuse_here(fmt::format("index {} at {}", source, corner[k]), fmt::format("0 to {}", stored - 1));
-      }
-      auto fresh = static_cast<std::uint32_t>(to.vertices.size());
-      triangle[k] = map.slot(source, fresh);
-      if (fresh > to.vertices.size()) to.vertices.push_back(vertex(from, source));
+  Attributes attributes(bool textured, Notes& notes) const {
+    const auto find = [&](const std::string& name, Types types, std::optional<std::size_t> count) {
+      return attribute(source_.attributes, "/attributes", name, types, count);
+    };
+    const auto position = find("POSITION", {TINYGLTF_TYPE_VEC3}, std::nullopt);
+    if (!position) refuse_here("no attribute POSITION", "POSITION, a VEC3");
+    const std::size_t count = position->count();
+    Attributes made{*position, find("NORMAL", {TINYGLTF_TYPE_VEC3}, count), std::nullopt,
+                    find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count), std::nullopt};
+    if (source_.indices >= 0) {
+      made.indices =
+          GltfAccessor(document_, source_.indices, place_ + "/indices", {TINYGLTF_TYPE_SCALAR}, kIndices);
     }
-    to.triangles.push_back(triangle);
+    if (textured) {
+      const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
+      made.uv = find(set, {TINYGLTF_TYPE_VEC2}, count);
+      if (!made.uv)
+        notes.add(fmt::format("{}: its material wants {}, which it lacks: 0, 0 instead", place_, set));
+    }
+    return made;
   }
-}
+
+  /// Of a mode that has triangles. Refuses what the mode or the room left does not allow.
+  std::uint64_t triangle_count(const Attributes& from, int mode, const Room& room) const {
+    const std::uint64_t corners = from.corners();
+    const bool list = mode == TINYGLTF_MODE_TRIANGLES;
+    if (corners < 3 || (list && corners % 3 != 0)) {
+      refuse_here(fmt::format("{} corners", corners), list ? "a multiple of 3, at least 3" : "at least 3");
+    }
+    const std::uint64_t triangles = list ? corners / 3 : corners - 2;
+    if (triangles > room.triangles) {
+      refuse_here(fmt::format("{} more triangles", triangles),
+                  fmt::format("{} left of {} in all", room.triangles, bounds::kTriangles));
+    }
+    const std::uint64_t stored = from.position.count(), split = from.normal ? 0 : 3 * triangles;
+    if (stored > bounds::kVertices || split > room.vertices) {
+      refuse_here(fmt::format("{} vertices", std::max(stored, split)),
+                  fmt::format("{} left of {} in all", room.vertices, bounds::kVertices));
+    }
+    return triangles;
+  }
+
+  void read_triangles(const Attributes& from, int mode, std::uint64_t count,
+                      std::vector<std::uint32_t>& slots, LocalPrimitive& to) const {
+    const std::size_t stored = from.position.count();
+    if (slots.size() < stored) slots.resize(stored, kNoSlot);
+    to.vertices.reserve(std::min<std::uint64_t>(stored, 3 * count));
+    to.triangles.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::uvec3 corner = corners_of(mode, i);
+      glm::uvec3 triangle;
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t source = from.indices ? from.indices->index(corner[k]) : corner[k];
+        if (source >= stored) {
+          refuse_here(fmt::format("index {} at {}", source, corner[k]), fmt::format("0 to {}", stored - 1));
+        }
+        if (slots[source] == kNoSlot) {
+          slots[source] = static_cast<std::uint32_t>(to.vertices.size());
+          to.vertices.push_back(vertex(from, source));
+        }
+        triangle[k] = slots[source];
+      }
+      to.triangles.push_back(triangle);
+    }
+    for (const LocalVertex& vertex : to.vertices) slots[vertex.source] = kNoSlot;
+  }
+
+  /// Of the vertices there are: the joints they go with, and the morph targets.
+  void read_influences(const Attributes& from, LocalPrimitive& to) const {
+    const auto find = [&](const char* name, const Numbers& numbers) {
+      return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4}, from.position.count(),
+                       numbers);
+    };
+    const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kNumbers);
+    if (joints.has_value() != weights.has_value()) {
+      refuse(document_.file, place_ + "/attributes",
+             joints ? "JOINTS_0 without WEIGHTS_0" : "WEIGHTS_0 without JOINTS_0", "both or none");
+    }
+    if (!joints) return;
+    to.influences.reserve(to.vertices.size());
+    for (const LocalVertex& vertex : to.vertices) {
+      Influence made{};
+      double sum = 0;
+      for (int i = 0; i < 4; ++i) {
+        const double weight = weights->number(vertex.source, i);
+        if (!(weight >= 0 && weight <= kMostWeight)) {
+          refuse(document_.file, place_ + "/attributes/WEIGHTS_0",
+                 fmt::format("{} in component {} of vertex {}", weight, i, vertex.source),
+                 fmt::format("0 to {}", kMostWeight));
+        }
+        made.joints[i] = static_cast<std::uint16_t>(joints->index(vertex.source, i));
+        made.weights[i] = weight;
+        sum += weight;
+      }
+      for (double& weight : made.weights) weight = sum > 0 ? weight / sum : 0;
+      if (sum == 0) made.weights[0] = 1;
+      to.influences.push_back(made);
+    }
+  }
+
+  void read_targets(const Attributes& from, Room& room, LocalPrimitive& to) const {
+    for (std::size_t t = 0; t < source_.targets.size(); ++t) {
+      const std::string place = fmt::format("/targets/{}", t);
+      const auto read = [&](const char* name) {
+        std::vector<glm::vec3> made;
+        const auto found =
+            attribute(source_.targets[t], place, name, {TINYGLTF_TYPE_VEC3}, from.position.count());
+        if (!found) return made;
+        const std::uint64_t numbers = 3 * to.vertices.size();
+        if (numbers > room.morph_numbers) {
+          refuse(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
+                 fmt::format("{} left of {} in all", room.morph_numbers, bounds::kMorphNumbers));
+        }
+        room.morph_numbers -= numbers;
+        made.reserve(to.vertices.size());
+        for (const LocalVertex& vertex : to.vertices) made.emplace_back(vector_in(*found, vertex.source));
+        return made;
+      };
+      MorphTarget target{read("POSITION"), {}};
+      if (!to.flat) target.normals = read("NORMAL");
+      to.targets.push_back(std::move(target));
+    }
+  }
+
+ private:
+  using Types = std::initializer_list<int>;
+
+  std::optional<GltfAccessor> attribute(const std::map<std::string, int>& attributes,
+                                        const std::string& place, const std::string& name, Types types,
+                                        std::optional<std::size_t> count,
+                                        const Numbers& numbers = kNumbers) const {
+    const auto found = attributes.find(name);
+    if (found == attributes.end()) return std::nullopt;
+    return GltfAccessor(document_, found->second, fmt::format("{}{}/{}", place_, place, name), types, numbers,
+                        count);
+  }
+
+  LocalVertex vertex(const Attributes& from, std::uint32_t index) const {
+    LocalVertex made{vector_in(from.position, index), {}, {}, glm::vec4(1), index};
+    if (from.normal) made.normal = vector_in(*from.normal, index);
+    if (from.uv) {
+      made.uv =
+          glm::vec2(mapping_.transform * glm::dvec3(from.uv->finite(index, 0), from.uv->finite(index, 1), 1));
+      if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
+        refuse_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
+                    "finite numbers");
+      }
+    }
+    for (int i = 0; from.colour && i < from.colour->components(); ++i)
+      made.colour[i] = static_cast<float>(std::clamp(from.colour->finite(index, i), 0.0, 1.0));
+    return made;
+  }
+
+  [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
+    refuse(document_.file, place_, found, allowed);
+  }
+
+  const GltfDocument& document_;
+  const tinygltf::Primitive& source_;
+  std::string place_;
+  const UvMapping& mapping_;
+};
 
 /// Each triangle gets three vertices of its own with its normal (glTF 2.0, section 3.7.2.1: flat normals).
 void split_flat(LocalPrimitive& primitive) {
@@ -254,22 +246,9 @@ void normalize_stored(LocalPrimitive& primitive) {
 
 }  // namespace
 
-void VertexMap::restart(std::size_t count) {
-  if (entries_.size() < count) entries_.resize(count);
-  if (++stamp_ == 0) {  // wrapped: old stamps would look new
-    std::fill(entries_.begin(), entries_.end(), Entry{});
-    stamp_ = 1;
-  }
-}
-
-std::uint32_t VertexMap::slot(std::uint32_t source, std::uint32_t& fresh) {
-  Entry& entry = entries_[source];
-  if (entry.stamp != stamp_) entry = {stamp_, fresh++};
-  return entry.slot;
-}
-
 LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
-                              const MaterialSet& materials, Room& room, VertexMap& map, Notes& notes) {
+                              const MaterialSet& materials, Room& room, std::vector<std::uint32_t>& slots,
+                              Notes& notes) {
   const tinygltf::Primitive& source = entry(document.model.meshes, mesh).primitives[index];
   LocalPrimitive made;
   made.place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
@@ -285,7 +264,7 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
   const PrimitiveReader reader(document, source, made.place, materials.mappings[made.material]);
   const Attributes attributes = reader.attributes(textured, notes);
   const std::uint64_t triangles = reader.triangle_count(attributes, source.mode, room);
-  reader.read_triangles(attributes, source.mode, triangles, map, made);
+  reader.read_triangles(attributes, source.mode, triangles, slots, made);
   made.flat = !attributes.normal;
   if (made.flat) {
     split_flat(made);

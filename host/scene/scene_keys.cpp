@@ -110,21 +110,6 @@ Curve read_curve(const json& keys, const std::string& quantity, bool direction, 
   return curve;
 }
 
-void interpolate(Curve& curve, KeyInterpolation interpolation) {
-  switch (interpolation) {
-    case KeyInterpolation::linear:
-      curve.interpolation = Interpolation::linear;
-      return;
-    case KeyInterpolation::step:
-      curve.interpolation = Interpolation::step;
-      return;
-    case KeyInterpolation::smooth:
-      curve.values = with_tangents(curve);
-      curve.interpolation = Interpolation::cubic_spline;
-      return;
-  }
-}
-
 }  // namespace
 
 std::vector<Rule> key_rules(const KeyedList& list) {
@@ -161,7 +146,8 @@ KeyedEntry::KeyedEntry(const json& given, const KeyedList& list, const std::stri
         quantity_of(quantity), quantity.shape == Shape::number, quantity_of(quantity) == list.direction, {}};
     track.curve = read_curve(given["keys"], track.quantity, track.direction, file, place);
     if (track.curve.times.empty()) continue;
-    interpolate(track.curve, interpolation);
+    if (interpolation == KeyInterpolation::smooth) track.curve.values = with_tangents(track.curve);
+    track.curve.interpolation = static_cast<Interpolation>(interpolation);
     tracks_.push_back(std::move(track));
   }
 }

@@ -13,7 +13,7 @@
 
 namespace clpv {
 
-/// How what moves goes from key to key.
+/// How what moves goes from key to key: an Interpolation, by the scene file's names.
 enum class KeyInterpolation : unsigned {
   linear,  ///< evenly; directions along the great circle
   step,    ///< not at all, until the next key
