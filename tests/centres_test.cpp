@@ -41,7 +41,7 @@ TEST_F(CentresFile, MakesTheBasis) {
 
 TEST_F(CentresFile, RefusesWithThePlace) {
   const std::pair<std::string, std::string> bad[] = {
-      {"{", "not JSON"},
+      {"{", "no JSON"},
       {"[1]", "object"},
       {"{}", "/centres is missing"},
       {R"({"centres": []})", "1 to 64"},
@@ -49,7 +49,7 @@ TEST_F(CentresFile, RefusesWithThePlace) {
       {R"({"centres": [[0, 0, 1], [1, 2]]})", "/centres/1"},
       {R"({"centres": [[0, 0, 0]]})", "/centres/0"},
       {R"({"centres": [[0, 0, "1"]]})", "/centres/0/2"},
-      {R"({"centres": [[0, 0, 1e999]]})", "not JSON"},
+      {R"({"centres": [[0, 0, 1e999]]})", "no JSON"},
       {R"({"centres": [[0, 0, 1], [0, 0, 5]]})", "/centres/1"},
       {R"({"centres": [[0, 0, 1]], "lambda": 1})", "/lambda is 1; allowed: a number between 0 and 1"},
       {R"({"centres": [[0, 0, 1]], "lambda": "wide"})", "/lambda is \"wide\""},
@@ -59,15 +59,15 @@ TEST_F(CentresFile, RefusesWithThePlace) {
       {R"({"centres": [[0, 0, 1], [0.01, 0, 1]], "lambda": 0.01})", "condition number"},
       {R"({"centres": [[0, 0, 1]], "lambdas": 0.2})", "lambdas"},
       {R"({"centres": [[0, 0, 1]], "name": 3})", "/name"},
-      {std::string(100000, '['), "not JSON"},
+      {std::string(100000, '['), "nested more than"},
       {std::string(2 << 20, ' '), "bytes"},
   };
   for (const auto& [text, word] : bad) expect_refused(file(text), word);
   std::string many = "[[0,0,1]";
   for (int i = 1; i < 65; ++i) many += ",[" + std::to_string(i) + ",1,0]";
   expect_refused(file("{\"centres\": " + many + "]}"), "array of 65");
-  expect_refused((folder_.path() / "none.json").string(), "cannot be read");
-  expect_refused(folder_.path().string(), "cannot be read");
+  expect_refused((folder_.path() / "none.json").string(), "no file");
+  expect_refused(folder_.path().string(), "a folder");
 }
 
 TEST_F(CentresFile, IsDescribedByTheProgram) {

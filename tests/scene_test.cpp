@@ -56,8 +56,8 @@ struct SceneTest : ::testing::Test {
     folder.write("models/model.gltf", made.document.dump());
   }
 
-  Scene load(const std::string& text, const LoadOptions& options = {}) {
-    return load_scene(folder.write("test.json", text), options);
+  Scene load(const std::string& text, const std::filesystem::path& replacement = {}) {
+    return load_scene(folder.write("test.json", text), replacement);
   }
 };
 
@@ -184,7 +184,7 @@ std::filesystem::path sponza() {
 TEST(SponzaTest, IsWhatItsReadmeSays) {
   const auto model = sponza();
   if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA says where it lies";
-  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/sponza.json", {model});
+  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/sponza.json", model);
   EXPECT_EQ(scene.triangles.size(), 262267u);
   EXPECT_EQ(scene.vertices.size(), 192870u);
   EXPECT_EQ(scene.materials.size(), 25u);

@@ -16,6 +16,7 @@
 #include "commands/options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -78,7 +79,7 @@ nlohmann::json earlier_run(const Options& options) {
                 "--compare with --format {}: both would be on stdout; allowed: --format table, or --out",
                 options.format);
   }
-  nlohmann::json report = read_document(options.compare);
+  nlohmann::json report = read_json(options.compare);
   bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
   return report;
 }
@@ -102,7 +103,7 @@ void take_scene(Options& options, const bench::Suite& suite) {
     return;
   }
   const std::string file = options.scene.empty() ? suite.usual_scene : options.scene;
-  const auto scene = std::make_shared<const Scene>(load_scene(file, {options.model}));
+  const auto scene = std::make_shared<const Scene>(load_scene(file, options.model));
   options.bench.suite.scene = scene;
   if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;

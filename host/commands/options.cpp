@@ -11,15 +11,11 @@
 #include <string_view>
 
 #include "scene/bounds.hpp"
-#include "scene/input.hpp"
 #include "support/error.hpp"
-#include "support/input_file.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
 namespace {
-
-constexpr std::uintmax_t kLargestDocument = std::uintmax_t{64} << 20;  // bytes; a full matrix takes 2 MB
 
 /// Nothing where the text is not three numbers between commas.
 template <typename T>
@@ -36,7 +32,7 @@ std::optional<glm::vec<3, T>> parse_three(std::string_view text) {
   return values;
 }
 
-CLI::Option* add_text(CLI::App& command, const OptionInfo& info,
+CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
                       const std::function<void(const std::string&)>& take) {
   return command
       .add_option_function<std::string>("--" + info.name, take,
@@ -99,7 +95,7 @@ void set_given(RenderOptions& options, const std::string& name, const std::strin
 }
 
 void add_frame_options(CLI::App& command, GivenOptions& given) {
-  for (const OptionInfo& info : list_options(RenderOptions{})) {
+  for (const OptionDescription& info : list_options(RenderOptions{})) {
     if (command.get_option_no_throw("--" + info.name) != nullptr) continue;
     const auto take = [&given, name = info.name](const std::string& text) {
       RenderOptions probe;
@@ -112,7 +108,7 @@ void add_frame_options(CLI::App& command, GivenOptions& given) {
 
 void add_some_frame_options(CLI::App& command, RenderOptions& options,
                             const std::vector<std::string>& names) {
-  for (const OptionInfo& info : list_options(options)) {
+  for (const OptionDescription& info : list_options(options)) {
     if (std::ranges::find(names, info.name) == names.end()) continue;
     add_text(command, info,
              [&options, name = info.name](const std::string& text) { set_given(options, name, text); });
@@ -128,11 +124,6 @@ void require_extension(const std::string& option, const std::filesystem::path& f
   if (std::ranges::count(allowed, file.extension().string()) > 0) return;
   throw Error(ExitCode::usage, "{} {}: found extension '{}', allowed: {}", option, file.string(),
               file.extension().string(), fmt::join(allowed, ", "));
-}
-
-nlohmann::json read_document(const std::string& path) {
-  const Bytes bytes = read_file(path, kLargestDocument, path);
-  return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
 }
 
 void create_folder(const std::string& option, const std::filesystem::path& folder) {

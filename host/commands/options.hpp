@@ -87,10 +87,6 @@ nlohmann::json to_json(const Device& device);
 void require_extension(const std::string& option, const std::filesystem::path& file,
                        const std::vector<std::string>& allowed);
 
-/// A JSON document that an earlier run wrote. Throws Error(bad_input) for a file that cannot be read, is longer than any has, or
-/// is not JSON.
-nlohmann::json read_document(const std::string& path);
-
 /// Makes the folder that an option names, where it is not there. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);
 

@@ -55,7 +55,7 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
   std::vector<Subject> subjects;
   for (const std::string& path : given.scenes) {
     Subject& subject = subjects.emplace_back();
-    MovingScene moving(path, {model_for(path, given)});
+    MovingScene moving(path, model_for(path, given));
     moving.pose(given.time);
     subject.scene = std::move(moving).take();
     for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);

@@ -41,7 +41,7 @@ void run(const Options& options, const Shared& shared) {
   if (!options.output.empty()) check_writable(options.output);
   const std::vector<SurfacePoint> points = read_points(options.points);
   const RenderRequest& request = options.request;
-  MovingScene moving(request.scene, {request.model});
+  MovingScene moving(request.scene, request.model);
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, moving.scene());
   const Camera& camera = moving.scene().camera(request.camera);

@@ -88,7 +88,7 @@ void run(const Options& options, Shared& shared) {
   Team& team = shared.team();
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   check_outputs(options);
-  MovingScene moving(options.scene, {options.model});
+  MovingScene moving(options.scene, options.model);
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
   moving.pose(options.time);
   const Scene& scene = moving.scene();

@@ -91,7 +91,7 @@ void run(const Options& options, const Shared& shared) {
   FrameStats stats;
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
-  MovingScene moving(request.scene, {request.model});
+  MovingScene moving(request.scene, request.model);
   const Scene& scene = moving.scene();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, scene);

@@ -20,6 +20,7 @@
 #include "pipeline/frame.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
+#include "support/json_schema.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
 
@@ -58,7 +59,7 @@ nlohmann::json read_documents(const std::vector<std::string>& paths, const char*
                               const char* command) {
   nlohmann::json all = nlohmann::json::array();
   for (const std::string& path : paths) {
-    const nlohmann::json document = read_document(path);
+    const nlohmann::json document = read_json(path);
     if (!document.is_object() || !document.contains(wanted)) {
       throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON", path, wanted,
                   command);

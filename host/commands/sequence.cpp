@@ -83,7 +83,7 @@ class Sequence {
   Sequence(const Options& options, const Shared& shared, Team& team)
       : options_(options),
         team_(team),
-        moving_(options.request.scene, {options.request.model}),
+        moving_(options.request.scene, options.request.model),
         resolved_(resolve_options(options.request.frame, moving_.scene())),
         device_(team.device(shared.device)) {
     tell_of_scene(moving_.scene(), camera(), resolved_);

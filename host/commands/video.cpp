@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kFfmpeg = "ffmpeg";
 // Players want even sides and half as many colours; 18 is where x264's loss is hardly seen.
 constexpr const char* kEncoding =
     "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart -f mp4 -y";
@@ -41,10 +42,8 @@ std::vector<std::string> words_of(const std::string& text) {
 
 Video::Video(fs::path file, double frames_per_second)
     : file_(std::move(file)), frames_per_second_(frames_per_second) {
-  const std::vector<fs::path> found = find_programs("ffmpeg");
-  if (found.empty())
+  if (Process(kFfmpeg, {"-version"}).end().code != 0)
     throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in the path (Debian: ffmpeg)");
-  ffmpeg_ = found.front();
   check_writable(file_);
   part_ = file_.parent_path() / fmt::format(".{}.{}.part", file_.filename().string(), ::getpid());
 }
@@ -56,7 +55,7 @@ Video::~Video() {
 }
 
 void Video::fail(const Process::Ended& ended) const {
-  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(), ended.code,
+  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), kFfmpeg, ended.code,
               ended.said);
 }
 
@@ -67,7 +66,7 @@ void Video::add(const Image& shown) {
                              "-framerate {} -i pipe:0 {}",
                              shown.width, shown.height, frames_per_second_, kEncoding));
     words.push_back(part_.string());
-    process_ = std::make_unique<Process>(ffmpeg_, words, true);
+    process_ = std::make_unique<Process>(kFfmpeg, words, true);
   }
   const std::vector<std::uint8_t> bytes = rgb_bytes(shown);
   if (!process_->feed(std::as_bytes(std::span(bytes)))) fail(process_->end());

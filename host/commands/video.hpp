@@ -28,7 +28,7 @@ class Video {
  private:
   [[noreturn]] void fail(const Process::Ended& ended) const;
 
-  std::filesystem::path file_, part_, ffmpeg_;
+  std::filesystem::path file_, part_;
   double frames_per_second_;
   std::unique_ptr<Process> process_;
 };

@@ -6,12 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace clpv::bounds {
+#include "support/json_schema.hpp"
 
-// Text. Real glTF nests some ten levels deep; extras a few more. Parsers downstream may recurse.
-inline constexpr int kJsonNesting = 64;
-inline constexpr std::uint64_t kJsonBytes = 256ull << 20;  // base64 buffers included
-inline constexpr std::uint64_t kJsonValues = 8ull << 20;   // parsed, a value takes 16 to 100 bytes
+namespace clpv::bounds {
 
 // Bytes. All buffers of a model together, and one image file; a .glb holds both kinds and the JSON.
 inline constexpr std::uint64_t kBufferBytes = 2ull << 30;

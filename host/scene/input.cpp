@@ -3,41 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scene/bounds.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace fs = std::filesystem;
 namespace {
-
-/// Bounds the depth of brackets and the number of values, without recursion and before a parser allocates for
-/// them.
-void check_extent(std::string_view text, const std::string& file) {
-  int depth = 0;
-  std::uint64_t values = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > bounds::kJsonNesting) {
-        refuse(file, {}, fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
-               fmt::format("at most {} levels", bounds::kJsonNesting));
-      }
-    } else if (c == ']' || c == '}') {
-      --depth;
-    } else if (c == ',' && ++values > bounds::kJsonValues) {
-      refuse(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues), "at most as many");
-    }
-  }
-}
 
 std::optional<std::string> percent_decoded(std::string_view uri) {
   std::string out;
@@ -68,21 +40,6 @@ std::string shown(std::string_view text) {
   std::string out(text.substr(0, kShown));
   std::replace(out.begin(), out.end(), '\n', ' ');
   return text.size() > kShown ? out + "..." : out;
-}
-
-nlohmann::json parse_json(std::string_view text, const std::string& file) {
-  if (text.size() > bounds::kJsonBytes) {
-    refuse(file, {}, fmt::format("{} bytes of JSON", text.size()),
-           fmt::format("at most {}", bounds::kJsonBytes));
-  }
-  check_extent(text, file);
-  try {
-    return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& error) {  // its text carries line and column
-    std::string what = error.what();
-    std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
-    refuse(file, {}, "no JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
-  }
 }
 
 fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::string& file,

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// JSON and URIs of untrusted files: bounded, and only from where a scene may read.
+// URIs of untrusted files: only from where a scene may read.
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -14,10 +13,6 @@ namespace clpv {
 
 /// Text from a file as it may stand in a message: short, on one line.
 std::string shown(std::string_view text);
-
-/// Parses JSON whose length, nesting and number of values are bounded first. Throws Error(bad_input) with line and column of a syntax
-/// error.
-nlohmann::json parse_json(std::string_view text, const std::string& file);
 
 /// The file that a relative URI of `file` means, percent-decoded, links resolved. `folder` is canonical.
 /// Throws Error(bad_input) for whatever leaves `folder`, and what is no regular file.

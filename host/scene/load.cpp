@@ -109,14 +109,14 @@ void add_defaults(Scene& scene, bool lights_given, Notes& notes) {
 
 }  // namespace
 
-void MovingScene::load_described(const std::filesystem::path& path, const LoadOptions& options,
+void MovingScene::load_described(const std::filesystem::path& path, const std::filesystem::path& replacement,
                                  Notes& notes) {
   description_ = read_scene_file(path);
   DescribedViews views = views_at(description_, 0);
-  const std::filesystem::path model = options.model.empty() ? description_.model : options.model;
+  const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
   if (model.empty()) refuse(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
   std::error_code unknown;
-  if (options.model.empty() && !std::filesystem::exists(model, unknown)) {
+  if (replacement.empty() && !std::filesystem::exists(model, unknown)) {
     refuse(path.string(), "/model", "no file '" + model.string() + "'",
            "an existing file; option model says where it lies");
   }
@@ -135,14 +135,14 @@ void MovingScene::show(DescribedViews views) {
   if (views.lights) scene_.lights = std::move(*views.lights);
 }
 
-MovingScene::MovingScene(const std::filesystem::path& path, const LoadOptions& options) {
+MovingScene::MovingScene(const std::filesystem::path& path, const std::filesystem::path& replacement) {
   Notes notes;
   const std::string extension = extension_of(path);
   if (extension == ".json") {
-    load_described(path, options, notes);
+    load_described(path, replacement, notes);
     scene_.path = path.string();
   } else if (extension == ".gltf" || extension == ".glb") {
-    const std::filesystem::path model = options.model.empty() ? path : options.model;
+    const std::filesystem::path model = replacement.empty() ? path : replacement;
     scene_ = load_gltf(model, 1.0, motion_, notes);
     scene_.path = model.string();
   } else {
@@ -164,8 +164,8 @@ void MovingScene::pose(double seconds) {
   if (description_.moves()) show(views_at(description_, seconds));
 }
 
-Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
-  return MovingScene(path, options).take();
+Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model) {
+  return MovingScene(path, model).take();
 }
 
 bool is_bare_model(const Scene& scene) {

@@ -11,22 +11,18 @@
 
 namespace clpv {
 
-struct LoadOptions {
-  std::filesystem::path model;  ///< replaces the scene file's model; empty: as the file says
-};
-
-/// Loads a scene file (.json: see docs/scenes.md), or a bare .gltf / .glb.
+/// Loads a scene file (.json: see docs/scenes.md), or a bare .gltf / .glb. `model` replaces the file's; empty: as it says.
 /// Untrusted input: everything is bounded before it is allocated, nothing outside the model's folder is read.
 /// Throws Error(bad_input) that names file, place (JSON pointer), value found and value allowed.
 /// What it shows is the scene at 0 s.
-Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
+Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
 /// A scene that may move: read once, and shown at any instant. What is added where the files say nothing (a camera that
 /// frames the model) fits the scene at 0 s, and stays.
 class MovingScene {
  public:
   /// At 0 s. Reads and throws as load_scene does.
-  explicit MovingScene(const std::filesystem::path& path, const LoadOptions& options = {});
+  explicit MovingScene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
   /// At the instant posed last: the same scene for the same instant, whatever came before. It stays where it is as long as
   /// the MovingScene does.
@@ -40,7 +36,7 @@ class MovingScene {
   Scene take() && { return std::move(scene_); }
 
  private:
-  void load_described(const std::filesystem::path& path, const LoadOptions& options, Notes& notes);
+  void load_described(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
   void show(DescribedViews views);
 
   Motion motion_;

@@ -278,8 +278,7 @@ bool SceneDescription::moves() const {
 SceneDescription read_scene_file(const std::filesystem::path& path) {
   SceneDescription scene;
   scene.file = path.string();
-  const Bytes bytes = read_file(path, bounds::kJsonBytes, scene.file);
-  const json parsed = parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, scene.file);
+  const json parsed = read_json(path);
   check_rules(parsed, rules(), scene.file);
   check_no_other_keys(parsed, rules(), scene.file);
   if (parsed.contains("model")) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -214,6 +213,32 @@ void check_keys(const json& value, const std::string& pattern, const std::string
   }
 }
 
+/// Bounds the depth of brackets and the number of values, without recursion and before a parser allocates for
+/// them.
+void check_extent(std::string_view text, const std::string& file) {
+  int depth = 0;
+  std::uint64_t values = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      if (c == '"') quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > bounds::kJsonNesting) {
+        refuse(file, {}, fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
+               fmt::format("at most {} levels", bounds::kJsonNesting));
+      }
+    } else if (c == ']' || c == '}') {
+      --depth;
+    } else if (c == ',' && ++values > bounds::kJsonValues) {
+      refuse(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues), "at most as many");
+    }
+  }
+}
+
 }  // namespace
 
 void check_rules(const json& document, std::span<const Rule> rules, const std::string& file) {
@@ -224,18 +249,24 @@ void check_no_other_keys(const json& document, std::span<const Rule> rules, cons
   check_keys(document, "", "", rules, file);
 }
 
-json read_json(const std::string& path, std::uintmax_t most) {
-  std::error_code failed;
-  const auto bytes = std::filesystem::file_size(path, failed);
-  if (failed) throw Error(ExitCode::bad_input, "{}: cannot be read: {}", path, failed.message());
-  if (bytes > most) throw Error(ExitCode::bad_input, "{}: {} bytes; allowed: at most {}", path, bytes, most);
-  const auto text = file_bytes(path, most);
-  if (!text) throw Error(ExitCode::bad_input, "{}: cannot be read", path);
-  try {
-    return json::parse(*text);
-  } catch (const json::exception& error) {
-    throw Error(ExitCode::bad_input, "{}: not JSON: {}", path, error.what());
+json parse_json(std::string_view text, const std::string& file) {
+  if (text.size() > bounds::kJsonBytes) {
+    refuse(file, {}, fmt::format("{} bytes of JSON", text.size()),
+           fmt::format("at most {}", bounds::kJsonBytes));
   }
+  check_extent(text, file);
+  try {
+    return json::parse(text);
+  } catch (const json::exception& error) {  // its text carries line and column
+    std::string what = error.what();
+    std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
+    refuse(file, {}, "no JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
+  }
+}
+
+json read_json(const std::filesystem::path& path, std::uint64_t most) {
+  const Bytes bytes = read_file(path, most, path.string());
+  return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
 }
 
 std::string quoted(const json& value) {

@@ -6,12 +6,23 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace clpv {
+
+namespace bounds {
+
+// Text. Real glTF nests some ten levels deep; extras a few more. Parsers downstream may recurse.
+inline constexpr int kJsonNesting = 64;
+inline constexpr std::uint64_t kJsonBytes = 256ull << 20;  // base64 buffers included
+inline constexpr std::uint64_t kJsonValues = 8ull << 20;   // parsed, a value takes 16 to 100 bytes
+
+}  // namespace bounds
 
 enum class Shape { object, list, text, flag, integer, number, vector, index };
 
@@ -51,8 +62,12 @@ void check_rules(const nlohmann::json& document, std::span<const Rule> rules, co
 void check_no_other_keys(const nlohmann::json& document, std::span<const Rule> rules,
                          const std::string& file);
 
-/// A file of JSON, of at most `most` bytes. Throws Error(bad_input) where it cannot be read, is longer, or is no JSON.
-nlohmann::json read_json(const std::string& path, std::uintmax_t most);
+/// Parses JSON whose length, nesting and number of values are bounded first. Throws Error(bad_input) with line and column of a syntax
+/// error.
+nlohmann::json parse_json(std::string_view text, const std::string& file);
+
+/// The JSON of a file of at most `most` bytes. Throws Error(bad_input) where it cannot be read, is longer, or is no JSON.
+nlohmann::json read_json(const std::filesystem::path& path, std::uint64_t most = bounds::kJsonBytes);
 
 /// What a message quotes of a value: enough to recognise it.
 std::string quoted(const nlohmann::json& value);

@@ -116,9 +116,9 @@ struct GltfBuilder {
 };
 
 /// Loads what must be refused, and returns the message.
-inline std::string refusal(const std::filesystem::path& path, const LoadOptions& options = {}) {
+inline std::string refusal(const std::filesystem::path& path, const std::filesystem::path& replacement = {}) {
   try {
-    load_scene(path, options);
+    load_scene(path, replacement);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
     return error.what();
