@@ -10,6 +10,7 @@
 #include "checks/comparison.hpp"
 #include "pipeline/gather.hpp"
 #include "reference/gather.hpp"
+#include "reference/view.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -38,17 +39,6 @@ bool filters(const Variant& v) {
   return v.options.layout == Layout::image && v.filtered;
 }
 
-/// Where a pixel's surface lies [m].
-glm::dvec3 position(const ClpvView& view, std::size_t pixel, double depth) {
-  const double sx = (2 * (static_cast<double>(pixel % view.width) + 0.5) / view.width - 1) * view.half_width;
-  const double sy =
-      (1 - 2 * (static_cast<double>(pixel / view.width) + 0.5) / view.height) * view.half_height;
-  glm::dvec3 p;
-  for (int a = 0; a < 3; ++a)
-    p[a] = view.eye[a] + depth * (view.forward[a] + sx * view.right[a] + sy * view.up[a]);
-  return p;
-}
-
 /// Irradiance of every kCheckedPixels-th pixel, three channels each.
 std::vector<double> twin_of(const GatherJob& p, TransportKind transport, Inputs& inputs,
                             const SurfaceImage& camera) {
@@ -62,10 +52,13 @@ std::vector<double> twin_of(const GatherJob& p, TransportKind transport, Inputs&
   std::vector<double> values;
   for (std::size_t i = 0; i < camera.depth.size(); i += kCheckedPixels) {
     const glm::dvec3 normal(glm::vec3(camera.normal[i]));
-    const glm::dvec3 e = camera.depth[i] > 0
-                             ? reference::gather(*p.basis, transport, p.options, cascades,
-                                                 position(camera.view, i, camera.depth[i]), normal)
-                             : glm::dvec3(0);
+    const glm::dvec3 e =
+        camera.depth[i] > 0
+            ? reference::gather(*p.basis, transport, p.options, cascades,
+                                reference::surface_position(camera.view, i % camera.view.width,
+                                                            i / camera.view.width, camera.depth[i]),
+                                normal)
+            : glm::dvec3(0);
     values.insert(values.end(), {e.x, e.y, e.z});
   }
   return values;

@@ -10,6 +10,7 @@
 #include "pipeline/cascade.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/view.hpp"
+#include "reference/view.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bench {
@@ -95,18 +96,13 @@ struct Compared {
 
 void compare(Compared& compared, const reference::RayScene& rays, Pass pass, const ClpvView& v,
              const std::vector<float>& depth) {
-  const auto vec = [](const float(&a)[3]) { return glm::vec3(a[0], a[1], a[2]); };
+  const reference::Faces faces =
+      pass == Pass::rasterize_camera ? reference::Faces::as_seen : reference::Faces::both;
   for (std::size_t i = 0; i < depth.size(); i += kCheckedTexels) {
-    const float sx =
-        (2 * (static_cast<float>(i % v.width) + 0.5f) / static_cast<float>(v.width) - 1) * v.half_width;
-    const float sy =
-        (1 - 2 * (static_cast<float>(i / v.width) + 0.5f) / static_cast<float>(v.height)) * v.half_height;
-    const glm::vec3 aside = sx * vec(v.right) + sy * vec(v.up);
-    const bool parallel = v.orthographic > 0.5f;
-    const auto hit =
-        rays.intersect(vec(v.eye) + (parallel ? aside : glm::vec3(0)),
-                       vec(v.forward) + (parallel ? glm::vec3(0) : aside), v.near_depth, v.far_depth,
-                       pass == Pass::rasterize_camera ? reference::Faces::as_seen : reference::Faces::both);
+    const auto at = [&](double behind) {
+      return glm::vec3(reference::surface_position(v, i % v.width, i / v.width, behind));
+    };
+    const auto hit = rays.intersect(at(0), at(1) - at(0), v.near_depth, v.far_depth, faces);
     const double found = hit ? hit->distance : 0;
     compared.checked += 1;
     if (std::abs(depth[i] - found) <= kSameDepth * found) continue;

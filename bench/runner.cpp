@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/runner.hpp"
 
-#include <fcntl.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -135,14 +133,13 @@ std::vector<Case> filtered(std::vector<Case> cases, const std::optional<std::reg
 }  // namespace
 
 RowLog::RowLog(const std::filesystem::path& file) : file_(file) {
-  if (file_.empty()) return;
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor_ < 0)
-    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+  if (!file_.empty()) out_.open(file_, std::ios::binary | std::ios::trunc);
+  check();
 }
 
-RowLog::~RowLog() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+void RowLog::check() const {
+  if (!out_)
+    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
 }
 
 void RowLog::begun(const std::string& name) {
@@ -154,11 +151,9 @@ void RowLog::done(const Row& row) {
 }
 
 void RowLog::write(const std::string& line) {
-  if (descriptor_ < 0) return;
-  const std::string whole =
-      line + "\n";  // one write a line: the kernel has it, whatever becomes of the process
-  if (::write(descriptor_, whole.data(), whole.size()) != static_cast<ssize_t>(whole.size()))
-    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+  if (!out_.is_open()) return;
+  out_ << line << '\n' << std::flush;  // the system has it, whatever becomes of the process
+  check();
 }
 
 std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, const RunnerOptions& options) {

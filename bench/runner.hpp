@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <regex>
 #include <string>
@@ -23,9 +24,6 @@ class RowLog {
  public:
   /// Empties the file. Throws Error(run_time) where it cannot be written. No file: nothing is kept.
   explicit RowLog(const std::filesystem::path& file);
-  ~RowLog();
-  RowLog(const RowLog&) = delete;
-  RowLog& operator=(const RowLog&) = delete;
 
   /// {"begun": NAME}: it is being made ready; the last one without its {"row": ...} is what a crash was in.
   void begun(const std::string& name);
@@ -34,9 +32,10 @@ class RowLog {
 
  private:
   void write(const std::string& line);
+  void check() const;
 
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  std::ofstream out_;
 };
 
 struct RunnerOptions {

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "bench/suites.hpp"
+#include "checks/comparison.hpp"
 #include "options/presets.hpp"
 #include "support/named_enum.hpp"
 
@@ -116,18 +117,13 @@ Deviation repeat(Path& path, Session& session) {
   path.frame.render(path.at(path.next - 1));
   session.queue().finish();
   const std::vector<float> again = path.frame.read(Show::full);
-  Deviation deviation{0, 0, {}};
-  double largest = 0;
-  for (const float value : again) largest = std::max(largest, static_cast<double>(std::abs(value)));
-  for (std::size_t i = 0; i < again.size(); ++i) {
-    const double error = std::abs(static_cast<double>(timed[i]) - again[i]) / largest;
-    if (error <= deviation.worst) continue;
-    deviation.worst = error;
-    deviation.place =
-        fmt::format("pixel {} channel {}: {:.7g}, rendered again {:.7g}", i / 4, i % 4, timed[i], again[i]);
-    if (std::isnan(error)) break;
-  }
-  return deviation;
+  const reference::WorstError worst = reference::worst_difference(
+      again.size(), [&](std::size_t i) { return double{timed[i]}; },
+      [&](std::size_t i) { return double{again[i]}; });
+  if (worst.value == 0) return {0, 0, {}};
+  return {worst.value, 0,
+          fmt::format("pixel {} channel {}: {:.7g}, rendered again {:.7g}", worst.at / 4, worst.at % 4,
+                      timed[worst.at], again[worst.at])};
 }
 
 Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render, Anew anew) {

@@ -8,9 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <sstream>
 #include <utility>
 
 extern char** environ;
@@ -35,18 +33,7 @@ std::string contents(std::FILE* file) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> find_programs(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::vector<std::filesystem::path> found;
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path candidate = std::filesystem::path(folder) / name;
-    if (::access(candidate.c_str(), X_OK) == 0) found.push_back(candidate);
-  }
-  return found;
-}
-
-Process::Process(const std::filesystem::path& program, const std::vector<std::string>& arguments, bool fed)
+Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool fed)
     : said_(std::tmpfile()) {
   // A pair of sockets and no pipe: writing to a reader that is gone is then an error and not a signal.
   int ends[2] = {-1, -1};
@@ -64,9 +51,10 @@ Process::Process(const std::filesystem::path& program, const std::vector<std::st
   }
   posix_spawn_file_actions_adddup2(&actions, ::fileno(said_.get()), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, ::fileno(said_.get()), STDERR_FILENO);
-  std::string name = program.string();
+  std::string name = program;
   std::vector<std::string> given = arguments;
-  failed_ = ::posix_spawn(&child_, program.c_str(), &actions, nullptr, words_of(name, given).data(), environ);
+  failed_ =
+      ::posix_spawnp(&child_, program.c_str(), &actions, nullptr, words_of(name, given).data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (fed) ::close(ends[1]);
   if (failed_ != 0) child_ = -1;

@@ -6,16 +6,12 @@
 
 #include <cstddef>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace clpv {
-
-/// Every program of that name in the path, in its order.
-std::vector<std::filesystem::path> find_programs(const std::string& name);
 
 class Process {
  public:
@@ -24,8 +20,8 @@ class Process {
     std::string said;  ///< on stdout and stderr
   };
 
-  /// Starts it, without a shell. `fed`: it reads what feed() gives it; else it has nothing to read.
-  Process(const std::filesystem::path& program, const std::vector<std::string>& arguments, bool fed = false);
+  /// Starts it, without a shell; looked up in the path where its name has no '/'. `fed`: it reads what feed() gives it; else it has nothing to read.
+  Process(const std::string& program, const std::vector<std::string>& arguments, bool fed = false);
   ~Process();  ///< ends the input, and waits
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
