@@ -6,8 +6,8 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/check.hpp"
 #include "checks/comparison.hpp"
+#include "checks/tolerances.hpp"
 #include "pipeline/gather.hpp"
 #include "reference/gather.hpp"
 #include "reference/view.hpp"
@@ -102,7 +102,7 @@ Job gather_job(Bench& bench, const Variant& variant) {
     const auto twin =
         bench.twin(key, [&] { return twin_of(*p, o.transport, bench.inputs(), seen.camera_image); });
     return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
-                   reference::tolerance_in(filters(variant) ? "gather-filter" : "gather", o.format()));
+                   reference::tolerance(filters(variant) ? "gather-filter" : "gather", o.format().storage));
   };
   const VolumeFormat format = variant.options.format();
   const int n = p->basis->size();

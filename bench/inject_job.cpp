@@ -6,8 +6,8 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/check.hpp"
 #include "checks/comparison.hpp"
+#include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"
 #include "reference/inject.hpp"
 
@@ -115,7 +115,7 @@ Deviation verify(const Injection& p, Bench& bench, const Inputs::Seen& seen, con
                   p.geometry != nullptr, o.grid, variant.cascade.value_or(0));
   const auto twin = bench.twin(key, [&] { return twin_of(p, seen, inject_options(o, false)); });
   const bool plain = o.lobe == LobeKind::exact || o.storage == Storage::float16;
-  Deviation deviation{0, reference::tolerance_in(plain ? "inject" : "inject-rotated", o.format()), {}};
+  Deviation deviation{0, reference::tolerance(plain ? "inject" : "inject-rotated", o.format().storage), {}};
   std::size_t before = 0;
   if (p.light) {
     const std::vector<float> light = p.light->read(bench.session);

@@ -7,8 +7,8 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/check.hpp"
 #include "checks/comparison.hpp"
+#include "checks/tolerances.hpp"
 #include "pipeline/propagate.hpp"
 #include "reference/propagate.hpp"
 
@@ -149,7 +149,7 @@ Job propagate_job(Bench& bench, const Variant& variant) {
     const bool at_run_time = o.lobe_time == LobeTime::kernel && o.storage == Storage::float32;
     return compare_volumes(
         p->accumulated.read(bench.session), *twin, grid,
-        reference::tolerance_in(at_run_time ? "propagate-run-time-lobes" : "propagate", o.format()));
+        reference::tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", o.format().storage));
   };
   return job;
 }

@@ -8,7 +8,7 @@
 #include "basis/sweep.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/check.hpp"
+#include "checks/tolerances.hpp"
 #include "codegen/sweep_source.hpp"
 #include "codegen/transmit_source.hpp"
 #include "pipeline/sweep.hpp"
@@ -128,7 +128,7 @@ Job sweep_job(Bench& bench, const Variant& variant) {
     const auto twin =
         bench.twin(sweep_twin_key(p->variant), [&] { return swept_twin(bench.inputs(), p->variant); });
     return compare_volumes(p->accumulated.read(bench.session), *twin, p->options.grid,
-                           reference::tolerance_in("sweep", p->options.format));
+                           reference::tolerance("sweep", p->options.format.storage));
   };
   return job;
 }

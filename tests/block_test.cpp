@@ -111,7 +111,7 @@ TEST(Block, ATriangleBeyondTheHorizonIsAWall) {
 }
 
 TEST(Block, KernelsAgreeWithTheirTwin) {
-  expect_passed(reference::check_block(test_session()), 2);
+  expect_passed(reference::check(Stage::block, test_session()), 2);
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ TEST(BouncedFrame, RefusesWhatDoesNotSweep) {
 }
 
 TEST(Bounce, KernelsAgreeWithTheirTwin) {
-  expect_passed(reference::check_bounce(test_session(), few_variants()), 4);
+  expect_passed(reference::check(Stage::bounce, test_session(), few_variants()), 4);
 }
 
 }  // namespace

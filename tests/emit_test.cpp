@@ -161,7 +161,7 @@ TEST(Emit, WhatIsMostIsWhatOneCellOrTheWholeSends) {
 }
 
 TEST(Emit, KernelAgreesWithItsTwin) {
-  expect_passed(reference::check_emit(test_session()), 2);
+  expect_passed(reference::check(Stage::emit, test_session()), 2);
 }
 
 /// A small lamp under the ceiling of nothing, over a floor that a frame shows.

@@ -245,7 +245,7 @@ TEST(Gather, RefusesWhatDoesNotFit) {
 }
 
 TEST(Gather, KernelsAgreeWithTheTwin) {
-  expect_passed(reference::check_gather(test_session(), test::few_variants()));
+  expect_passed(reference::check(Stage::gather, test_session(), test::few_variants()));
 }
 
 }  // namespace

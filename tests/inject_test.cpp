@@ -330,7 +330,7 @@ TEST(Inject, ASmallerSurfaceOfMoreSegmentsFollowsALargerOne) {
 }
 
 TEST(Inject, KernelsAgreeWithTheTwin) {
-  expect_passed(reference::check_inject(test_session(), test::few_variants()));
+  expect_passed(reference::check(Stage::inject, test_session(), test::few_variants()));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ std::vector<double> device_energies(const Basis& basis, const Transport& transpo
 }
 
 TEST(Propagate, KernelsAgreeWithTheTwin) {
-  expect_passed(reference::check_propagate(test_session(), test::few_variants()));
+  expect_passed(reference::check(Stage::propagate, test_session(), test::few_variants()));
 }
 
 TEST(Propagate, EmptyFieldStaysExactlyZero) {

@@ -352,7 +352,7 @@ TEST(Rasterize, ScenesThatDoNotHoldTogetherAreRefused) {
 }
 
 TEST(Rasterize, MatchesItsTwin) {
-  expect_passed(reference::check_rasterize(test_session()));
+  expect_passed(reference::check(Stage::rasterize, test_session()));
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(Reflect, ATriangleBeyondTheHorizonReflectsInEveryCell) {
 }
 
 TEST(Reflect, KernelsAgreeWithTheirTwin) {
-  expect_passed(reference::check_reflect(test_session()), 2);
+  expect_passed(reference::check(Stage::reflect, test_session()), 2);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(See, NothingIsHiddenInAGridOfOneCell) {
 }
 
 TEST(See, TheKernelAgreesWithItsTwin) {
-  expect_passed(reference::check_see(test_session()), 1);
+  expect_passed(reference::check(Stage::see, test_session()), 1);
 }
 
 }  // namespace

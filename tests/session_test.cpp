@@ -150,7 +150,8 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
 
 TEST(Sizes, HostAndDeviceAgreeOnTheSharedStructs) {
   Session session(choose_device());
-  for (const auto& result : reference::check_sizes(session)) EXPECT_TRUE(result.passed()) << result.place;
+  for (const auto& result : reference::check(Stage::sizes, session))
+    EXPECT_TRUE(result.passed()) << result.place;
 }
 
 /// The log, in place of stderr, while this lives.

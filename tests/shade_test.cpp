@@ -133,7 +133,7 @@ TEST(Shade, RefusesMapsThatDoNotFit) {
 }
 
 TEST(Shade, KernelsAgreeWithTheirTwin) {
-  expect_passed(reference::check_shade(test_session()));
+  expect_passed(reference::check(Stage::shade, test_session()));
 }
 
 }  // namespace

@@ -294,7 +294,7 @@ TEST(Sweep, IsNoMatterOfSteps) {
 }
 
 TEST(Sweep, KernelsAgreeWithTheirTwin) {
-  expect_passed(reference::check_sweep(test_session(), few_variants()), 6);
+  expect_passed(reference::check(Stage::sweep, test_session(), few_variants()), 6);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "basis/basis.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/suites.hpp"
-#include "checks/check.hpp"
+#include "checks/tolerances.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
@@ -45,7 +45,7 @@ Job native_job(Bench& bench, const Variant& variant) {
         p->baseline.accumulated(),
         reference::propagate(p->transport, injected, o.occlusion ? &corners : nullptr, o.iterations)
             .accumulated.values,
-        o.grid, reference::tolerance_in("propagate", o.format()));
+        o.grid, reference::tolerance("propagate", o.format().storage));
   };
   job.cost.flops = p->baseline.flops(o.iterations);
   job.cost.bytes = p->baseline.bytes(o.iterations);

@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "checks/check.hpp"
 
-#include "checks/tolerances.hpp"
 #include "support/log.hpp"
 
 namespace clpv::reference {
+namespace {
+
+constexpr StageCheck* kChecks[] = {check_sizes,  check_rasterize, check_emit,      check_inject,
+                                   check_block,  check_reflect,   check_propagate, check_sweep,
+                                   check_bounce, check_see,       check_gather,    check_shade};
+static_assert(std::size(kChecks) == kNames<Stage>.size());
+
+}  // namespace
 
 CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
-  switch (stage) {
-    case Stage::sizes:
-      return check_sizes(session);
-    case Stage::rasterize:
-      return check_rasterize(session);
-    case Stage::emit:
-      return check_emit(session);
-    case Stage::inject:
-      return check_inject(session, scope);
-    case Stage::block:
-      return check_block(session);
-    case Stage::reflect:
-      return check_reflect(session);
-    case Stage::propagate:
-      return check_propagate(session, scope);
-    case Stage::sweep:
-      return check_sweep(session, scope);
-    case Stage::bounce:
-      return check_bounce(session, scope);
-    case Stage::see:
-      return check_see(session);
-    case Stage::gather:
-      return check_gather(session, scope);
-    case Stage::shade:
-      return check_shade(session);
-  }
-  return {};
+  return kChecks[static_cast<std::size_t>(stage)](session, scope);
 }
 
 std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
@@ -48,10 +29,6 @@ std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape&
     }
   }
   return supported;
-}
-
-double tolerance_in(std::string_view stage, const VolumeFormat& format) {
-  return format.storage == Storage::float16 ? half_tolerance(stage) : tolerance(stage);
 }
 
 }  // namespace clpv::reference

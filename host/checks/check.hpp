@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -36,9 +35,7 @@ using CheckResults = std::vector<CheckResult>;
 
 /// Those of `formats`, beside the default soa/float, in which the device can hold volumes of this shape.
 std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
-                                        const std::vector<VolumeFormat>& formats = all_formats());
-/// tolerance(stage), or that of half storage.
-double tolerance_in(std::string_view stage, const VolumeFormat& format);
+                                        const std::vector<VolumeFormat>& formats);
 
 /// What a check goes through; parts of it where tests want each to be short.
 struct CheckScope {
@@ -47,21 +44,12 @@ struct CheckScope {
   std::vector<VolumeFormat> formats = all_formats();  ///< those that the device lacks are left out
 };
 
-/// A stage's. The scope is for those of many variants: inject, propagate, sweep, bounce, gather.
+/// A stage's. Small inputs: each ends within seconds on a CPU device, but for building kernels.
 CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 
-// One a stage, in checks/check_STAGE.cpp. Small inputs: each ends within seconds on a CPU device, but for building kernels.
-CheckResults check_sizes(Session& session);  ///< the shared structs' layout; worst in bytes
-CheckResults check_rasterize(Session& session);
-CheckResults check_emit(Session& session);
-CheckResults check_inject(Session& session, const CheckScope& scope = {});
-CheckResults check_block(Session& session);
-CheckResults check_reflect(Session& session);
-CheckResults check_propagate(Session& session, const CheckScope& scope = {});
-CheckResults check_sweep(Session& session, const CheckScope& scope = {});
-CheckResults check_bounce(Session& session, const CheckScope& scope = {});
-CheckResults check_see(Session& session);
-CheckResults check_gather(Session& session, const CheckScope& scope = {});
-CheckResults check_shade(Session& session);
+// Each stage's, in checks/check_*.cpp.
+using StageCheck = CheckResults(Session& session, const CheckScope& scope);
+StageCheck check_sizes, check_rasterize, check_emit, check_inject, check_block, check_reflect,
+    check_propagate, check_sweep, check_bounce, check_see, check_gather, check_shade;
 
 }  // namespace clpv::reference

@@ -13,6 +13,7 @@
 #include "checks/comparison.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"
+#include "pipeline/view.hpp"
 #include "reference/inject.hpp"
 #include "reference/view.hpp"
 
@@ -28,22 +29,16 @@ constexpr double kMargin = 0.01;
 const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
 
 /// A view from above or from a corner that sees the grid and some space beside it.
-ClpvView view_of_grid(bool orthographic, double distance) {
-  const glm::vec3 centre = glm::vec3(kCells.origin[0], kCells.origin[1], kCells.origin[2]) +
-                           0.5f * kCells.cell * static_cast<float>(kGrid);
-  const glm::vec3 forward =
-      glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
-  const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 0, 1)));
-  const glm::vec3 up = glm::cross(right, forward), eye = centre - static_cast<float>(distance) * forward;
-  ClpvView view{};
-  for (int a = 0; a < 3; ++a) {
-    view.eye[a] = eye[a], view.right[a] = right[a], view.up[a] = up[a], view.forward[a] = forward[a];
-  }
+ClpvView view_of_grid(bool orthographic, float distance) {
+  const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kGrid;
+  Camera camera;
+  camera.forward = glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
+  camera.up = {0, 0, 1};
+  camera.eye = centre - distance * camera.forward;
+  ClpvView view = camera_view(camera, kWidth, kHeight);
   view.orthographic = orthographic ? 1.0f : 0.0f;
   view.half_width = orthographic ? 1.6f : 0.4f;
   view.half_height = orthographic ? 1.5f : 0.35f;
-  view.width = kWidth, view.height = kHeight;
-  view.far_depth = 100;
   return view;
 }
 
@@ -61,7 +56,7 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
   constexpr float kDistance = 5, kSpread = 1.4f;
   SurfaceImage surface;
   surface.view = view_of_grid(orthographic, kDistance);
-  const glm::vec3 forward(surface.view.forward[0], surface.view.forward[1], surface.view.forward[2]);
+  const glm::vec3 forward(vector(surface.view.forward));
   const std::size_t count = std::size_t{kWidth} * kHeight;
   surface.normal.resize(count), surface.colour.resize(count), surface.depth.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -107,11 +102,8 @@ std::vector<glm::dvec3> directions() {
 CheckResult compare(const Basis& basis, const InjectOptions& options, const std::vector<float>& device,
                     const Volume& twin, const std::string& variant) {
   const bool rotated = options.lobes.kind == LobeKind::rotate;
-  CheckResult result{"inject",
-                     variant,
-                     0,
-                     rotated ? tolerance("inject-rotated") : tolerance_in("inject", options.format),
-                     {}};
+  const double allowed = rotated ? tolerance("inject-rotated") : tolerance("inject", options.format.storage);
+  CheckResult result{"inject", variant, 0, allowed, {}};
   const auto cells = static_cast<std::size_t>(twin.n) * twin.n * twin.n;
   const std::size_t size = twin.coefficients;
   const bool areas = twin.channels == 1 && !blocks_by_lobes(options.blocking);
@@ -138,75 +130,78 @@ CheckResult compare(const Basis& basis, const InjectOptions& options, const std:
   return result;
 }
 
-std::string blocking_label(Blocking blocking) {
-  return blocking == InjectOptions{}.blocking ? "" : fmt::format("/{}", clpv::name_of(blocking));
-}
+/// One comparison: light, or geometry with blockers.
+struct InjectCase {
+  InjectOptions options = {};
+  bool light = true, orthographic = true, points = false;
+  RsmFormat format = RsmFormat::float32;
+  int stride = 1;
 
-std::string name_of(const Basis& basis, const char* stage, bool orthographic, RsmFormat format,
-                    const InjectOptions& options) {
-  return fmt::format("{}/{}/{}{}{}{}", basis.name(), stage, orthographic ? "orthographic" : "perspective",
-                     format == RsmFormat::paper ? "/paper" : "", blocking_label(options.blocking),
-                     options.unit_flux_lobes ? "/unit-flux" : "") +
-         (options.lobes.kind == LobeKind::exact ? "" : "/rotate") +
-         (options.table == TableStorage::buffer ? "" : "/image") +
-         (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
-}
+  std::string name(const Basis& basis) const {
+    std::string name = fmt::format("{}/{}/{}", basis.name(),
+                                   points  ? "points"
+                                   : light ? "light"
+                                           : "geometry",
+                                   orthographic ? "orthographic" : "perspective");
+    if (format == RsmFormat::paper) name += "/paper";
+    if (options.blocking == Blocking::areas) name += "/areas";
+    if (options.unit_flux_lobes) name += "/unit-flux";
+    if (options.lobes.kind == LobeKind::rotate) name += "/rotate";
+    if (options.table == TableStorage::image) name += "/image";
+    if (options.format != VolumeFormat{}) name += fmt::format("/{}", format_name(options.format));
+    return stride == 1 ? name : name + fmt::format("/stride {}", stride);
+  }
+};
 
-CheckResult check_light(Session& session, const Basis& basis, const InjectOptions& options, bool orthographic,
-                        RsmFormat format, bool points = false) {
-  SurfaceImage image = random_surface(basis, options.lobes, orthographic, true, format, 11);
-  if (points) image = as_points(std::move(image));
-  const Surface surface = upload_surface(session, image, format);
-  clpv::Volume light(session, {kGrid, basis.size(), 3}, "check: light", options.format);
-  Injector(session, basis, options).inject_light(surface, kCells, light);
-  Volume twin(kGrid, basis.size(), 3);
-  inject_light(read_surface(session, surface), kCells, basis, options, twin);
-  return compare(basis, options, light.read(session), twin,
-                 name_of(basis, points ? "points" : "light", orthographic, format, options));
-}
-
-/// Two surfaces, so that they are merged.
-CheckResult check_geometry(Session& session, const Basis& basis, const InjectOptions& options,
-                           bool orthographic, RsmFormat format, int stride = 1) {
-  const int numbers = blocking_size(options.blocking, basis);
-  clpv::Volume geometry(session, {kGrid + 1, numbers, 1}, "check: geometry", options.format);
-  Volume twin(kGrid + 1, numbers, 1);
+/// Blockers are those of two surfaces, so that they are merged.
+CheckResult check_one(Session& session, const Basis& basis, InjectCase c) {
+  c.options.grid = kGrid;
+  const InjectOptions& options = c.options;
+  const int samples = kGrid + (c.light ? 0 : 1),
+            numbers = c.light ? basis.size() : blocking_size(options.blocking, basis),
+            channels = c.light ? 3 : 1;
+  clpv::Volume volume(session, {samples, numbers, channels}, "check: injection", options.format);
+  Volume twin(samples, numbers, channels);
   Injector injector(session, basis, options);
-  for (const unsigned seed : {12u, 13u}) {
-    const bool from_above = orthographic == (seed == 12u);
-    const Surface surface = upload_surface(
-        session, random_surface(basis, options.lobes, from_above, false, format, seed), format);
-    injector.inject_geometry(surface, kCells, geometry, stride);
-    inject_geometry(read_surface(session, surface), kCells, basis, options, twin, stride);
+  if (c.light) {
+    SurfaceImage image = random_surface(basis, options.lobes, c.orthographic, true, c.format, 11);
+    if (c.points) image = as_points(std::move(image));
+    const Surface surface = upload_surface(session, image, c.format);
+    injector.inject_light(surface, kCells, volume);
+    inject_light(read_surface(session, surface), kCells, basis, options, twin);
   }
-  return compare(basis, options, geometry.read(session), twin,
-                 name_of(basis, "geometry", orthographic, format, options) +
-                     (stride == 1 ? "" : fmt::format("/stride {}", stride)));
+  for (unsigned seed = 12; seed < 14 && !c.light; ++seed) {
+    const bool from_above = c.orthographic == (seed == 12);
+    const SurfaceImage image = random_surface(basis, options.lobes, from_above, false, c.format, seed);
+    const Surface surface = upload_surface(session, image, c.format);
+    injector.inject_geometry(surface, kCells, volume, c.stride);
+    inject_geometry(read_surface(session, surface), kCells, basis, options, twin, c.stride);
+  }
+  return compare(basis, options, volume.read(session), twin, c.name(basis));
 }
 
-/// Lobes rotated at run time. Reading an image hardly depends on the basis.
-void check_rotated(Session& session, const Basis& basis, bool thorough, CheckResults& results) {
-  if (basis.centres().empty()) return;  // rotated are the exact ones
-  InjectOptions rotated{.grid = kGrid, .lobes = {.kind = LobeKind::rotate}};
-  results.push_back(check_light(session, basis, rotated, true, RsmFormat::float32));
-  results.push_back(check_geometry(session, basis, rotated, true, RsmFormat::float32));
-  rotated.table = TableStorage::image;
-  if (session.device().images && (thorough || basis.size() == 4))
-    results.push_back(check_light(session, basis, rotated, false, RsmFormat::float32));
-  if (!thorough) return;
-  const InjectOptions scaled{.grid = kGrid, .unit_flux_lobes = true, .lobes = rotated.lobes};
-  results.push_back(check_light(session, basis, scaled, false, RsmFormat::float32));
-}
-
-/// Every other way for volumes to lie in memory.
-void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  for (const VolumeFormat& format :
-       other_formats(session.device(), {kGrid + 1, basis->size(), 3}, scope.formats)) {
-    const InjectOptions options{.grid = kGrid, .format = format};
-    results.push_back(check_light(session, *basis, options, false, RsmFormat::float32));
-    results.push_back(check_geometry(session, *basis, options, true, RsmFormat::float32));
+/// What is compared of a basis.
+std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool thorough) {
+  std::vector<InjectCase> cases = {{}, {.light = false}};
+  if (!basis.centres().empty()) {  // of others rotated lobes are the exact ones
+    const InjectOptions rotated{.lobes = {.kind = LobeKind::rotate}};
+    cases.push_back({.options = rotated});
+    cases.push_back({.options = rotated, .light = false});
+    if (device.images && (thorough || basis.size() == 4)) {  // reading an image hardly depends on the basis
+      cases.push_back({.options = rotated, .orthographic = false});
+      cases.back().options.table = TableStorage::image;
+    }
+    if (thorough) {
+      cases.push_back({.options = rotated, .orthographic = false});
+      cases.back().options.unit_flux_lobes = true;
+    }
   }
+  // What hardly depends on the basis, for the small ones: compiling takes most of the time.
+  if (basis.size() > 4) return cases;
+  cases.push_back({.options = {.unit_flux_lobes = true}, .orthographic = false});
+  cases.push_back({.orthographic = false, .format = RsmFormat::paper});
+  cases.push_back({.light = false, .orthographic = false, .format = RsmFormat::paper});
+  return cases;
 }
 
 }  // namespace
@@ -215,28 +210,22 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
   CheckResults results;
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
-    const InjectOptions plain{.grid = kGrid};
-    results.push_back(check_light(session, *basis, plain, true, RsmFormat::float32));
-    results.push_back(check_geometry(session, *basis, plain, true, RsmFormat::float32));
-    check_rotated(session, *basis, scope.thorough, results);
-    // What hardly depends on the basis, for the small ones: compiling takes most of the time.
-    if (basis->size() > 4) continue;
-    const InjectOptions unit_flux{.grid = kGrid, .unit_flux_lobes = true};
-    results.push_back(check_light(session, *basis, unit_flux, false, RsmFormat::float32));
-    results.push_back(check_light(session, *basis, plain, false, RsmFormat::paper));
-    results.push_back(check_geometry(session, *basis, plain, false, RsmFormat::paper));
+    for (const InjectCase& c : cases_of(session.device(), *basis, scope.thorough))
+      results.push_back(check_one(session, *basis, c));
   }
-  for (const bool orthographic : {true, false}) {
-    const InjectOptions areas{.grid = kGrid, .blocking = Blocking::areas};  // whatever the basis
-    for (const int stride : {1, 2, 3}) {
-      if (orthographic && stride > 1) continue;
-      results.push_back(
-          check_geometry(session, *make_basis("sh2"), areas, orthographic, RsmFormat::float32, stride));
-    }
+  // Whatever the basis: areas, points that no view sees, and every other way for volumes to lie in memory.
+  const InjectOptions areas{.blocking = Blocking::areas};
+  std::vector<InjectCase> cases = {{.options = areas, .light = false},
+                                   {.orthographic = false, .points = true}};
+  for (const int stride : {1, 2, 3})
+    cases.push_back({.options = areas, .light = false, .orthographic = false, .stride = stride});
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  for (const VolumeFormat& format :
+       other_formats(session.device(), {kGrid + 1, basis->size(), 3}, scope.formats)) {
+    cases.push_back({.options = {.format = format}, .orthographic = false});
+    cases.push_back({.options = {.format = format}, .light = false});
   }
-  results.push_back(
-      check_light(session, *make_basis("sh2"), {.grid = kGrid}, false, RsmFormat::float32, true));
-  check_formats(session, scope, results);
+  for (const InjectCase& c : cases) results.push_back(check_one(session, *basis, c));
   return results;
 }
 

@@ -120,10 +120,10 @@ Volume random_blockers(int numbers, int n, std::mt19937& random) {
   return volume;
 }
 
-void compare_cascade(const std::vector<float>& found, const Volume& twin, std::size_t cascade,
-                     CheckResult& result) {
-  const Comparison apart = compare_volumes(found, twin.values, twin.n);
-  result.take(apart.worst, [&] { return fmt::format("cascade {} {}", cascade, apart.place); });
+clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format) {
+  clpv::Volume volume(session, {from.n, from.coefficients, from.channels}, "check: volume", format);
+  volume.write(session, {from.values.begin(), from.values.end()});
+  return volume;
 }
 
 }  // namespace clpv::reference

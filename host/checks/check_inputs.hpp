@@ -13,9 +13,11 @@
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "checks/check.hpp"
+#include "checks/comparison.hpp"
 #include "pipeline/surface.hpp"
 #include "reference/volume.hpp"
 #include "scene/scene.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv::reference {
 
@@ -42,8 +44,7 @@ Volume random_light(const Basis& basis, int n, std::mt19937& random);
 /// `numbers` a corner, in [0, 1].
 Volume random_blockers(int numbers, int n, std::mt19937& random);
 
-/// `result`, or the greatest difference of a cascade over the largest value where that is more.
-void compare_cascade(const std::vector<float>& found, const Volume& twin, std::size_t cascade,
-                     CheckResult& result);
+/// A volume on the device that holds the same numbers.
+clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format);
 
 }  // namespace clpv::reference

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "checks/check.hpp"
-#include "checks/comparison.hpp"
+#include "checks/check_inputs.hpp"
 #include "checks/tolerances.hpp"
 #include "pipeline/propagate.hpp"
 #include "reference/propagate.hpp"
@@ -22,67 +22,22 @@ constexpr int kGrid = 7;         // no multiple of anything: borders, partial wo
 constexpr int kFormatGrid = 17;  // whole blocks of 8 cells and one cell more
 constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
-/// Lobes of random direction and colour in a third of the cells; what injection leaves.
-Volume random_light(const Basis& basis, int n, std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Volume volume(n, basis.size());
-  for (int cell = 0; cell < n * n * n; ++cell) {
-    const int x = cell % n, y = cell / n % n, z = cell / n / n;
-    const glm::dvec3 d = glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
-    if (uniform(random) > -0.33) continue;
-    const std::vector<double> lobe = basis.clamped_cosine(d);
-    for (int channel = 0; channel < 3; ++channel) {
-      const double power = 1 + uniform(random);
-      for (int i = 0; i < basis.size(); ++i)
-        volume.at(channel, i, x, y, z) = static_cast<float>(power * lobe[i]);
-    }
-  }
-  return volume;
-}
-
-/// Surfels of random direction and cover, as lobes or areas, on half the corners.
-Volume random_blockers(const Basis& basis, const Transport& transport, int n, std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  const int numbers = blocking_size(transport.blocking, basis);
-  Volume volume(n + 1, numbers, 1);
-  for (int z = 0; z <= n; ++z) {
-    for (int y = 0; y <= n; ++y) {
-      for (int x = 0; x <= n; ++x) {
-        const glm::dvec3 d =
-            glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random) + 1e-3));
-        const double cover = std::max(0.0, 1.5 * uniform(random));
-        const std::vector<double> lobe = basis.clamped_cosine(d);
-        for (int i = 0; i < numbers; ++i) {
-          const double share = blocks_by_lobes(transport.blocking) ? lobe[i] : std::abs(d[i]);
-          volume.at(0, i, x, y, z) = static_cast<float>(cover * share);
-        }
-      }
-    }
-  }
-  return volume;
-}
-
-std::vector<float> to_float(const std::vector<double>& values) {
-  return {values.begin(), values.end()};
-}
-
 CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
                       const PropagateOptions& options, bool blockers) {
   std::mt19937 random(7);
   const int n = options.grid;
   const Volume light = random_light(basis, n, random);
-  const Volume geometry = random_blockers(basis, transport, n, random);
-  clpv::Volume injected(session, {n, basis.size(), 3}, "check: injected light", options.format);
+  const Volume geometry = random_blockers(blocking_size(transport.blocking, basis), n, random);
+  const clpv::Volume injected = on_device(session, light, options.format),
+                     corners = on_device(session, geometry, options.format);
   clpv::Volume accumulated(session, {n, basis.size(), 3}, "check: accumulated light", options.format);
-  clpv::Volume corners(session, {n + 1, geometry.coefficients, 1}, "check: geometry", options.format);
-  injected.write(session, to_float(light.values));
-  corners.write(session, to_float(geometry.values));
   Propagator propagator(session, basis, transport, options);
   propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
   const Propagation twin = propagate(transport, light, blockers ? &geometry : nullptr, kSteps);
   const Comparison apart = compare_volumes(accumulated.read(session), twin.accumulated.values, n);
-  const double allowed = options.lobe_time == LobeTime::kernel ? tolerance("propagate-run-time-lobes")
-                                                               : tolerance_in("propagate", options.format);
+  const double allowed = options.lobe_time == LobeTime::kernel
+                             ? tolerance("propagate-run-time-lobes")
+                             : tolerance("propagate", options.format.storage);
   const std::string variant =
       fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(transport.kind), name_of(options.state),
                   !blockers                               ? "free"

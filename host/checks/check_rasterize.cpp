@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rasteriser against its twin: random and awkward triangles, every kind of view.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -120,79 +121,47 @@ class SceneMaker {
   std::mt19937 random_;
 };
 
-/// Holds a device's surface against the twin's, pixel by pixel.
-class Comparison {
- public:
-  Comparison(const SurfaceImage& device, const Rasterized& twin, const std::string& variant)
-      : twin_(twin),
-        values_{"rasterize", variant, 0, tolerance("rasterize"), {}},
-        edges_{"rasterize-edges", variant, 0, tolerance("rasterize-edges"), {}} {
-    std::size_t apart = 0;
-    for (std::size_t at = 0; at < twin.doubtful.size(); ++at) {
-      const double error = pixel_error(device, at);
-      if (!twin.doubtful[at]) {
-        keep(error, at);
-      } else if (!(error <= values_.allowed)) {
-        ++apart;
-      }
-    }
-    edges_.worst = static_cast<double>(apart) / static_cast<double>(twin.doubtful.size());
-    edges_.place = fmt::format("{} of {} pixels, {} of them doubtful", apart, twin.doubtful.size(),
-                               std::ranges::count(twin.doubtful, true));
-  }
+double largest(const std::vector<glm::vec4>& field) {
+  float most = 0;
+  for (const glm::vec4& v : field) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return most > 0 ? most : 1.0;
+}
 
-  CheckResult values() const { return values_; }
-  CheckResult edges() const { return edges_; }
+/// The largest difference of a pixel's three numbers over the field's largest value; 0 for fields that are not there.
+double apart(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>& twin, std::size_t at) {
+  if (device.empty() || twin.empty()) return 0;
+  const glm::dvec3 off = glm::abs(glm::dvec3(device[at]) - glm::dvec3(twin[at]));
+  return glm::any(glm::isnan(off)) ? NAN : std::max({off.x, off.y, off.z}) / largest(twin);
+}
 
- private:
-  static double largest(const std::vector<glm::vec4>& field) {
-    float most = 0;
-    for (const glm::vec4& v : field) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    return most > 0 ? most : 1.0;
-  }
-
-  static double apart(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, std::size_t at) {
-    if (a.empty() || b.empty()) return 0;
-    double error = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double e = std::abs(static_cast<double>(a[at][c]) - b[at][c]);
-      if (!(e <= error)) error = e;
-    }
-    return error / largest(b);
-  }
-
-  double pixel_error(const SurfaceImage& device, std::size_t at) {
-    const SurfaceImage& twin = twin_.image;
-    const double depth = std::abs(static_cast<double>(device.depth[at]) - twin.depth[at]) /
-                         std::max(1.0f, *std::max_element(twin.depth.begin(), twin.depth.end()));
-    const double fields[] = {depth, apart(device.normal, twin.normal, at),
-                             apart(device.colour, twin.colour, at),
-                             apart(device.emissive, twin.emissive, at)};
-    double worst = 0;
-    for (const double e : fields) {
-      if (!(e <= worst)) worst = e;  // NaN too
-    }
-    found_ = fmt::format(
-        "depth {:.7g}, twin {:.7g}; errors of depth {:.1e}, normal {:.1e}, colour {:.1e}, emission {:.1e}",
-        device.depth[at], twin.depth[at], fields[0], fields[1], fields[2], fields[3]);
-    return worst;
-  }
-
-  void keep(double error, std::size_t at) {
-    const unsigned width = twin_.image.view.width;
-    values_.take(error, [&] { return fmt::format("pixel {},{}: {}", at % width, at / width, found_); });
-  }
-
-  const Rasterized& twin_;
-  CheckResult values_, edges_;
-  std::string found_;
-};
-
+/// Holds a device's surface against the twin's, pixel by pixel: values where they are sure, and how many of the others
+/// differ.
 void append(CheckResults& results, const SurfaceImage& device, const Rasterized& twin,
             const std::string& variant) {
-  const Comparison comparison(device, twin, variant);
-  results.push_back(comparison.values());
-  results.push_back(comparison.edges());
+  CheckResult values{"rasterize", variant, 0, tolerance("rasterize"), {}};
+  const SurfaceImage& image = twin.image;
+  const double deepest = std::max(1.0f, std::ranges::max(image.depth));
+  std::size_t differing = 0;
+  for (std::size_t at = 0; at < twin.doubtful.size(); ++at) {
+    CheckResult pixel{{}, {}, 0, values.allowed, {}};
+    const double errors[] = {std::abs(double{device.depth[at]} - image.depth[at]) / deepest,
+                             apart(device.normal, image.normal, at), apart(device.colour, image.colour, at),
+                             apart(device.emissive, image.emissive, at)};
+    for (const double error : errors) {
+      (twin.doubtful[at] ? pixel : values).take(error, [&] {
+        return fmt::format(
+            "pixel {},{}: depth {:.7g}, twin {:.7g}; errors of depth, normal, colour and emission {:.1e}",
+            at % image.view.width, at / image.view.width, device.depth[at], image.depth[at],
+            fmt::join(errors, ", "));
+      });
+    }
+    if (!pixel.passed()) ++differing;
+  }
+  const auto pixels = static_cast<double>(twin.doubtful.size());
+  results.push_back(values);
+  results.push_back({"rasterize-edges", variant, differing / pixels, tolerance("rasterize-edges"),
+                     fmt::format("{} of {} pixels, {} of them doubtful", differing, pixels,
+                                 std::ranges::count(twin.doubtful, true))});
 }
 
 void check_camera(Session& session, const Scene& scene, const std::string& name, CheckResults& results) {
@@ -252,7 +221,7 @@ ClpvLight spot() {
 
 }  // namespace
 
-CheckResults check_rasterize(Session& session) {
+CheckResults check_rasterize(Session& session, const CheckScope&) {
   CheckResults results;
   SceneMaker maker(3);
   const Scene soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();

@@ -47,7 +47,7 @@ constexpr Place kHost[] = {
 
 }  // namespace
 
-CheckResults check_sizes(Session& session) {
+CheckResults check_sizes(Session& session, const CheckScope&) {
   const std::size_t count = std::size(kHost);
   Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
   Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));

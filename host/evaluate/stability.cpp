@@ -32,8 +32,7 @@ bool same_surface(const SurfaceImage& later, const glm::dvec3& point, const glm:
   const glm::dvec3 there = reference::surface_position(later.view, x, y, double{later.depth[pixel]}),
                    off = there - point, there_normal = normal_of(later, pixel);
   const double edge = reference::pixel_edge(later.view, at.depth);
-  const glm::dvec3 ray =
-      glm::normalize(there - glm::dvec3(later.view.eye[0], later.view.eye[1], later.view.eye[2]));
+  const glm::dvec3 ray = glm::normalize(there - vector(later.view.eye));
   const double slope = std::max(std::abs(glm::dot(ray, there_normal)), 0.05);
   return glm::dot(normal, there_normal) > kLeastCosine &&
          std::abs(glm::dot(off, normal)) < kOffPlane * edge && glm::length(off) * slope < kApart * edge;

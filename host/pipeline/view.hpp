@@ -14,10 +14,6 @@
 
 namespace clpv {
 
-inline glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
-
 static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW && sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
 
 /// Outer half-angle [rad] up to which a spot light is looked at through one perspective view; beyond it the

@@ -37,8 +37,7 @@ struct Seen {
 Seen seen_along(int axis, const std::array<glm::dvec3, 3>& corners, const ClpvGrid& grid) {
   Seen seen{axis, {}, {}};
   for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 cells =
-        (corners[i] - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell} + 0.5;
+    const glm::dvec3 cells = (corners[i] - vector(grid.origin)) / double{grid.cell} + 0.5;
     seen.corner[i] = double{kSamples} * glm::dvec2(cells[(axis + 1) % 3], cells[(axis + 2) % 3]);
     seen.depth[i] = cells[axis];
   }

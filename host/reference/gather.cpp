@@ -132,8 +132,7 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
   double left = 1;
   for (const Cascade& cascade : cascades) {
     const ClpvGrid& grid = cascade.grid;
-    const glm::dvec3 at =
-        (position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell};
+    const glm::dvec3 at = (position - vector(grid.origin)) / double{grid.cell};
     const double share = share_of(position, grid, options.grid, options.blend_cells);
     const glm::dvec3 point = at + options.gather_offset * normal - 0.5;  // the first cell's centre is at 0.5
     const double area = double{grid.cell} * grid.cell;

@@ -7,7 +7,6 @@
 #include "scene/light_kind.hpp"
 
 namespace clpv::reference {
-namespace {}  // namespace
 
 Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
   const glm::dvec3 direction = vector(light.direction), intensity = vector(light.intensity);

@@ -105,9 +105,8 @@ class Sides {
     const Triangle& t = scene_.triangles[triangle];
     std::array<glm::dvec3, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = (glm::dvec3(position(scene_.vertices[t.vertex[i]])) -
-                    glm::dvec3(grid_.origin[0], grid_.origin[1], grid_.origin[2])) /
-                   double{grid_.cell};
+      corners[i] =
+          (glm::dvec3(position(scene_.vertices[t.vertex[i]])) - vector(grid_.origin)) / double{grid_.cell};
     }
     for (int axis = 0; axis < 3; ++axis) {
       for (const bool up : {true, false}) {

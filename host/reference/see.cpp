@@ -66,7 +66,7 @@ Hidden see(const Scene& scene, const ClpvGrid& grid) {
     glm::dvec3 low(1e300), high(-1e300);
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::dvec3 at(position(scene.vertices[triangle.vertex[i]]));
-      t[i] = (at - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell} - 0.5;
+      t[i] = (at - vector(grid.origin)) / double{grid.cell} - 0.5;
       low = glm::min(low, t[i]), high = glm::max(high, t[i]);
     }
     const glm::ivec3 first(glm::clamp(glm::floor(low - kSeeHair), 0.0, n - 1.0)),

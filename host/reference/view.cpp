@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace clpv::reference {
-namespace {}  // namespace
 
 glm::dvec3 surface_position(const ClpvView& view, double px, double py, double depth) {
   const double scale = view.orthographic != 0 ? 1.0 : depth;

@@ -5,12 +5,10 @@
 #include <glm/glm.hpp>
 
 #include "kernels/shared/view.h"
+#include "scene/scene.hpp"
 
 namespace clpv::reference {
 
-inline glm::dvec3 vector(const float v[3]) {
-  return {v[0], v[1], v[2]};
-}
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }

@@ -33,6 +33,11 @@ struct Texture {
   std::string name;
 };
 
+/// Three numbers of the structs that are shared with kernels.
+inline glm::dvec3 vector(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
 struct Camera {
   std::string name;
   glm::vec3 eye{0};              ///< [m]
