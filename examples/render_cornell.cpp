@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders a scene's indirect light and says how bright it is: render_cornell scenes/cornell.json [IMAGE.exr|.png]
+// Renders the indirect light of a scene and prints its mean: render_cornell scenes/cornell.json [IMAGE.exr|.png]
 #include <clpv/renderer.hpp>
 #include <iostream>
 

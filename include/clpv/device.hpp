@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which OpenCL devices there are.
+// List of OpenCL devices.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace clpv {
 
-/// One device of one platform. `missing`: what it lacks for clpv, one capability each; empty: it can be used.
+/// One OpenCL device of one platform.
 struct DeviceDescription {
-  int index = 0;  ///< over all platforms; Renderer takes it as text, or a part of the name
+  int index = 0;  ///< position in all_devices(); Renderer accepts it as text
   std::string name, platform, driver;
   std::string type;  ///< "cpu", "gpu", "accelerator", ...
-  std::vector<std::string> missing;
+  std::vector<std::string> missing;  ///< required capabilities that it lacks; empty: clpv can use the device
 };
 
-/// Every device of every platform; none is an empty list, not an error.
+/// Returns all devices of all platforms. Without any device the list is empty; that is not an error.
 std::vector<DeviceDescription> all_devices();
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a user of the library may catch.
+// Exception thrown by all functions of the library.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,20 +10,20 @@
 
 namespace clpv {
 
-/// What kind of failure it is; the program's exit codes, as documented in `clpv --help`.
+/// Kind of failure; also the exit codes of the program (`clpv --help`).
 enum class ExitCode {
   ok = 0,
-  run_time = 1,    ///< out of device memory, unwritable output
+  run_time = 1,    ///< out of memory, unwritable output
   usage = 2,       ///< unknown option, value out of range
-  bad_input = 3,   ///< bad scene or image file
-  device = 4,      ///< no device, or one that lacks what was asked
-  validation = 5,  ///< a computed result differs from its reference
+  bad_input = 3,   ///< invalid scene or image file
+  device = 4,      ///< no device, or one without a required capability
+  validation = 5,  ///< a result differs from its reference beyond the tolerance
 };
 
-/// A failure told in the user's words: file, place, value found, value allowed; or what to do about it.
+/// Failure with a message for the user: file, place, value found and value allowed, or what to do.
 class Error : public std::runtime_error {
  public:
-  /// Control characters of the message, but for newline and tab, become '?'.
+  /// Replaces control characters of the message by '?', except newline and tab.
   Error(ExitCode code, const std::string& message);
 
   template <typename... Args>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every choice that shapes a rendered frame, by name: those of `clpv render`, with the same values and defaults.
+// Options of a rendered frame by name, with the values and defaults of `clpv render`.
 #pragma once
 
 #include <map>
@@ -9,24 +9,25 @@
 
 namespace clpv {
 
-/// What is to be known of one option.
+/// Name, help, range and value of one option.
 struct OptionDescription {
   std::string name;     ///< "cascade-size"
-  std::string help;     ///< with the unit
+  std::string help;     ///< one line, with the unit
   std::string allowed;  ///< "on|off", "1..512"
-  std::string value;    ///< by default, or as given
+  std::string value;    ///< default, or the value given
 };
 
-/// Options given, in any order: a preset comes before those that override it. What is not given is the scene's, where
-/// it has a wish (cascades), else the default.
+/// Options set by the user. Their order does not matter: single options override a preset. An option that is not set has the
+/// scene's value (number and size of cascades), else its default.
 class Options {
  public:
-  /// Throws Error(usage) for an unknown name, or for a value that is not allowed: option, value found, values allowed.
+  /// Sets one option. Throws Error(usage) for an unknown name or a value that is not allowed.
   Options& set(std::string_view name, std::string_view value);
 
+  /// The options set so far, by name.
   const std::map<std::string, std::string>& given() const { return given_; }
 
-  /// All there are, in the order of --help.
+  /// Returns all options with their defaults, in the order of --help.
   static std::vector<OptionDescription> all();
 
  private:

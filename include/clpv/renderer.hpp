@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes lit by cascaded light propagation volumes, from a program of your own:
+// Renders scenes with cascaded light propagation volumes:
 //
 //   const clpv::SceneFile scene("cornell.json");
 //   clpv::Renderer renderer(scene, clpv::Options().set("basis", "srbf8v2"));
@@ -19,30 +19,31 @@
 
 namespace clpv {
 
-/// What an image shows. All but albedo, normal, depth: radiance [W/m^2/sr], or irradiance [W/m^2]; photometric input is
-/// carried 1:1. full = direct + indirect.
+/// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of indirect light [W/m^2], albedo, unit
+/// normal, or depth [m]. Lux and candela of a scene count 1:1 as W/m^2 and W/sr.
 enum class View { full, direct, indirect, irradiance, albedo, normal, depth };
 
-/// Holds a device, its programs and all memory a frame needs; renders again and again. One a thread.
+/// Renders frames of one scene with one set of options. Owns an OpenCL context, compiled programs and all memory of a frame.
+/// Results that do not change are cached from frame to frame. Not thread-safe: use one Renderer per thread.
 class Renderer {
  public:
-  /// `device`: an index, "PLATFORM:DEVICE", or a part of its name; empty: CLPV_DEVICE, else the first that clpv can use.
-  /// Programs compiled before are taken from the user's cache. Throws Error: usage (options), device (none fits),
-  /// run_time (memory, and what would fit).
+  /// `device`: an index, "PLATFORM:DEVICE", or a part of the name; empty: CLPV_DEVICE, else the first device that clpv can
+  /// use. Loads compiled programs from the user's cache. Throws Error: usage (options), device (no device matches),
+  /// run_time (out of memory; the message says what would fit).
   explicit Renderer(const SceneFile& scene, const Options& options = {}, const std::string& device = {});
-  ~Renderer();  ///< keeps compiled programs in the user's cache
+  ~Renderer();  ///< stores compiled programs in the user's cache
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// One frame through the camera of that name (empty: the scene's first) at an instant, of a scene that moves. Linear,
-  /// channels R, G, B, A, row 0 on top; metadata holds every option. Any instant's frame is the same whatever came before it.
-  /// Throws Error: usage (a camera that is not there, seconds out of range), bad_input (what moves leads out of bounds).
+  /// Renders one frame at time `seconds` [s] through the camera of that name (empty: the scene's first). Returns a linear image of
+  /// --width x --height pixels with channels R, G, B, A, all options in its metadata. A frame does not depend on earlier frames.
+  /// Throws Error: usage (no such camera, seconds out of range), bad_input (animation leads out of bounds), run_time (memory).
   Image render(View view = View::full, const std::string& camera = {}, double seconds = 0);
 
-  /// Irradiance of indirect light [W/m^2] of red, green, blue on a surface at `position` [m] with `normal` (of any length),
-  /// whether the camera sees it or not: by the light of the last frame; 0 outside its cascades, which stand round its camera.
-  /// The first point after a frame waits for the volumes to be read back. Throws Error(usage) before the first frame, and for
-  /// what is no position or direction.
+  /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at `position` [m] with `normal` (of any
+  /// length), visible or not. Uses the volumes of the last frame; 0 outside of its cascades. The first call after a frame
+  /// reads the volumes back from the device. Throws Error(usage) before the first frame, and for a position that is not
+  /// finite or a normal of length 0.
   std::array<double, 3> irradiance(const std::array<double, 3>& position,
                                    const std::array<double, 3>& normal);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene as a user of the library holds it.
+// Handle of a loaded scene.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,17 @@
 
 namespace clpv {
 
-/// A scene read from a scene file (.json) or a bare glTF model (.gltf, .glb); cheap to copy.
+/// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data.
 class SceneFile {
  public:
-  /// `model` replaces the scene file's; empty: as the file says. Input is untrusted: everything is bounded before it is
-  /// allocated, and nothing outside the model's folder is read. Throws Error(bad_input) that names file, place, value
-  /// found and value allowed.
+  /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted: sizes are checked before
+  /// allocation, and only files in the folders of model and scene file are read. Throws Error(bad_input) with file, place, value found and value
+  /// allowed.
   explicit SceneFile(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-  std::vector<std::string> cameras() const;  ///< names; at least one
-  bool moves() const;                        ///< whether it differs from instant to instant
-  std::vector<std::string> notes() const;    ///< what was left out or added while reading, a sentence each
+  std::vector<std::string> cameras() const;  ///< names of the cameras, at least one
+  bool moves() const;                        ///< returns true if anything in it is animated
+  std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader
 
   struct Contents;
   const Contents& contents() const { return *contents_; }

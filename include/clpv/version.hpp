@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+// Version of the library.
 #pragma once
 
 #include <string>
 
 namespace clpv {
 
-/// That of the library linked, as "0.2.0". What is kept between runs (references, programs) is kept for one version.
+/// Returns the version of the linked library, such as "0.2.0". Cached ground truths are valid for one version.
 std::string version();
 
 }  // namespace clpv
