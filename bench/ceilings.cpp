@@ -9,9 +9,9 @@
 #include <memory>
 
 #include "bench/suites.hpp"
-#include "checks/comparison.hpp"
 #include "device/kernel.hpp"
 #include "support/error.hpp"
+#include "verify/comparison.hpp"
 
 namespace clpv::bench {
 namespace {

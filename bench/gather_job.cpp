@@ -6,11 +6,11 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/comparison.hpp"
-#include "checks/tolerances.hpp"
 #include "pipeline/gather.hpp"
 #include "reference/gather.hpp"
 #include "reference/view.hpp"
+#include "verify/comparison.hpp"
+#include "verify/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -40,8 +40,8 @@ bool filters(const Variant& v) {
 }
 
 /// Irradiance of every kCheckedPixels-th pixel, three channels each.
-std::vector<double> twin_of(const GatherJob& p, TransportKind transport, Inputs& inputs,
-                            const SurfaceImage& camera) {
+std::vector<double> reference_of(const GatherJob& p, TransportKind transport, Inputs& inputs,
+                                 const SurfaceImage& camera) {
   std::vector<reference::Volume> volumes;
   std::vector<reference::Cascade> cascades;
   for (std::size_t c = 0; c < p.grids.size(); ++c) {
@@ -64,16 +64,17 @@ std::vector<double> twin_of(const GatherJob& p, TransportKind transport, Inputs&
   return values;
 }
 
-Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& twin, double tolerance) {
+Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& expected,
+                  double tolerance) {
   const auto found = [&](std::size_t i) {
     return static_cast<double>(device[i / 3 * kCheckedPixels].s[i % 3]);
   };
-  const auto wanted = [&](std::size_t i) { return twin[i]; };
-  const reference::WorstError worst = reference::worst_difference(twin.size(), found, wanted);
+  const auto wanted = [&](std::size_t i) { return expected[i]; };
+  const reference::WorstError worst = reference::worst_difference(expected.size(), found, wanted);
   if (worst.value == 0) return {0, tolerance, {}};
   return {worst.value, tolerance,
-          fmt::format("pixel {} channel {}: {:.7g}, twin {:.7g}", worst.at / 3 * kCheckedPixels, worst.at % 3,
-                      found(worst.at), wanted(worst.at))};
+          fmt::format("pixel {} channel {}: {:.7g}, expected {:.7g}", worst.at / 3 * kCheckedPixels,
+                      worst.at % 3, found(worst.at), wanted(worst.at))};
 }
 
 }  // namespace
@@ -99,9 +100,9 @@ Job gather_job(Bench& bench, const Variant& variant) {
     const RenderOptions& o = variant.options;
     const std::string key = fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
                                         lobes_of(o), name_of(o.evaluate), o.grid);
-    const auto twin =
-        bench.twin(key, [&] { return twin_of(*p, o.transport, bench.inputs(), seen.camera_image); });
-    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *twin,
+    const auto expected =
+        bench.expected(key, [&] { return reference_of(*p, o.transport, bench.inputs(), seen.camera_image); });
+    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *expected,
                    reference::tolerance(filters(variant) ? "gather-filter" : "gather", o.format().storage));
   };
   const VolumeFormat format = variant.options.format();

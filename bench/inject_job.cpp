@@ -6,10 +6,10 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/comparison.hpp"
-#include "checks/tolerances.hpp"
 #include "pipeline/inject.hpp"
 #include "reference/inject.hpp"
+#include "verify/comparison.hpp"
+#include "verify/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -37,8 +37,8 @@ struct Injection {
 };
 
 /// Of the volumes there are, light before geometry; of the latter also what is as right where rounding decides.
-std::vector<double> twin_of(const Injection& injection, const Inputs::Seen& seen,
-                            const InjectOptions& options) {
+std::vector<double> reference_of(const Injection& injection, const Inputs::Seen& seen,
+                                 const InjectOptions& options) {
   const Basis& basis = *injection.basis;
   const int grid = static_cast<int>(seen.grid.n);
   std::vector<double> values;
@@ -72,9 +72,9 @@ std::vector<glm::dvec3> directions() {
 }
 
 /// Functions, not coefficients, are compared: an ill-conditioned Gram matrix tells coefficients apart that hardly
-/// differ as functions. `n` samples along each axis; of one volume. `other` is as right as `twin`.
-void compare(const Basis& basis, const std::vector<float>& device, const double* twin, const double* other,
-             int n, const char* what, Deviation& deviation) {
+/// differ as functions. `n` samples along each axis; of one volume. `other` is as right as `CPU reference`.
+void compare(const Basis& basis, const std::vector<float>& device, const double* expected,
+             const double* other, int n, const char* what, Deviation& deviation) {
   const auto samples = static_cast<std::size_t>(n) * n * n, size = static_cast<std::size_t>(basis.size());
   double largest = 0;
   reference::WorstError worst;
@@ -85,7 +85,7 @@ void compare(const Basis& basis, const std::vector<float>& device, const double*
       for (std::size_t i = 0; i < size; ++i) {
         const std::size_t index = (at / samples * size + i) * samples + at % samples;
         found += b[i] * device[index];
-        wanted += b[i] * twin[index];
+        wanted += b[i] * expected[index];
         or_wanted += b[i] * other[index];
       }
       largest = std::max(largest, std::abs(wanted));
@@ -113,18 +113,18 @@ Deviation verify(const Injection& p, Bench& bench, const Inputs::Seen& seen, con
   const std::string key =
       fmt::format("inject {} {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o), p.light != nullptr,
                   p.geometry != nullptr, o.grid, variant.cascade.value_or(0));
-  const auto twin = bench.twin(key, [&] { return twin_of(p, seen, inject_options(o, false)); });
+  const auto expected = bench.expected(key, [&] { return reference_of(p, seen, inject_options(o, false)); });
   const bool plain = o.lobe == LobeKind::exact || o.storage == Storage::float16;
   Deviation deviation{0, reference::tolerance(plain ? "inject" : "inject-rotated", o.format().storage), {}};
   std::size_t before = 0;
   if (p.light) {
     const std::vector<float> light = p.light->read(bench.session);
-    compare(*p.basis, light, twin->data(), twin->data(), o.grid, "light", deviation);
+    compare(*p.basis, light, expected->data(), expected->data(), o.grid, "light", deviation);
     before = light.size();
   }
   if (p.geometry) {
     const std::vector<float> geometry = p.geometry->read(bench.session);
-    const double* merged = twin->data() + before;
+    const double* merged = expected->data() + before;
     compare(*p.basis, geometry, merged, merged + geometry.size(), o.grid + 1, "geometry", deviation);
   }
   return deviation;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pipeline/block.hpp"
+#include "pipeline/blockers.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/view.hpp"
@@ -91,7 +91,7 @@ const std::vector<float>& Inputs::areas(int cascade) {
   const auto [entry, made] = areas_.try_emplace(cascade);
   if (made) {
     Volume geometry(session_, {options_.grid + 1, 3, 1}, "bench: geometry volume");
-    SceneBlocker(session_, scene_, options_.grid, 1, {}).block(0, seen(cascade).grid, geometry);
+    BlockerVoxelizer(session_, scene_, options_.grid, 1, {}).block(0, seen(cascade).grid, geometry);
     entry->second = geometry.read(session_);
   }
   return entry->second;

@@ -18,7 +18,7 @@
 namespace clpv::bench {
 
 /// Views of one scene, rasterised on the device once. Texels within rounding of where their cell changes are emptied
-/// (some per mille of them), so that a stage and its twin put every one into the same cell.
+/// (some per mille of them), so that a stage and its CPU reference put every one into the same cell.
 class Inputs {
  public:
   /// Sees `scene` through `camera`, lit by the first light that shines there; sizes and cascades as `options` say. Throws

@@ -7,10 +7,10 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/comparison.hpp"
-#include "checks/tolerances.hpp"
 #include "pipeline/propagate.hpp"
 #include "reference/propagate.hpp"
+#include "verify/comparison.hpp"
+#include "verify/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -71,13 +71,13 @@ Cost cost_of(Propagation& p) {
   const int carried = fluxes ? 6 : n;
   const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
   const Access access{o.format()};
-  // Blocking is evaluated once for all steps, as a number a way, or in each step from the eight corners.
-  const Transmitter* transmitter = p.propagator.transmitter();
-  const int ways = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
-  const double blocker_bytes = transmitter != nullptr ? access.bytes(ways) : corners * access.bytes(n);
-  const double blocker_reads = transmitter != nullptr ? access.count(ways) : 8 * access.count(n);
+  // Blocking is evaluated once for all steps, as a number a link, or in each step from the eight corners.
+  const LinkTransmittance* transmitter = p.propagator.transmitter();
+  const int links = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
+  const double blocker_bytes = transmitter != nullptr ? access.bytes(links) : corners * access.bytes(n);
+  const double blocker_reads = transmitter != nullptr ? access.count(links) : 8 * access.count(n);
   const OperationCount evaluation =
-      p.geometry ? transmit_source(*p.basis, p.transport).operations : OperationCount{};
+      p.geometry ? transmittance_source(*p.basis, p.transport).operations : OperationCount{};
   Cost cost;
   for (int step = 1; step <= o.iterations; ++step) {
     const bool blocked = p.geometry && p.propagator.reads_transmittance(step);
@@ -91,7 +91,7 @@ Cost cost_of(Propagation& p) {
     if (blocked && transmitter == nullptr) cost.flops += cells * evaluation.flops();
   }
   if (transmitter != nullptr) {
-    cost.bytes += cells * (corners * access.bytes(n) + access.bytes(ways));
+    cost.bytes += cells * (corners * access.bytes(n) + access.bytes(links));
     cost.flops += cells * evaluation.flops();
   }
   if (fluxes) {  // six fluxes back to coefficients: a product with the lobes, and a sum
@@ -103,7 +103,7 @@ Cost cost_of(Propagation& p) {
   return cost;
 }
 
-std::string twin_key(const Variant& v) {
+std::string reference_key(const Variant& v) {
   const RenderOptions& o = v.options;
   return fmt::format("propagate {} {} {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
                      lobes_of(o), o.occlusion, o.grid, o.iterations, v.cascade.value_or(0));
@@ -111,9 +111,9 @@ std::string twin_key(const Variant& v) {
 
 }  // namespace
 
-Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
+Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& expected, int n,
                           double tolerance) {
-  const reference::Comparison apart = reference::compare_volumes(device, twin, n);
+  const reference::Comparison apart = reference::compare_volumes(device, expected, n);
   return {apart.worst, tolerance, apart.place};
 }
 
@@ -134,7 +134,7 @@ Job propagate_job(Bench& bench, const Variant& variant) {
   };
   job.verify = [p, &bench, cascade] {
     const int grid = p->variant.options.grid, n = p->basis->size();
-    const auto twin = bench.twin(twin_key(p->variant), [&] {
+    const auto expected = bench.expected(reference_key(p->variant), [&] {
       const auto light = to_reference(bench.inputs().light(*p->basis, cascade), grid, n, 3);
       const auto after_steps = [&](const reference::Volume* geometry) {
         return reference::propagate(p->transport, light, geometry, p->variant.options.iterations)
@@ -148,7 +148,7 @@ Job propagate_job(Bench& bench, const Variant& variant) {
     // In halves their rounding is the larger error.
     const bool at_run_time = o.lobe_time == LobeTime::kernel && o.storage == Storage::float32;
     return compare_volumes(
-        p->accumulated.read(bench.session), *twin, grid,
+        p->accumulated.read(bench.session), *expected, grid,
         reference::tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", o.format().storage));
   };
   return job;

@@ -69,7 +69,7 @@ struct Row {
   Cost cost;
   std::string ceiling;  ///< what binds: "fma", "bandwidth" or "launch"; empty where no ceilings were measured
   double ceiling_share = 0;
-  std::optional<double> max_rel_error;  ///< none: nothing to hold against a twin
+  std::optional<double> max_rel_error;  ///< none: nothing to hold against a CPU reference
   double tolerance = 0;
   std::optional<double> published_ms;  ///< what the paper gives for it
 

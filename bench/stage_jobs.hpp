@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pipeline's stages as jobs: inject, propagate, sweep, gather, each with its cost and its twin.
+// The pipeline's stages as jobs: inject, propagate, sweep, gather, each with its cost and its CPU reference.
 #pragma once
 
 #include <functional>
@@ -24,8 +24,8 @@ inline constexpr double kChannels = 3;  // red, green, blue
 struct Bench {
   Session& session;
   std::function<std::shared_ptr<Inputs>()> see;  ///< makes the inputs, at their first use
-  /// Twins' results by what they depend on: variants that should agree share one. In double, Volume's host order.
-  std::map<std::string, std::shared_ptr<const std::vector<double>>> twins;
+  /// CPU references' results by what they depend on: variants that should agree share one. In double, Volume's host order.
+  std::map<std::string, std::shared_ptr<const std::vector<double>>> references;
 
   Inputs& inputs() {
     if (!seen) seen = see();
@@ -33,10 +33,10 @@ struct Bench {
   }
   std::shared_ptr<Inputs> seen;
 
-  /// The twin's result under `key`, made by `make` the first time.
+  /// The CPU reference's result under `key`, made by `make` the first time.
   template <typename Make>
-  std::shared_ptr<const std::vector<double>> twin(const std::string& key, Make make) {
-    auto& entry = twins[key];
+  std::shared_ptr<const std::vector<double>> expected(const std::string& key, Make make) {
+    auto& entry = references[key];
     if (!entry) entry = std::make_shared<const std::vector<double>>(make());
     return entry;
   }
@@ -55,11 +55,11 @@ Job inject_geometry_job(Bench& bench, const Variant& variant);
 /// Light volume -> accumulated light volume; with occlusion past the geometry volume.
 Job propagate_job(Bench& bench, const Variant& variant);
 /// Light volume -> light swept through its cascade from a dark border, in nine harmonics; with occlusion past what the scene's
-/// triangles block there, the ways' transmittance included. Wants swept().
+/// triangles block there, the links' transmittance included. Wants swept().
 Job sweep_job(Bench& bench, const Variant& variant);
 /// The variant as the defaults would have it move light: by the sweep, past areas.
 Variant swept(Variant variant);
-/// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the twin.
+/// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the CPU reference.
 Job gather_job(Bench& bench, const Variant& variant);
 inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
 
@@ -87,8 +87,8 @@ Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const st
 Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
                      Pass pass, const RenderOptions& options);
 
-/// Light volumes of n^3 cells in Volume's host order: the largest difference, over the twin's largest value.
-Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& twin, int n,
+/// Light volumes of n^3 cells in Volume's host order: the largest difference, over the CPU reference's largest value.
+Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& expected, int n,
                           double tolerance);
 
 /// Of the variant; of a sweep, of swept(variant).

@@ -8,11 +8,11 @@
 #include "basis/sweep.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
-#include "checks/tolerances.hpp"
 #include "codegen/sweep_source.hpp"
-#include "codegen/transmit_source.hpp"
+#include "codegen/transmittance_source.hpp"
 #include "pipeline/sweep.hpp"
 #include "reference/sweep.hpp"
+#include "verify/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -65,7 +65,7 @@ Cost cost_of(const Sweeping& p) {
   const VolumeFormat& format = p.options.format;
   const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
   const int coefficients = p.basis->size(), kept = swept_basis()->size();
-  const double bins = kChannels * kSweepBins, ways = p.geometry ? way_volumes().count() : 0;
+  const double bins = kChannels * kSweepBins, links = p.geometry ? link_volumes().count() : 0;
   const double swept = kChannels * p.directions(), sides = 2 * swept * n * n;
   const auto number = static_cast<double>(number_bytes(format));
   const double light =
@@ -74,7 +74,7 @@ Cost cost_of(const Sweeping& p) {
   // Where a launch is a plane, each reads a plane of each direction and writes the next, and what comes in: nothing.
   const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
   Cost cost;
-  cost.bytes = cells * (light + ((2 + 2 * copied) * bins + ways) * number) + dark * number +
+  cost.bytes = cells * (light + ((2 + 2 * copied) * bins + links) * number) + dark * number +
                swept * n * n * sizeof(float) * planes;
   const double a_direction = kChannels * (4 + 1) * 2 + (p.geometry ? 4 : 0);
   cost.flops = cells * (kChannels * (sweep_source_text(*p.basis).operations.flops() +
@@ -83,23 +83,23 @@ Cost cost_of(const Sweeping& p) {
   cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + (1 + copied) * bins;
   cost.writes_per_cell = kChannels * accesses_per_cell(format, kept) + (1 + copied) * bins;
   cost.working_set =
-      cells * (light + (bins + ways) * number) + dark * number / 2 + swept * n * n * sizeof(float);
+      cells * (light + (bins + links) * number) + dark * number / 2 + swept * n * n * sizeof(float);
   if (!p.geometry) return cost;
   const int areas = p.corners().coefficients;
-  cost.bytes += corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * ways * number;
-  cost.flops += cells * transmit_source(*p.basis, p.transport).operations.flops();
+  cost.bytes += corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * links * number;
+  cost.flops += cells * transmittance_source(*p.basis, p.transport).operations.flops();
   cost.reads_per_cell += 8 * accesses_per_cell(format, areas) + 4 * kSweepBins;
-  cost.writes_per_cell += ways;
+  cost.writes_per_cell += links;
   return cost;
 }
 
-std::string sweep_twin_key(const Variant& v) {
+std::string sweep_reference_key(const Variant& v) {
   const RenderOptions& o = v.options;
   return fmt::format("sweep {} {} {} {} {} {}", o.basis, name_of(o.directions), name_of(o.blocking),
                      o.occlusion, o.grid, v.cascade.value_or(0));
 }
 
-std::vector<double> swept_twin(Inputs& inputs, const Variant& variant) {
+std::vector<double> swept_reference(Inputs& inputs, const Variant& variant) {
   const RenderOptions& o = variant.options;
   const int cascade = variant.cascade.value_or(0);
   const auto basis = make_basis(o);
@@ -125,9 +125,9 @@ Job sweep_job(Bench& bench, const Variant& variant) {
   job.reset = [p, &session] { p->accumulated.clear(session); };
   job.run = [p] { p->run(); };
   job.verify = [p, &bench] {
-    const auto twin =
-        bench.twin(sweep_twin_key(p->variant), [&] { return swept_twin(bench.inputs(), p->variant); });
-    return compare_volumes(p->accumulated.read(bench.session), *twin, p->options.grid,
+    const auto expected = bench.expected(sweep_reference_key(p->variant),
+                                         [&] { return swept_reference(bench.inputs(), p->variant); });
+    return compare_volumes(p->accumulated.read(bench.session), *expected, p->options.grid,
                            reference::tolerance("sweep", p->options.format.storage));
   };
   return job;

@@ -21,7 +21,7 @@ function(clpv_warn target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Werror=switch $<$<BOOL:${CLPV_WERROR}>:-Werror>)
 endfunction()
 
-# For what runs once and computes little: the command line, the tests. The twins and the path tracer are the library's.
+# For what runs once and computes little: the command line, the tests. The CPU references and the path tracer are the library's.
 function(clpv_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "commands/commands.hpp"
+#include "cli/commands.hpp"
 #include "support/interrupt.hpp"
 
 int main(int argc, char** argv) {

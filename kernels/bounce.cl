@@ -7,7 +7,7 @@
 //   bounce_on      light to sweep += what is sent back of what was swept first, and in all bounces of what was swept second
 //   bounce_finer   light to sweep += what a cascade sends back of `arriving`, what falls on faces in the next coarser one
 //
-// In: `swept` (sweep.cl), as radiance times s^2; `reflectors`, six numbers a cell and channel (reflect.cl), or those that
+// In: `swept` (sweep.cl), as radiance times s^2; `reflectors`, six numbers a cell and channel (reflectors.cl), or those that
 // bounce_meet makes of them; `arriving` (sweep_collect.cl). In and out: `light`, a volume for each channel and bin (sweep.h).
 //
 // Of 1 W that leaves a side, others send back E, what falls on that side where each of them sends back what it does of 1 W on its
@@ -19,7 +19,7 @@
 //   Swept clpv_leaving(Coefficients)     light of flux that leaves each side [W/sr]
 // A work-item is a tile of CLPV_LANES x CLPV_LANES cells of a slice of one channel. Tiles without a surface are left alone.
 #include "coefficients.h"
-#include "finer.h"
+#include "coarse_to_fine.h"
 #include "shared/sweep.h"
 #include "sweep.h"
 #include "volume/light.h"
@@ -198,7 +198,7 @@ CLPV_INLINE Coefficients clpv_all_from_coarser(CLPV_BUFFER_IN arriving, const in
   return all;
 }
 
-// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells (finer.h).
+// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells (coarse_to_fine.h).
 __kernel void bounce_finer(CLPV_BUFFER_IN arriving, const int dx, const int dy, const int dz, CLPV_VOLUME_IN reflectors,
                            CLPV_BUFFER_OUT light) {
   CLPV_TILE

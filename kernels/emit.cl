@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light that surfaces give by themselves, as virtual point lights that injection takes (docs/method.md, 'Surfaces that glow').
+// Light that surfaces give by themselves, as virtual point lights that injection takes (docs/method.md, 'Emissive surfaces').
 //
 // A point stands in the middle of each piece of a part (shared/emit.h) and has the flux of it, pi L A: L the mean radiance,
 // A the area. Out, for injection (find_cells.cl): `positions` [m], `normals`, unit, on the side that shines, `fluxes` [W],

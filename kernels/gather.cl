@@ -29,7 +29,7 @@
 #include "surface_row.h"
 
 #ifndef CLPV_VISIBLE
-#define CLPV_VISIBLE 0  // 1: cells that are hidden from a surface do not light it (see.cl)
+#define CLPV_VISIBLE 0  // 1: cells that are hidden from a surface do not light it (visibility.cl)
 #endif
 
 // Between 0 and `most`; what is no number is 0.

@@ -21,7 +21,7 @@ typedef struct {
 #undef CLPV_DO
 } Sampled;
 
-// A cascade: its records and, where cells can be hidden, what kernel `see_triangles` found (see.cl).
+// A cascade: its records and, where cells can be hidden, what kernel `hide_cells` found (visibility.cl).
 typedef struct {
   __global const float8* cells;
 #if CLPV_VISIBLE
@@ -30,7 +30,7 @@ typedef struct {
 } PackedCascade;
 
 // Eight points: the cells round each, from `number` on (the lowest one's), and where the point lies between their centres;
-// with CLPV_VISIBLE the same of the points round it that see.cl looked from.
+// with CLPV_VISIBLE the same of the points round it that visibility.cl looked from.
 typedef struct {
   int number[CLPV_ABREAST];
   float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];

@@ -14,7 +14,7 @@
 // host/codegen/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
 #include "cell_keys.h"
 #include "coefficients.h"
-#include "deliver.h"
+#include "add_to_volume.h"
 #include "shared/thinned.h"
 #include "surface.h"
 

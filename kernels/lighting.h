@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a light sends to points in space, before anything stands in its way (kernels/shared/light.h).
-// The one home of cone, range and distance: direct light, RSMs and their twins must agree on them.
+// The one home of cone, range and distance: direct light, RSMs and their CPU references must agree on them.
 #ifndef CLPV_LIGHTING_H
 #define CLPV_LIGHTING_H
 

@@ -2,7 +2,7 @@
 // Asking for memory some time before it is read, where what will be read cannot be guessed from what was.
 //
 // OpenCL's own prefetch() does nothing on PoCL 3.1. Clang's takes pointers of no kind but a work-item's own, which on a CPU are
-// addresses of the same memory as all others; compilers to SPIR-V refuse it. So it is for what is compiled for a CPU outright.
+// addresses of the same memory as all others; compilers to SPIR-V reject it. So it is for what is compiled for a CPU outright.
 #ifndef CLPV_PREFETCH_H
 #define CLPV_PREFETCH_H
 

@@ -2,7 +2,7 @@
 // One step of light from every cell to its neighbours, and the sum of all steps so far.
 //
 // In:  travelling light of the last step (`source` volume; the injected field at first), and with CLPV_BLOCKING the
-//      transmittance of each way into a cell (transmit.cl); with CLPV_FIRST_TOO what every way lets through at `least`:
+//      transmittance of each link into a cell (transmittance.cl); with CLPV_FIRST_TOO what every link lets through at `least`:
 //      1 in the first step, in which light does not block, else 0.
 // Out: travelling light of this step (`target` volume), accumulated with what came before.
 // Units: radiant intensity [W/sr] per channel; with fluxes travelling, [W] through each of the cell's six faces.
@@ -69,16 +69,16 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
 #endif
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
-    , __global const float4* normals, __global const float4* ways CLPV_AND_TABLE CLPV_AND_FUNCTIONS
+    , __global const float4* normals, __global const float4* links CLPV_AND_TABLE CLPV_AND_FUNCTIONS
 #endif
 ) {
   const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;
   CLPV_RETURN_OUTSIDE(x, y);
 #if CLPV_BLOCKING
-  Ways t = transmittance_load(transmittance, 0, x, y, z);
+  Links t = transmittance_load(transmittance, 0, x, y, z);
 #if CLPV_FIRST_TOO
 #define CLPV_DO(i) t.c##i = max(t.c##i, (CLPV_REAL)(least));
-  CLPV_EACH_WAY(CLPV_DO)
+  CLPV_EACH_LINK(CLPV_DO)
 #undef CLPV_DO
 #endif
 #endif

@@ -4,14 +4,14 @@
 //   set_up           triangles that may cover a pixel's centre -> a list of ClpvRasterTriangle, and for each of them
 //                    the tiles of 8 x 8 pixels that it is over -> entries
 //   set_up_clipped   the same for those that cross the near plane or the guard band
-// Then bin.cl sorts the entries by tile, draw_tiles.cl finds out which triangle each pixel sees, resolve.cl what that
+// Then bin_tiles.cl sorts the entries by tile, draw_tiles.cl finds out which triangle each pixel sees, resolve.cl what that
 // looks like.
 //
-// A work-item takes eight triangles side by side, of the runs that the host lists as being in sight. Lists are in no particular order: atomics hand out their places, once
+// A work-item takes eight triangles side by side, of the clusters that the host lists as being in sight. Lists are in no particular order: atomics hand out their places, once
 // a work-item. counts[CLPV_LISTED] and so on tell how many there are, beyond what lists hold too: the host then makes
 // them longer and starts again.
 #include "clip.h"
-#include "enter.h"
+#include "enter_tiles.h"
 #include "shared/region.h"
 
 // Eight triangles of the scene on the screen.
@@ -157,13 +157,13 @@ static inline void put_aside(const int8 lanes, const uint8 triangle, volatile __
   }
 }
 
-// `runs`: from the `first` on, `count`; `last`: the scene's number of triangles.
-__kernel void set_up(const ClpvView view, __global const uint* runs, const uint first, const uint count, const uint last,
+// `clusters`: from the `first` on, `count`; `last`: the scene's number of triangles.
+__kernel void set_up(const ClpvView view, __global const uint* clusters, const uint first, const uint count, const uint last,
                      const uint cull, CLPV_MESH, CLPV_LISTS) {
-  const uint item = get_global_id(0), run = item / (CLPV_RUN / CLPV_ABREAST);
+  const uint item = get_global_id(0), run = item / (CLPV_CLUSTER / CLPV_ABREAST);
   if (run >= count) return;
   const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
-  const uint8 number = runs[first + run] * CLPV_RUN + item % (CLPV_RUN / CLPV_ABREAST) * CLPV_ABREAST + lane;
+  const uint8 number = clusters[first + run] * CLPV_CLUSTER + item % (CLPV_CLUSTER / CLPV_ABREAST) * CLPV_ABREAST + lane;
   const uint8 triangle = min(number, (uint8)(last - 1));
   Rows rows;
   gather_rows(triangles, triangle, &rows);

@@ -26,16 +26,16 @@ static inline bool clpv_in_region(const ClpvRegion* region, const int x, const i
 #error "clpv_in_region tells of eight boxes"
 #endif
 
-// The arguments of kernels that go through triangles, an item each, a group a run: those of `runs` from `first_run` on;
+// The arguments of kernels that go through triangles, an item each, a group a run: those of `clusters` from `first_cluster` on;
 // `triangle_count`: of the scene.
 #define CLPV_TRIANGLES                                                                                      \
-  __global const uint *runs, const uint first_run, const uint run_count, const uint triangle_count,         \
+  __global const uint *clusters, const uint first_cluster, const uint cluster_count, const uint triangle_count,         \
       __global const ClpvVertex *vertices, __global const ClpvTriangle *triangles, __global const ClpvMaterial *materials
 
 // The number of the item's triangle; triangle_count or more: it has none.
 #define CLPV_TRIANGLE_NUMBER                                                                                         \
-  (get_global_id(0) / CLPV_RUN < run_count                                                                           \
-       ? runs[first_run + get_global_id(0) / CLPV_RUN] * CLPV_RUN + (uint)get_global_id(0) % CLPV_RUN                \
+  (get_global_id(0) / CLPV_CLUSTER < cluster_count                                                                           \
+       ? clusters[first_cluster + get_global_id(0) / CLPV_CLUSTER] * CLPV_CLUSTER + (uint)get_global_id(0) % CLPV_CLUSTER                \
        : triangle_count)
 
 #endif

@@ -3,9 +3,9 @@
 // its normal and weighs it by the flux through it. With CLPV_EVALUATE_AT_RUN_TIME that flux, too, comes of the basis
 // functions evaluated along the way through the face.
 //
-// Normals and ways come from memory, so that no compiler does the work beforehand. Tables of rotated lobes and of the
+// Normals and links come from memory, so that no compiler does the work beforehand. Tables of rotated lobes and of the
 // functions are arguments, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME, and as text
-// clpv_functions_of(way) and what host/codegen/inject_source.hpp lists.
+// clpv_functions_of(link) and what host/codegen/inject_source.hpp lists.
 #ifndef CLPV_RUN_TIME_LOBES_H
 #define CLPV_RUN_TIME_LOBES_H
 
@@ -40,7 +40,7 @@ CLPV_INLINE Target clpv_no_gain(void) {
 }
 
 #if CLPV_EVALUATE_AT_RUN_TIME
-// [W] of light `from` a cell through the face along whose way the functions, times its solid angle, are `at`.
+// [W] of light `from` a cell through the face along whose link the functions, times its solid angle, are `at`.
 CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
   float flux = 0.0f;
 #define CLPV_DO(i) flux = fma(at.c##i, from.c##i, flux);
@@ -53,7 +53,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
 #define CLPV_EVALUATE_FUNCTIONS                     \
   Coefficients at[CLPV_FACES];                      \
   for (int face = 0; face < CLPV_FACES; ++face) {   \
-    at[face] = clpv_functions_of(ways[face] CLPV_PASS_FUNCTIONS); \
+    at[face] = clpv_functions_of(links[face] CLPV_PASS_FUNCTIONS); \
   }
 #else
 #define CLPV_EVALUATE_FUNCTIONS

@@ -4,10 +4,10 @@
 //
 //   D = I + sum_k t_k T_k D_k,   k the four cells of the plane before that light comes from
 //
-// D [W/sr] is all light along the direction, I what was injected, T the transmittance of the way. Outside the grid D is the
+// D [W/sr] is all light along the direction, I what was injected, T the transmittance of the link. Outside the grid D is the
 // coarser cascade's light.
 //
-// In: I of each bin, in `injected` or `sources` (ClpvSweepBin); `ways` (T); `border` (D beside the grid, sweep_border.h). Out:
+// In: I of each bin, in `injected` or `sources` (ClpvSweepBin); `links` (T); `border` (D beside the grid, sweep_border.h). Out:
 // `sums`, which may be the same memory as `sources`, for each bin the sum of its directions by their shares; `kept`, D in the cells
 // that a finer cascade's border is made of. `live` holds the last plane of each direction and channel, at first the one before the
 // grid.
@@ -23,7 +23,7 @@
 // CLPV_LANES cells of a plane, all channels and parts of a bin. `sources`: the buffer that the bin's are in. `from`: the plane
 // before.
 CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constant const ClpvSweepDirection* direction,
-                                  CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways, CLPV_BUFFER_OUT sums,
+                                  CLPV_BUFFER_IN sources, CLPV_BUFFER_IN links, CLPV_BUFFER_OUT sums,
                                   __global const float* from, __global float* to, const int plane, const int row,
                                   const int column) {
   const int source = bin.source + plane * bin.plane + row * bin.row + column;
@@ -34,11 +34,11 @@ CLPV_INLINE void clpv_sweep_cells(const int b, const ClpvSweepBin bin, __constan
   __global const float* from2 = from0 - bin.row_sign * CLPV_SWEEP_PITCH;
   __global const float* from3 = from2 - bin.column_sign;
 #if CLPV_BLOCKING
-#define CLPV_WAY(k) const CLPV_REAL t##k = CLPV_SWEEP_LOAD(ways + bin.ways[k] * CLPV_SWEEP_VOLUME, at)
-  CLPV_WAY(0);
-  CLPV_WAY(1);
-  CLPV_WAY(2);
-  CLPV_WAY(3);
+#define CLPV_LINK(k) const CLPV_REAL t##k = CLPV_SWEEP_LOAD(links + bin.links[k] * CLPV_SWEEP_VOLUME, at)
+  CLPV_LINK(0);
+  CLPV_LINK(1);
+  CLPV_LINK(2);
+  CLPV_LINK(3);
 #define CLPV_TAP(k) (direction[part].taps[k] * t##k)
 #else
 #define CLPV_TAP(k) ((CLPV_REAL)(direction[part].taps[k]))
@@ -91,14 +91,14 @@ CLPV_INLINE void clpv_border_column(CLPV_BUFFER_IN border, __global float* to, c
 }
 
 // The lower of the two layers that a finer cascade's border wants across an axis of a bin.
-#define CLPV_SHELL_LAYER(shell, axis, sign)                                                                   \
-  ((axis) == 0 ? ((sign) > 0 ? (shell).layers[0] : (shell).layers[1])                                         \
-               : ((axis) == 1 ? ((sign) > 0 ? (shell).layers[2] : (shell).layers[3])                          \
-                              : ((sign) > 0 ? (shell).layers[4] : (shell).layers[5])))
+#define CLPV_HALO_LAYER(halo, axis, sign)                                                                   \
+  ((axis) == 0 ? ((sign) > 0 ? (halo).layers[0] : (halo).layers[1])                                         \
+               : ((axis) == 1 ? ((sign) > 0 ? (halo).layers[2] : (halo).layers[3])                          \
+                              : ((sign) > 0 ? (halo).layers[4] : (halo).layers[5])))
 
 #define CLPV_SWEEP_ARGUMENTS                                                                                          \
   __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions, CLPV_BUFFER_IN injected,      \
-      CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways, CLPV_BUFFER_IN border, const ClpvSweepShell shell, __global float *live,                   \
+      CLPV_BUFFER_IN sources, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border, const ClpvSweepHalo halo, __global float *live,                   \
       CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT kept
 
 #if CLPV_WHOLE_BINS
@@ -108,14 +108,14 @@ CLPV_INLINE void clpv_keep(const CLPV_REAL light, const int first, CLPV_BUFFER_O
   const int8 i = first + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
   CLPV_SWEEP_STORE(kept, at, select((CLPV_REAL)(0.0f), light, i >= 0 && i < CLPV_GRID));
 }
-CLPV_INLINE void clpv_keep_row(const ClpvSweepShell shell, __global const float* d, const int row, const int column,
+CLPV_INLINE void clpv_keep_row(const ClpvSweepHalo halo, __global const float* d, const int row, const int column,
                                CLPV_BUFFER_OUT kept, const int at) {
-  for (int i = 0; i < shell.side; i += CLPV_LANES)
+  for (int i = 0; i < halo.side; i += CLPV_LANES)
     clpv_keep(CLPV_LIVE_LOAD(d, clpv_live_at(row, column + i)), column + i, kept, at + i);
 }
-CLPV_INLINE void clpv_keep_column(const ClpvSweepShell shell, __global const float* d, const int row, const int column,
+CLPV_INLINE void clpv_keep_column(const ClpvSweepHalo halo, __global const float* d, const int row, const int column,
                                   CLPV_BUFFER_OUT kept, const int at) {
-  for (int i = 0; i < shell.side; i += CLPV_LANES) {
+  for (int i = 0; i < halo.side; i += CLPV_LANES) {
 #define CLPV_OF(lane) d[clpv_live_at(clamp(row + i + lane, -1, CLPV_GRID), column)]
     const float8 light = {CLPV_OF(0), CLPV_OF(1), CLPV_OF(2), CLPV_OF(3), CLPV_OF(4), CLPV_OF(5), CLPV_OF(6), CLPV_OF(7)};
 #undef CLPV_OF
@@ -123,33 +123,33 @@ CLPV_INLINE void clpv_keep_column(const ClpvSweepShell shell, __global const flo
   }
 }
 
-// Keeps what of a plane belongs to the shell, if anything.
-CLPV_INLINE void clpv_keep_plane(const ClpvSweepShell shell, const ClpvSweepBin bin, const int swept, const int plane,
+// Keeps what of a plane belongs to the halo, if anything.
+CLPV_INLINE void clpv_keep_plane(const ClpvSweepHalo halo, const ClpvSweepBin bin, const int swept, const int plane,
                                  __global const float* d, CLPV_BUFFER_OUT kept) {
-  const int p = plane - CLPV_SHELL_FIRST(shell, bin.plane_axis);
-  if (p < 0 || p >= shell.side) return;
-  const int first_row = CLPV_SHELL_FIRST(shell, bin.row_axis), first_column = CLPV_SHELL_FIRST(shell, bin.column_axis);
-  const int end = min(first_row + shell.side, CLPV_GRID);
-  const int of_plane = plane - CLPV_SHELL_LAYER(shell, bin.plane_axis, bin.plane_sign);
+  const int p = plane - CLPV_HALO_FIRST(halo, bin.plane_axis);
+  if (p < 0 || p >= halo.side) return;
+  const int first_row = CLPV_HALO_FIRST(halo, bin.row_axis), first_column = CLPV_HALO_FIRST(halo, bin.column_axis);
+  const int end = min(first_row + halo.side, CLPV_GRID);
+  const int of_plane = plane - CLPV_HALO_LAYER(halo, bin.plane_axis, bin.plane_sign);
   for (int row = max(first_row, 0); row < end && (of_plane == 0 || of_plane == 1); ++row)
-    clpv_keep_row(shell, d, row, first_column, kept,
-                  clpv_shell_at(shell, swept, CLPV_BORDER_PLANE, of_plane, row - first_row, 0));
+    clpv_keep_row(halo, d, row, first_column, kept,
+                  clpv_halo_at(halo, swept, CLPV_BORDER_PLANE, of_plane, row - first_row, 0));
   for (int layer = 0; layer < 2; ++layer) {
-    const int row = CLPV_SHELL_LAYER(shell, bin.row_axis, bin.row_sign) + layer;
+    const int row = CLPV_HALO_LAYER(halo, bin.row_axis, bin.row_sign) + layer;
     if (row >= 0 && row < CLPV_GRID)
-      clpv_keep_row(shell, d, row, first_column, kept, clpv_shell_at(shell, swept, CLPV_BORDER_ROW, layer, p, 0));
-    const int column = CLPV_SHELL_LAYER(shell, bin.column_axis, bin.column_sign) + layer;
+      clpv_keep_row(halo, d, row, first_column, kept, clpv_halo_at(halo, swept, CLPV_BORDER_ROW, layer, p, 0));
+    const int column = CLPV_HALO_LAYER(halo, bin.column_axis, bin.column_sign) + layer;
     if (column >= 0 && column < CLPV_GRID)
-      clpv_keep_column(shell, d, first_row, column, kept, clpv_shell_at(shell, swept, CLPV_BORDER_COLUMN, layer, p, 0));
+      clpv_keep_column(halo, d, first_row, column, kept, clpv_halo_at(halo, swept, CLPV_BORDER_COLUMN, layer, p, 0));
   }
 }
 
 // What the next plane and the finer cascade want of a plane that is done.
-CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const ClpvSweepShell shell, CLPV_BUFFER_IN border,
+CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const ClpvSweepHalo halo, CLPV_BUFFER_IN border,
                                    const int dark, __global float* live, CLPV_BUFFER_OUT kept, const int plane) {
   const int first = CLPV_SWEPT(b, 0, 0);
   for (int swept = first; swept < first + 3 * CLPV_PARTS; ++swept) {
-    clpv_keep_plane(shell, bin, swept, plane, live + swept * CLPV_SWEEP_LIVE, kept);
+    clpv_keep_plane(halo, bin, swept, plane, live + swept * CLPV_SWEEP_LIVE, kept);
     for (int at = -1; at <= CLPV_GRID && !dark; at += CLPV_LANES) {
       clpv_border_row(border, live, bin, swept, plane, at);
       clpv_border_column(border, live, bin, swept, plane, at);
@@ -159,7 +159,7 @@ CLPV_INLINE void clpv_finish_plane(const int b, const ClpvSweepBin bin, const Cl
 
 // Asks for a row of the next plane, in all that is read and written there. Processors ask for lines ahead by themselves, but not
 // beyond a page of memory, and two planes of 32 x 32 halves fill one.
-CLPV_INLINE void clpv_ask_for_row(const int b, const ClpvSweepBin bin, CLPV_BUFFER_IN sources, CLPV_BUFFER_IN ways,
+CLPV_INLINE void clpv_ask_for_row(const int b, const ClpvSweepBin bin, CLPV_BUFFER_IN sources, CLPV_BUFFER_IN links,
                                   CLPV_BUFFER_OUT sums, const int plane, const int row) {
   const int next = clamp(plane + bin.plane_sign, 0, CLPV_GRID - 1);
   for (int column = 0; column < CLPV_SWEEP_ROW; column += CLPV_LINE / (CLPV_STORAGE_HALF ? 2 : 4)) {
@@ -168,7 +168,7 @@ CLPV_INLINE void clpv_ask_for_row(const int b, const ClpvSweepBin bin, CLPV_BUFF
       CLPV_PREFETCH(sources + channel * bin.channel + source);
       CLPV_PREFETCH(sums + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME + at);
     }
-    for (int k = 0; k < 4 && CLPV_BLOCKING; ++k) CLPV_PREFETCH(ways + bin.ways[k] * CLPV_SWEEP_VOLUME + at);
+    for (int k = 0; k < 4 && CLPV_BLOCKING; ++k) CLPV_PREFETCH(links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
   }
 }
 
@@ -185,30 +185,30 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(CLPV_SWEE
     const int plane = bin.plane_sign > 0 ? p : CLPV_GRID - 1 - p;
     for (int r = 0; r < CLPV_GRID; ++r) {
       const int row = bin.row_sign > 0 ? CLPV_GRID - 1 - r : r;
-      clpv_ask_for_row(b, bin, light, ways, sums, plane, row);
+      clpv_ask_for_row(b, bin, light, links, sums, plane, row);
       for (int c = 0; c <= last_column; c += CLPV_LANES) {
         const int column = bin.column_sign > 0 ? last_column - c : c;
-        clpv_sweep_cells(b, bin, direction, light, ways, sums, live, live, plane, row, column);
+        clpv_sweep_cells(b, bin, direction, light, links, sums, live, live, plane, row, column);
       }
     }
-    clpv_finish_plane(b, bin, shell, border, dark, live, kept, plane);
+    clpv_finish_plane(b, bin, halo, border, dark, live, kept, plane);
   }
 }
 
 #else
 
-// Keeps a cell of the shell, if it is one: in each face it belongs to.
-CLPV_INLINE void clpv_keep_cell(const ClpvSweepShell shell, const ClpvSweepBin bin, const int swept, const int plane,
+// Keeps a cell of the halo, if it is one: in each face it belongs to.
+CLPV_INLINE void clpv_keep_cell(const ClpvSweepHalo halo, const ClpvSweepBin bin, const int swept, const int plane,
                                 const int row, const int column, const float d, CLPV_BUFFER_OUT kept) {
-  const int p = plane - CLPV_SHELL_FIRST(shell, bin.plane_axis), r = row - CLPV_SHELL_FIRST(shell, bin.row_axis),
-            c = column - CLPV_SHELL_FIRST(shell, bin.column_axis);
-  if (p < 0 || r < 0 || c < 0 || p >= shell.side || r >= shell.side || c >= shell.side) return;
-  int layer = plane - CLPV_SHELL_LAYER(shell, bin.plane_axis, bin.plane_sign);
-  if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_shell_at(shell, swept, CLPV_BORDER_PLANE, layer, r, c), d);
-  layer = row - CLPV_SHELL_LAYER(shell, bin.row_axis, bin.row_sign);
-  if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_shell_at(shell, swept, CLPV_BORDER_ROW, layer, p, c), d);
-  layer = column - CLPV_SHELL_LAYER(shell, bin.column_axis, bin.column_sign);
-  if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_shell_at(shell, swept, CLPV_BORDER_COLUMN, layer, p, r), d);
+  const int p = plane - CLPV_HALO_FIRST(halo, bin.plane_axis), r = row - CLPV_HALO_FIRST(halo, bin.row_axis),
+            c = column - CLPV_HALO_FIRST(halo, bin.column_axis);
+  if (p < 0 || r < 0 || c < 0 || p >= halo.side || r >= halo.side || c >= halo.side) return;
+  int layer = plane - CLPV_HALO_LAYER(halo, bin.plane_axis, bin.plane_sign);
+  if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_halo_at(halo, swept, CLPV_BORDER_PLANE, layer, r, c), d);
+  layer = row - CLPV_HALO_LAYER(halo, bin.row_axis, bin.row_sign);
+  if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_halo_at(halo, swept, CLPV_BORDER_ROW, layer, p, c), d);
+  layer = column - CLPV_HALO_LAYER(halo, bin.column_axis, bin.column_sign);
+  if (layer == 0 || layer == 1) CLPV_WRITE(kept, clpv_halo_at(halo, swept, CLPV_BORDER_COLUMN, layer, p, r), d);
 }
 
 // `p`: the plane's number along the way.
@@ -221,13 +221,13 @@ __kernel void sweep_plane(CLPV_SWEEP_ARGUMENTS, const int p) {
   __global float* to = live + (p % 2) * place;
   __global const float* from = live + (1 - p % 2) * place;
   CLPV_BUFFER_IN light = bin.injected ? injected : sources;
-  clpv_sweep_cells(b, bin, directions + b * CLPV_PARTS, light, ways, sums, from, to, plane, row, column);
+  clpv_sweep_cells(b, bin, directions + b * CLPV_PARTS, light, links, sums, from, to, plane, row, column);
   const int first = CLPV_SWEPT(b, 0, 0), before = row == 0 ? -1 : row, after = row == CLPV_GRID - 1 ? CLPV_GRID : row;
   for (int swept = first; swept < first + 3 * CLPV_PARTS; ++swept) {
     for (int lane = 0; lane < CLPV_LANES; ++lane) {
       const int c = column + lane;
       if (c >= CLPV_GRID) break;
-      clpv_keep_cell(shell, bin, swept, plane, row, c, to[swept * CLPV_SWEEP_LIVE + clpv_live_at(row, c)], kept);
+      clpv_keep_cell(halo, bin, swept, plane, row, c, to[swept * CLPV_SWEEP_LIVE + clpv_live_at(row, c)], kept);
       if (row == 0) clpv_border_row(border, to, bin, swept, plane, c);
     }
     if (column != 0) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a sweep's numbers lie in memory: volumes of planes, one for each bin or way.
+// How a sweep's numbers lie in memory: volumes of planes, one for each bin or link.
 //
 // A volume is of an axis: the planes across it follow each other, so that a direction walks through memory from one end to
 // the other. Rows of a plane lie along x, and above each other along y in planes across z, along z in those across y; in

@@ -24,15 +24,15 @@ CLPV_INLINE int clpv_side_at(const int swept, const int face, const int plane, c
   return side * CLPV_SWEEP_PITCH + 1 + at;
 }
 
-// Of a shell, (i, j): row and column of the face across planes, plane and column of that across rows, plane and row of that
+// Of a halo, (i, j): row and column of the face across planes, plane and column of that across rows, plane and row of that
 // across columns.
-// Of an axis: a shell is an argument by value, whose arrays are indexed by literals alone (region.h).
-#define CLPV_SHELL_FIRST(shell, axis) \
-  ((axis) == 0 ? (shell).first[0] : ((axis) == 1 ? (shell).first[1] : (shell).first[2]))
-CLPV_INLINE int clpv_shell_at(const ClpvSweepShell shell, const int swept, const int face, const int layer, const int i,
+// Of an axis: a halo is an argument by value, whose arrays are indexed by literals alone (region.h).
+#define CLPV_HALO_FIRST(halo, axis) \
+  ((axis) == 0 ? (halo).first[0] : ((axis) == 1 ? (halo).first[1] : (halo).first[2]))
+CLPV_INLINE int clpv_halo_at(const ClpvSweepHalo halo, const int swept, const int face, const int layer, const int i,
                               const int j) {
-  return (swept * 3 + face) * CLPV_SWEEP_SHELL_FACE_OF(shell.side) +
-         (layer * shell.side + i) * CLPV_SWEEP_SHELL_PITCH_OF(shell.side) + j;
+  return (swept * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
+         (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
 }
 
 #endif

@@ -10,7 +10,7 @@
 #define CLPV_FOR_FINER 0
 #endif
 #include "coefficients.h"
-#include "shared/reflect.h"
+#include "shared/reflectors.h"
 #include "shared/sweep.h"
 #include "sweep.h"
 #include "volume/light.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hostile and broken models: each is refused in words, as exit code 3 (bad_input), before anything of the size it asks for is
+// Hostile and broken models: each is rejected in words, as exit code 3 (bad_input), before anything of the size it asks for is
 // allocated.
 #include "tests/support/bad_input.hpp"
 
@@ -14,7 +14,7 @@ using Changes = std::vector<std::pair<std::string, json>>;
 
 struct Row {
   Changes changes;
-  std::vector<std::string> words;  ///< of the refusal
+  std::vector<std::string> words;  ///< of the rejection
 };
 
 void change(json& document, const Changes& changes) {
@@ -58,12 +58,12 @@ struct BadGltfTest : AnimationTest {
     return model.accessor<float>(type, values);
   }
 
-  void expect_all_refused(const std::vector<Row>& rows) {
+  void expect_all_rejected(const std::vector<Row>& rows) {
     ASSERT_EQ(load_scene(model.write(folder)).triangles.size(), 1u);
     const json sound = model.document;
     for (const Row& row : rows) {
       change(model.document, row.changes);
-      const std::string message = refused();
+      const std::string message = rejected();
       EXPECT_THAT(message, HasSubstr("; allowed: "));
       for (const std::string& word : row.words) EXPECT_THAT(message, HasSubstr(word)) << row.changes[0].first;
       model.document = sound;
@@ -103,12 +103,12 @@ TEST_F(BadGltfTest, EveryIndexOutOfRange) {
     for (const json& bad : {json(1000), json(-1), json(18446744073709551615ull), json(1.5), json("0")})
       rows.push_back({{{place, bad}}, {std::string(place) + ": found " + bad.dump()}});
   }
-  expect_all_refused(rows);
+  expect_all_rejected(rows);
 }
 
 TEST_F(BadGltfTest, Documents) {
   const std::string camera = "/cameras/0/perspective", texture = "/materials/0/pbrMetallicRoughness";
-  expect_all_refused({
+  expect_all_rejected({
       {{{"/asset", nullptr}}, {"/asset", "nothing"}},
       {{{"/asset/version", "1.0"}}, {"/asset/version", "'1.0'", "2.x"}},
       {{{"/asset/version", 2}}, {"/asset/version"}},
@@ -137,7 +137,7 @@ TEST_F(BadGltfTest, Documents) {
 
 TEST_F(BadGltfTest, Nodes) {
   const json identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  expect_all_refused({
+  expect_all_rejected({
       {{{"/nodes/0/children", {0}}}, {"/scenes/0/nodes", "node 0, a child of node 0"}},
       {{{"/nodes/0/children", {1}}, {"/nodes/1/children", {0}}, {"/scenes", nullptr}}, {"/nodes", "a cycle"}},
       {{{"/nodes/2", {{"children", {1}}}}, {"/nodes/0/children", {1}}}, {"/nodes/1", "parents 0 and 2"}},
@@ -156,7 +156,7 @@ TEST_F(BadGltfTest, Nodes) {
   for (int i = 2; i < kLevels; ++i) model.add("nodes", {{"children", {i + 1}}});
   model.add("nodes", json::object());
   model.document["scenes"][0]["nodes"] = {0, 1, 2};
-  EXPECT_THAT(refused(), AllOf(HasSubstr("levels deep"), HasSubstr("at most 1024")));
+  EXPECT_THAT(rejected(), AllOf(HasSubstr("levels deep"), HasSubstr("at most 1024")));
 }
 
 TEST_F(BadGltfTest, Attributes) {
@@ -173,7 +173,7 @@ TEST_F(BadGltfTest, Attributes) {
             few_weights = floats("VEC4", {1, 0, 0, 0});
   const std::string attributes = kPrimitive + "/attributes", position = attributes + "/POSITION",
                     indices = kPrimitive + "/indices", skin = "/skins/0/inverseBindMatrices";
-  expect_all_refused({
+  expect_all_rejected({
       {{{attributes, json::object()}}, {kPrimitive, "no attribute POSITION"}},
       {{{"/meshes/0/primitives", json::array()}}, {"/meshes/0/primitives"}},
       {{{attributes + "/NORMAL", one}}, {attributes + "/NORMAL", "1 of VEC3", "3 of VEC3"}},
@@ -226,27 +226,27 @@ TEST_F(BadGltfTest, BuffersViewsAndAccessors) {
     rows.push_back({{{accessor + "/count", count}}, {accessor, std::to_string(count)}});
   for (const int stride : {0, 3, 14, 256, -4})
     rows.push_back({{{view + "/byteStride", stride}}, {view, std::to_string(stride)}});
-  expect_all_refused(rows);
-  const auto refused_with = [&](const Changes& changes) {
+  expect_all_rejected(rows);
+  const auto rejected_with = [&](const Changes& changes) {
     const json sound = model.document;
     model.finish("model.bin");
     folder.write("model.bin", model.binary);
     change(model.document, changes);
-    const std::string message = refusal(folder.write("model.gltf", model.document.dump()));
+    const std::string message = rejection(folder.write("model.gltf", model.document.dump()));
     model.document = sound;
     return message;
   };
   const std::string size = "/buffers/0/byteLength", uri = "/buffers/0/uri";
-  EXPECT_THAT(refused_with({{size, 1 << 20}}),
+  EXPECT_THAT(rejected_with({{size, 1 << 20}}),
               AllOf(HasSubstr(size), HasSubstr("1048576"), HasSubstr("truncated")));
-  EXPECT_THAT(refused_with({{size, 1ull << 40}}), AllOf(HasSubstr(size), HasSubstr("1099511627776")));
-  EXPECT_THAT(refused_with({{"/buffers/1", {{"byteLength", 1u << 31}, {"uri", "model.bin"}}}}),
+  EXPECT_THAT(rejected_with({{size, 1ull << 40}}), AllOf(HasSubstr(size), HasSubstr("1099511627776")));
+  EXPECT_THAT(rejected_with({{"/buffers/1", {{"byteLength", 1u << 31}, {"uri", "model.bin"}}}}),
               AllOf(HasSubstr("/buffers/1/byteLength"), HasSubstr("in all")));
-  EXPECT_THAT(refused_with({{uri, "data:application/octet-stream;base64,!!"}}), HasSubstr("/buffers/0"));
-  EXPECT_THAT(refused_with({{uri, "data:text/html;base64,AAAA"}}),
+  EXPECT_THAT(rejected_with({{uri, "data:application/octet-stream;base64,!!"}}), HasSubstr("/buffers/0"));
+  EXPECT_THAT(rejected_with({{uri, "data:text/html;base64,AAAA"}}),
               AllOf(HasSubstr(uri), HasSubstr("no such file")));
-  EXPECT_THAT(refused_with({{uri, nullptr}}), AllOf(HasSubstr("/buffers/0"), HasSubstr("'uri' is missing")));
-  EXPECT_THAT(refused_with({{"/buffers/1", {{"byteLength", 1}}}}),
+  EXPECT_THAT(rejected_with({{uri, nullptr}}), AllOf(HasSubstr("/buffers/0"), HasSubstr("'uri' is missing")));
+  EXPECT_THAT(rejected_with({{"/buffers/1", {{"byteLength", 1}}}}),
               AllOf(HasSubstr("/buffers/1"), HasSubstr("no uri")));
 }
 
@@ -262,7 +262,7 @@ TEST_F(BadGltfTest, Animations) {
             many_times =
                 model.add("accessors", {{"componentType", 5126}, {"count", 100000000}, {"type", "SCALAR"}}),
             many = model.add("accessors", {{"componentType", 5126}, {"count", 100000000}, {"type", "VEC3"}});
-  expect_all_refused({
+  expect_all_rejected({
       {{{input, times(2, 1)}}, {input, "1 s at 1", "more than the 2 s"}},
       {{{input, times(1, 1)}}, {input, "1 s at 1", "more than the 1 s"}},
       {{{input, times(0, NAN)}}, {input, "nan", "finite"}},
@@ -292,7 +292,7 @@ TEST_F(BadGltfTest, Animations) {
   moving["extensions"]["EXT_flood"]["text"] = flood;
   EXPECT_EQ(load_scene(model.write(folder)).triangles.size(), 1u);
   for (int i = 0; i < 3; ++i) moving["samplers"].push_back(moving["samplers"][0]);
-  EXPECT_THAT(refused(), HasSubstr("/animations/0/extensions"));
+  EXPECT_THAT(rejected(), HasSubstr("/animations/0/extensions"));
 }
 
 TEST_F(BadGltfTest, BombsOfInstancesAndMorphTargets) {
@@ -303,12 +303,12 @@ TEST_F(BadGltfTest, BombsOfInstancesAndMorphTargets) {
   many.mesh({{"POSITION", zeros}}, {{"indices", many.accessor<std::uint32_t>("SCALAR", corners)}});
   model = many;
   for (int i = 0; i < 20000; ++i) model.add("nodes", {{"mesh", 0}});
-  EXPECT_THAT(refused(),
+  EXPECT_THAT(rejected(),
               AllOf(HasSubstr(kPrimitive), HasSubstr("2000079999 vertices"), HasSubstr("20001 nodes")));
   model = many;
   for (int i = 0; i < 1000; ++i) primitive()["targets"].push_back({{"POSITION", zeros}});
-  EXPECT_THAT(refused(), AllOf(HasSubstr(kPrimitive + "/targets/223"), HasSubstr("299997 more numbers"),
-                               HasSubstr("67108864 in all")));
+  EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive + "/targets/223"), HasSubstr("299997 more numbers"),
+                                HasSubstr("67108864 in all")));
 }
 
 TEST_F(BadGltfTest, WhatMovesOutOfTheWorldCanComeBack) {
@@ -331,9 +331,9 @@ TEST_F(BadGltfTest, WhatMovesOutOfTheWorldCanComeBack) {
 }
 
 struct BadImageTest : BadInputTest {
-  std::string refused_image(const std::string& bytes) {
+  std::string rejected_image(const std::string& bytes) {
     folder.write("image.png", bytes);
-    return refused();
+    return rejected();
   }
   BadImageTest() { wear("image.png"); }
 };
@@ -342,27 +342,27 @@ TEST_F(BadImageTest, Images) {
   std::string png = decode_base64(kPngRgba2x2), jpeg = decode_base64(kJpegRed8x8), corrupt = png, text = png,
               large = png;
   for (const std::size_t at : {16, 20}) png.replace(at, 4, std::string("\0\0\xea\x60", 4));
-  EXPECT_THAT(refused_image(png),
+  EXPECT_THAT(rejected_image(png),
               AllOf(HasSubstr("/images/0"), HasSubstr("60000 x 60000"), HasSubstr("16384")));
   jpeg.replace(jpeg.find("\xff\xc0") + 5, 4, "\xff\xdc\xff\xdc");
-  EXPECT_THAT(refused_image(jpeg), AllOf(HasSubstr("/images/0"), HasSubstr("65500 x 65500")));
+  EXPECT_THAT(rejected_image(jpeg), AllOf(HasSubstr("/images/0"), HasSubstr("65500 x 65500")));
   for (std::size_t i = 43; i < 52; ++i) corrupt[i] = '\x55';  // inside the compressed pixels
-  EXPECT_THAT(refused_image(corrupt), AllOf(HasSubstr("/images/0"), HasSubstr("does not decode")));
+  EXPECT_THAT(rejected_image(corrupt), AllOf(HasSubstr("/images/0"), HasSubstr("does not decode")));
   text.insert(33, "\x7f\xff\xff\xffzTXtComment");
-  EXPECT_THAT(refused_image(text), AllOf(HasSubstr("/images/0"), HasSubstr("truncated")));
-  EXPECT_THAT(refused_image("#!/bin/sh\necho hello, this is no image at all\n"),
+  EXPECT_THAT(rejected_image(text), AllOf(HasSubstr("/images/0"), HasSubstr("truncated")));
+  EXPECT_THAT(rejected_image("#!/bin/sh\necho hello, this is no image at all\n"),
               AllOf(HasSubstr("'image.png'"), HasSubstr("23 21 2f 62"), HasSubstr("PNG or JPEG")));
   for (const std::string_view encoded : {kPngRgba2x2, kJpegRed8x8}) {
     const std::string image = decode_base64(encoded);
     for (std::size_t length = 0; length + 12 < image.size(); length += 7)
-      EXPECT_THAT(refused_image(image.substr(0, length)), HasSubstr("/images/0")) << length;
+      EXPECT_THAT(rejected_image(image.substr(0, length)), HasSubstr("/images/0")) << length;
   }
   for (const std::size_t at : {16, 20})
     large.replace(at, 4, std::string("\0\0\x40\0", 4));  // 16384: 1 GiB each
   model.document["images"].push_back({{"uri", "image.png"}});
   model.document["textures"].push_back({{"source", 1}});
   model.document["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}});
-  EXPECT_THAT(refused_image(large),
+  EXPECT_THAT(rejected_image(large),
               AllOf(HasSubstr("/images/1"), HasSubstr("bytes of texels"), HasSubstr("1073741824")));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hostile and broken files, JSON, containers, URIs and scene files: each is refused with file, place, value found and value
+// Hostile and broken files, JSON, containers, URIs and scene files: each is rejected with file, place, value found and value
 // allowed, as exit code 3 (bad_input).
 #include "tests/support/bad_input.hpp"
 
@@ -12,11 +12,11 @@ using ::testing::HasSubstr;
 TEST_F(BadInputTest, Files) {
   std::filesystem::create_directories(folder / "folder.gltf");
   std::filesystem::create_symlink("/dev/zero", folder / "zero.gltf");
-  EXPECT_THAT(refusal(folder / "none.gltf"), AllOf(HasSubstr("none.gltf"), HasSubstr("no file")));
-  EXPECT_THAT(refusal(folder / "none.json"), HasSubstr("no file"));
-  EXPECT_THAT(refusal(folder / "folder.gltf"), HasSubstr("a folder"));
-  EXPECT_THAT(refusal(folder / "zero.gltf"), HasSubstr("not a regular file"));
-  EXPECT_THAT(refusal(folder.write("model.obj", "")), AllOf(HasSubstr("'.obj'"), HasSubstr(".json")));
+  EXPECT_THAT(rejection(folder / "none.gltf"), AllOf(HasSubstr("none.gltf"), HasSubstr("no file")));
+  EXPECT_THAT(rejection(folder / "none.json"), HasSubstr("no file"));
+  EXPECT_THAT(rejection(folder / "folder.gltf"), HasSubstr("a folder"));
+  EXPECT_THAT(rejection(folder / "zero.gltf"), HasSubstr("not a regular file"));
+  EXPECT_THAT(rejection(folder.write("model.obj", "")), AllOf(HasSubstr("'.obj'"), HasSubstr(".json")));
 }
 
 TEST_F(BadInputTest, TextsThatAreNoJson) {
@@ -43,7 +43,7 @@ TEST_F(BadInputTest, TextsThatAreNoJson) {
   };
   for (const auto& [text, word] : texts) {
     for (const char* name : {"bad.gltf", "bad.json"})
-      EXPECT_THAT(refusal(folder.write(name, text)), AllOf(HasSubstr(name), HasSubstr(word)));
+      EXPECT_THAT(rejection(folder.write(name, text)), AllOf(HasSubstr(name), HasSubstr(word)));
   }
   model.document["asset"]["generator"] =
       std::string(1000, '[') + "\\\"{";  // brackets in texts are not nesting
@@ -54,30 +54,30 @@ TEST_F(BadInputTest, TruncatedGlbAtAnyLength) {
   const std::string whole = model.glb();
   ASSERT_EQ(load_scene(folder.write("whole.glb", whole)).triangles.size(), 1u);
   for (std::size_t length = 4; length < whole.size(); length += 5) {
-    EXPECT_NE(refusal(folder.write("cut.glb", whole.substr(0, length))), "") << length;
+    EXPECT_NE(rejection(folder.write("cut.glb", whole.substr(0, length))), "") << length;
   }
-  EXPECT_THAT(refusal(folder.write("cut.glb", whole.substr(0, 40))),
+  EXPECT_THAT(rejection(folder.write("cut.glb", whole.substr(0, 40))),
               AllOf(HasSubstr("40 bytes"), HasSubstr("truncated")));
 }
 
 TEST_F(BadInputTest, GlbHeadersAndChunks) {
   const std::string sound = model.glb();
-  const auto refused_with = [&](std::size_t at, std::uint32_t word) {
+  const auto rejected_with = [&](std::size_t at, std::uint32_t word) {
     std::string glb = sound;
     std::memcpy(&glb[at], &word, sizeof word);
-    return refusal(folder.write("bad.glb", glb));
+    return rejection(folder.write("bad.glb", glb));
   };
   std::uint32_t text = 0, binary = 0;
   std::memcpy(&text, &sound[12], sizeof text);
   std::memcpy(&binary, &sound[20 + text], sizeof binary);
-  EXPECT_THAT(refused_with(4, 1), HasSubstr("version 1"));
-  EXPECT_THAT(refused_with(8, 4000), AllOf(HasSubstr("4000"), HasSubstr("truncated")));
-  EXPECT_THAT(refused_with(8, 12), HasSubstr("truncated"));
-  EXPECT_THAT(refused_with(12, 0xfffffff0u), HasSubstr("4294967280"));
-  EXPECT_THAT(refused_with(16, 0x004e4942), HasSubstr("glTF"));
-  EXPECT_THAT(refused_with(20 + text, binary + 8),
+  EXPECT_THAT(rejected_with(4, 1), HasSubstr("version 1"));
+  EXPECT_THAT(rejected_with(8, 4000), AllOf(HasSubstr("4000"), HasSubstr("truncated")));
+  EXPECT_THAT(rejected_with(8, 12), HasSubstr("truncated"));
+  EXPECT_THAT(rejected_with(12, 0xfffffff0u), HasSubstr("4294967280"));
+  EXPECT_THAT(rejected_with(16, 0x004e4942), HasSubstr("glTF"));
+  EXPECT_THAT(rejected_with(20 + text, binary + 8),
               HasSubstr("a second .glb chunk"));  // tinygltf would read past the file
-  EXPECT_THAT(refused_with(20 + text, binary - 4), HasSubstr("byteLength"));
+  EXPECT_THAT(rejected_with(20 + text, binary - 4), HasSubstr("byteLength"));
 }
 
 TEST_F(BadInputTest, UrisThatLeaveTheFolder) {
@@ -109,7 +109,7 @@ TEST_F(BadInputTest, UrisThatLeaveTheFolder) {
         std::string("http://localhost/secret.png"), std::string("C:secret.png"), std::string("link.png"),
         std::string("out/secret.png"), std::string("."), std::string(""), std::string("none.png"),
         std::string("here.png%00"), std::string("%zz")}) {
-    const std::string message = refusal(load_with(uri));
+    const std::string message = rejection(load_with(uri));
     EXPECT_THAT(message, AllOf(HasSubstr("/images/0/uri"), HasSubstr("allowed: a relative path"))) << uri;
   }
 }
@@ -120,15 +120,15 @@ TEST_F(BadInputTest, BufferUrisThatLeaveTheFolder) {
   for (const char* uri :
        {"../model.bin", "%2e%2e/model.bin", "/etc/passwd", "folder", "file:///etc/passwd"}) {
     model.finish(uri);
-    EXPECT_THAT(refusal(folder.write("in/model.gltf", model.document.dump())),
+    EXPECT_THAT(rejection(folder.write("in/model.gltf", model.document.dump())),
                 AllOf(HasSubstr("/buffers/0/uri"), HasSubstr(uri)));
   }
 }
 
-/// Scene files: each refused with place, value found and value allowed.
+/// Scene files: each rejected with place, value found and value allowed.
 struct BadSceneFileTest : BadInputTest {
-  void expect_refused(const std::string& members, const std::vector<std::string>& words) {
-    const std::string text = "{" + members + "}", message = refusal(folder.write("scene.json", text));
+  void expect_rejected(const std::string& members, const std::vector<std::string>& words) {
+    const std::string text = "{" + members + "}", message = rejection(folder.write("scene.json", text));
     EXPECT_THAT(message, HasSubstr("scene.json"));
     for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word)) << text;
   }
@@ -147,11 +147,11 @@ TEST_F(BadSceneFileTest, EachMember) {
       {R"("cascades": {"count": 1.5})", {"/cascades/count"}},
       {R"("cascades": {"count": 17})", {"/cascades/count"}},
   };
-  for (const auto& [member, words] : rows) expect_refused(R"("model": "model.gltf", )" + member, words);
-  expect_refused("", {"/model", "nothing"});
-  expect_refused(R"("model": 7)", {"/model", "found 7"});
-  expect_refused(R"("model": "absent.gltf")", {"/model", "absent.gltf", "option model"});
-  expect_refused(R"("model": "scene.json")", {"/asset"});
+  for (const auto& [member, words] : rows) expect_rejected(R"("model": "model.gltf", )" + member, words);
+  expect_rejected("", {"/model", "nothing"});
+  expect_rejected(R"("model": 7)", {"/model", "found 7"});
+  expect_rejected(R"("model": "absent.gltf")", {"/model", "absent.gltf", "option model"});
+  expect_rejected(R"("model": "scene.json")", {"/asset"});
 }
 
 TEST_F(BadSceneFileTest, Cameras) {
@@ -172,9 +172,9 @@ TEST_F(BadSceneFileTest, Cameras) {
   const std::string head = R"("model": "model.gltf", "lights": [{"name": "sun", "kind": "directional",
       "direction": [0, -1, 0], "illuminance_lux": 1}], "cameras": [{"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0])";
   for (const auto& [member, words] : rows)
-    expect_refused(head + ", " + member + "}]", words);  // the last of a name counts
-  expect_refused(head + R"(}, {"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0]}])",
-                 {"/cameras/1/name", "'a' again"});
+    expect_rejected(head + ", " + member + "}]", words);  // the last of a name counts
+  expect_rejected(head + R"(}, {"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0]}])",
+                  {"/cameras/1/name", "'a' again"});
 }
 
 TEST_F(BadSceneFileTest, Lights) {
@@ -198,7 +198,7 @@ TEST_F(BadSceneFileTest, Lights) {
       {many, {"/lights", "an array of 65"}},
   };
   for (const auto& [light, words] : rows)
-    expect_refused(R"("model": "model.gltf", "lights": [{)" + light + "}]", words);
+    expect_rejected(R"("model": "model.gltf", "lights": [{)" + light + "}]", words);
 }
 
 }  // namespace

@@ -172,26 +172,26 @@ TEST(ClampedCosine, ChebyshevSeriesOfTheKernelText) {
   }
 }
 
-std::string refusal(const std::string& name, double lambda) {
+std::string rejection(const std::string& name, double lambda) {
   return test::error_of(ExitCode::usage, [&] { make_basis(name, lambda); });
 }
 
-TEST(Refused, IllConditionedSetsNamingLambdaAndNumber) {
-  const std::string message = refusal("srbf14", 0.01);
+TEST(Rejected, IllConditionedSetsNamingLambdaAndNumber) {
+  const std::string message = rejection("srbf14", 0.01);
   EXPECT_THAT(message, ::testing::HasSubstr("srbf14"));
   EXPECT_THAT(message, ::testing::HasSubstr("lambda 0.01"));
   EXPECT_THAT(message, ::testing::ContainsRegex("condition number [0-9.]+e\\+"));
   EXPECT_NO_THROW(make_basis("srbf4", 0.01));
 }
 
-TEST(Refused, LambdaOutsideItsRangeAndUnknownNames) {
+TEST(Rejected, LambdaOutsideItsRangeAndUnknownNames) {
   for (const double lambda : {0.0, 1.0, -0.25, 2.0, std::nan("")}) {
-    EXPECT_THAT(refusal("srbf8v2", lambda), ::testing::HasSubstr("between 0 and 1")) << lambda;
+    EXPECT_THAT(rejection("srbf8v2", lambda), ::testing::HasSubstr("between 0 and 1")) << lambda;
   }
-  EXPECT_THAT(refusal("srbf7", .25), ::testing::HasSubstr("there are sh2, sh3, sh4, sh5, srbf4"));
+  EXPECT_THAT(rejection("srbf7", .25), ::testing::HasSubstr("there are sh2, sh3, sh4, sh5, srbf4"));
 }
 
-TEST(Refused, TwoEqualCentres) {
+TEST(Rejected, TwoEqualCentres) {
   EXPECT_THROW(make_basis_from_centres("twice", {kUp, kUp}), Error);
 }
 

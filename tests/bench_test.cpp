@@ -94,7 +94,7 @@ TEST(BenchCompare, TellsAChangeFromTheSpread) {
   EXPECT_THAT(table, HasSubstr("0.500 faster"));
 }
 
-TEST(BenchCompare, RefusesWhatIsNoReport) {
+TEST(BenchCompare, RejectsWhatIsNoReport) {
   EXPECT_THROW(compare_runs(nlohmann::json::array(), report({}), "old.json"), Error);
   EXPECT_THROW(
       compare_runs({{"context", {{"schema", 2}}}, {"benchmarks", nlohmann::json::array()}}, report({}), "o"),
@@ -318,7 +318,7 @@ TEST(BenchProgram, AnAlteredLiteralIsCaught) {
   EXPECT_THAT(out.err, HasSubstr("propagate/sh2/soa/float"));
 }
 
-TEST(BenchProgram, RefusesBadUsage) {
+TEST(BenchProgram, RejectsBadUsage) {
   const auto code = [](const std::string& arguments) {
     return test::run(kProgram + " bench " + arguments).exit_code;
   };

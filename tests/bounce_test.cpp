@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light that surfaces send back, held against what is known in closed form; and the kernels against the twin.
+// Light that surfaces send back, held against what is known in closed form; and the kernels against the CPU reference.
 #include "pipeline/bounce.hpp"
 
 #include <gtest/gtest.h>
@@ -12,17 +12,17 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
-#include "checks/check.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/sweep.hpp"
-#include "reference/block.hpp"
+#include "reference/blockers.hpp"
 #include "reference/bounce.hpp"
-#include "reference/reflect.hpp"
+#include "reference/reflectors.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::bounce_test {
 namespace {
@@ -200,13 +200,13 @@ TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
   }
 }
 
-TEST(BouncedFrame, RefusesWhatDoesNotSweep) {
+TEST(BouncedFrame, RejectsWhatDoesNotSweep) {
   RenderOptions options = small_frame(Bounces::two, 1);
   options.transport = TransportKind::sampled;
   EXPECT_THROW(irradiance(options), Error);
 }
 
-TEST(Bounce, KernelsAgreeWithTheirTwin) {
+TEST(Bounce, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::bounce, test_session(), few_variants()), 4);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // References are traced once, and anew when anything they depend on changes or their file is damaged.
-#include "evaluate/cached_reference.hpp"
+#include "quality/cached_reference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "basis/rotated_lobe.hpp"
-#include "evaluate/normal_weights.hpp"
+#include "quality/normal_weights.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/sphere_quadrature.hpp"
@@ -147,16 +147,16 @@ TEST(SearchCentres, SaysWhenNoSetIsWithinTheBounds) {
               ::testing::AllOf(HasSubstr("none of 6 starts"), HasSubstr("at most 2e+04")));
 }
 
-TEST(SearchCentres, RefusesWithTheBound) {
-  const auto refused = [](auto change, const char* word) {
+TEST(SearchCentres, RejectsWithTheBound) {
+  const auto rejected = [](auto change, const char* word) {
     CentreSearch search = quick(4);
     change(search);
     EXPECT_THAT(test::error_of(ExitCode::usage, [&] { search_centres(search); }), HasSubstr(word));
   };
-  refused([](CentreSearch& s) { s.centres = 65; }, "--search 65: allowed: 1 to 64");
-  refused([](CentreSearch& s) { s.centres = 0; }, "--search 0");
-  refused([](CentreSearch& s) { s.lambda = 1; }, "lambda is 1");
-  refused([](CentreSearch& s) { s.most_condition = 1e8; }, "1e+07");
+  rejected([](CentreSearch& s) { s.centres = 65; }, "--search 65: allowed: 1 to 64");
+  rejected([](CentreSearch& s) { s.centres = 0; }, "--search 0");
+  rejected([](CentreSearch& s) { s.lambda = 1; }, "lambda is 1");
+  rejected([](CentreSearch& s) { s.most_condition = 1e8; }, "1e+07");
 }
 
 TEST(SearchCentres, WritesAFileThatIsABasis) {
@@ -197,7 +197,7 @@ TEST(SearchCentres, TakesAScenesNormals) {
   EXPECT_EQ(test::run_here("basis --seed 4").exit_code, 2);
 }
 
-TEST(LobeAims, OfFilesAreRefusedWithThePlace) {
+TEST(LobeAims, OfFilesAreRejectedWithThePlace) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "w.json").string();
   for (const auto& [text, word] : {std::pair{"{", "no JSON"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A user's own SRBF set: what load_basis makes of a file, and what it refuses; `clpv basis` on one.
+// A user's own SRBF set: what load_basis makes of a file, and what it rejects; `clpv basis` on one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ class CentresFile : public ::testing::Test {
     std::ofstream(path) << text;
     return path;
   }
-  void expect_refused(const std::string& path, const std::string& word) {
+  void expect_rejected(const std::string& path, const std::string& word) {
     EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { load_basis(path); }),
                 ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr(word)));
   }
@@ -39,7 +39,7 @@ TEST_F(CentresFile, MakesTheBasis) {
   EXPECT_EQ(load_basis(file(R"({"centres": [[0, 0, 1]]})"))->name(), "mine");
 }
 
-TEST_F(CentresFile, RefusesWithThePlace) {
+TEST_F(CentresFile, RejectsWithThePlace) {
   const std::pair<std::string, std::string> bad[] = {
       {"{", "no JSON"},
       {"[1]", "object"},
@@ -62,12 +62,12 @@ TEST_F(CentresFile, RefusesWithThePlace) {
       {std::string(100000, '['), "nested more than"},
       {std::string(2 << 20, ' '), "bytes"},
   };
-  for (const auto& [text, word] : bad) expect_refused(file(text), word);
+  for (const auto& [text, word] : bad) expect_rejected(file(text), word);
   std::string many = "[[0,0,1]";
   for (int i = 1; i < 65; ++i) many += ",[" + std::to_string(i) + ",1,0]";
-  expect_refused(file("{\"centres\": " + many + "]}"), "array of 65");
-  expect_refused((folder_.path() / "none.json").string(), "no file");
-  expect_refused(folder_.path().string(), "a folder");
+  expect_rejected(file("{\"centres\": " + many + "]}"), "array of 65");
+  expect_rejected((folder_.path() / "none.json").string(), "no file");
+  expect_rejected(folder_.path().string(), "a folder");
 }
 
 TEST_F(CentresFile, IsDescribedByTheProgram) {

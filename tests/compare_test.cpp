@@ -28,7 +28,7 @@ Image plain(int width, int height, float r, float g, float b) {
   return image;
 }
 
-std::string refusal(const Image& a, const Image& b) {
+std::string rejection(const Image& a, const Image& b) {
   return test::error_of(ExitCode::bad_input, [&] { compare(a, "a.exr", b, "b.exr"); });
 }
 
@@ -123,20 +123,20 @@ TEST(Compare, PerceptualTestSeesAPatchAndForgivesATrace) {
   EXPECT_EQ(compare(patch, "a", b, "b").perceptual_failures, 0u);
 }
 
-TEST(Compare, RefusesWhatCannotBeCompared) {
+TEST(Compare, RejectsWhatCannotBeCompared) {
   const Image image = plain(4, 4, 1, 1, 1);
-  EXPECT_NE(refusal(image, plain(4, 5, 1, 1, 1)).find("4 x 5"), std::string::npos);
-  EXPECT_NE(refusal(image, make_image(4, 4, {"Y"})).find("1"), std::string::npos);
+  EXPECT_NE(rejection(image, plain(4, 5, 1, 1, 1)).find("4 x 5"), std::string::npos);
+  EXPECT_NE(rejection(image, make_image(4, 4, {"Y"})).find("1"), std::string::npos);
   for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
     Image bad = image;
     bad.at(2, 1, 1) = value;
-    const std::string message = refusal(image, bad);
+    const std::string message = rejection(image, bad);
     EXPECT_NE(message.find("b.exr: pixel (2, 1), channel G"), std::string::npos) << message;
-    refusal(bad, bad);  // a NaN in both is no agreement
+    rejection(bad, bad);  // a NaN in both is no agreement
   }
   Image encoded = image;
   encoded.encoding = Encoding::srgb;
-  EXPECT_NE(refusal(image, encoded).find("b.exr sRGB"), std::string::npos);
+  EXPECT_NE(rejection(image, encoded).find("b.exr sRGB"), std::string::npos);
 }
 
 TEST(Compare, DifferenceImage) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The one comparison of results with the CPU reference, and its report as test cases.
-#include "checks/comparison.hpp"
+#include "verify/comparison.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "basis/basis.hpp"
-#include "checks/junit.hpp"
 #include "reference/inject.hpp"
 #include "tests/support/run_here.hpp"
+#include "verify/junit.hpp"
 
 namespace clpv::reference::comparison_test {
 namespace {
@@ -20,29 +20,29 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(Comparison, TellsTheWorstAndItsPlace) {
-  std::vector<double> twin(2 * 8, 0.5);
-  std::vector<float> found(twin.begin(), twin.end());
-  EXPECT_EQ(compare_volumes(found, twin, 2).worst, 0);
-  EXPECT_EQ(compare_volumes(found, twin, 2).place, "");
+  std::vector<double> expected(2 * 8, 0.5);
+  std::vector<float> found(expected.begin(), expected.end());
+  EXPECT_EQ(compare_volumes(found, expected, 2).worst, 0);
+  EXPECT_EQ(compare_volumes(found, expected, 2).place, "");
   found[3] = 0.625f;
   found[8 + 6] = 0.25f;
-  EXPECT_EQ(compare_volumes(found, twin, 2).worst, 0.5);
-  EXPECT_EQ(compare_volumes(found, twin, 2).place, "cell 0,1,1 plane 1: 0.25, twin 0.5");
+  EXPECT_EQ(compare_volumes(found, expected, 2).worst, 0.5);
+  EXPECT_EQ(compare_volumes(found, expected, 2).place, "cell 0,1,1 plane 1: 0.25, expected 0.5");
 }
 
 TEST(Comparison, NaNIsWorseThanAnyNumberAndStays) {
-  std::vector<double> twin(8, 0.5);
-  std::vector<float> found(twin.begin(), twin.end());
+  std::vector<double> expected(8, 0.5);
+  std::vector<float> found(expected.begin(), expected.end());
   found[2] = NAN;
   found[5] = 1000;
-  EXPECT_TRUE(std::isnan(compare_volumes(found, twin, 2).worst));
-  EXPECT_THAT(compare_volumes(found, twin, 2).place, HasSubstr("cell 0,1,0"));
+  EXPECT_TRUE(std::isnan(compare_volumes(found, expected, 2).worst));
+  EXPECT_THAT(compare_volumes(found, expected, 2).place, HasSubstr("cell 0,1,0"));
 }
 
-TEST(Comparison, ATwinOfNothingAllowsNothing) {
-  const std::vector<double> twin(8, 0.0);
+TEST(Comparison, AReferenceOfNothingAllowsNothing) {
+  const std::vector<double> expected(8, 0.0);
   std::vector<float> found(8, 0.0f);
-  EXPECT_FALSE(compare_volumes(found, twin, 2).worst <= 1);  // 0 / 0 tells nothing: it does not pass
+  EXPECT_FALSE(compare_volumes(found, expected, 2).worst <= 1);  // 0 / 0 tells nothing: it does not pass
 }
 
 TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {

@@ -50,17 +50,17 @@ TEST(ChooseDevice, WithoutAChoiceTakesTheFirstSupportedOne) {
   EXPECT_EQ(choose_device(devices, "").name, "Big GPU");
 }
 
-TEST(ChooseDevice, RefusesWithTheReason) {
+TEST(ChooseDevice, RejectsWithTheReason) {
   const auto devices = three_devices();
-  const auto refused = [](const std::vector<Device>& of, const char* choice) {
+  const auto rejected = [](const std::vector<Device>& of, const char* choice) {
     return test::error_of(ExitCode::device, [&] { choose_device(of, choice); });
   };
-  EXPECT_THAT(refused(devices, "7"), AllOf(HasSubstr("'7'"), HasSubstr("1: Big GPU (Third Platform)")));
-  refused(devices, "1:0");  // a platform without devices
-  EXPECT_THAT(refused(devices, "gpu"), HasSubstr("several"));
-  EXPECT_THAT(refused(devices, "old"), HasSubstr("OpenCL 1.2, compiler"));
-  EXPECT_THAT(refused({}, ""), HasSubstr("apt install"));
-  EXPECT_THAT(refused({devices[2]}, ""), HasSubstr("no supported"));
+  EXPECT_THAT(rejected(devices, "7"), AllOf(HasSubstr("'7'"), HasSubstr("1: Big GPU (Third Platform)")));
+  rejected(devices, "1:0");  // a platform without devices
+  EXPECT_THAT(rejected(devices, "gpu"), HasSubstr("several"));
+  EXPECT_THAT(rejected(devices, "old"), HasSubstr("OpenCL 1.2, compiler"));
+  EXPECT_THAT(rejected({}, ""), HasSubstr("apt install"));
+  EXPECT_THAT(rejected({devices[2]}, ""), HasSubstr("no supported"));
 }
 
 TEST(ListDevices, NumbersAndEventsAreSound) {

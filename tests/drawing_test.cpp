@@ -82,9 +82,9 @@ TEST_F(Drawing, AReportIsOnePageWithItsViews) {
   EXPECT_THAT(html, HasSubstr("clpv: NRMSE"));
 }
 
-TEST_F(Drawing, AReportRefusesWithItsOwnExitCode) {
+TEST_F(Drawing, AReportRejectsWithItsOwnExitCode) {
   folder_.write("other.json", R"({"schema": 1})");
-  folder_.write("shape.json", R"({"variants": [{"refused": 0}]})");
+  folder_.write("shape.json", R"({"variants": [{"rejected": 0}]})");
   for (const char* name : {"other.json", "shape.json"}) {
     const test::Outcome outcome = run_here("report " + file("page") + " --quality " + file(name));
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;

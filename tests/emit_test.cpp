@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces that glow: how much light leaves them, from where, and what it does in a frame.
+// Emissive surfaces: how much light leaves them, from where, and what it does in a frame.
 #include "pipeline/emit.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "checks/check.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/inject.hpp"
@@ -17,6 +16,7 @@
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/traced_scenes.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::emit_test {
 namespace {
@@ -160,7 +160,7 @@ TEST(Emit, WhatIsMostIsWhatOneCellOrTheWholeSends) {
   EXPECT_TRUE(emits(scene));
 }
 
-TEST(Emit, KernelAgreesWithItsTwin) {
+TEST(Emit, KernelAgreesWithTheReference) {
   expect_passed(reference::check(Stage::emit, test_session()), 2);
 }
 

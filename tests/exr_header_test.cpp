@@ -25,14 +25,14 @@ ImageClaim walked(const std::string& bytes) {
                          std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
-std::string refusal(const std::string& bytes) {
+std::string rejection(const std::string& bytes) {
   try {
     walked(bytes);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::bad_input);
     return error.what();
   }
-  return "not refused";
+  return "not rejected";
 }
 
 std::string number(std::uint32_t value) {
@@ -94,7 +94,7 @@ TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
   EXPECT_EQ(claim.channels, 1) << "the second has three";
   const std::size_t second = bytes.rfind("compression\0compression\0"s);
   bytes.replace(second + 24, 4, number(1u << 30));
-  EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
+  EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
 }
 
 TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
@@ -114,21 +114,21 @@ TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
 TEST(ExrHeader, PartsAreOfTypesThatOpenExrChecks) {
   for (const Flags flags : {deep, several}) {
     EXPECT_THAT(
-        refusal(file(flags, part_type("scanlin") + '\0' + '\0')),
+        rejection(file(flags, part_type("scanlin") + '\0' + '\0')),
         HasSubstr(
             "part 0: found type 'scanlin'; allowed: scanlineimage, tiledimage, deepscanline, deeptile"));
-    EXPECT_THAT(refusal(file(flags, window(4, 4) + '\0' + '\0')), HasSubstr("found type ''"));
+    EXPECT_THAT(rejection(file(flags, window(4, 4) + '\0' + '\0')), HasSubstr("found type ''"));
   }
-  EXPECT_EQ(refusal(one(part_type("scanlin"))), "not refused") << "OpenEXR goes by the flags";
+  EXPECT_EQ(rejection(one(part_type("scanlin"))), "not rejected") << "OpenEXR goes by the flags";
 }
 
 TEST(ExrHeader, TextsAndUnknownTypesAreNoLongerThanTheFile) {
   for (const std::string type : {"string", "bytes", "idmanifest", "of no name", "floatvector"}) {
-    const std::string found = refusal(one("a\0"s + type + '\0' + number(1u << 30) + "text", 0));
+    const std::string found = rejection(one("a\0"s + type + '\0' + number(1u << 30) + "text", 0));
     EXPECT_THAT(found, AllOf(HasSubstr("a.exr: part 0, attribute 'a' (" + type + ")"),
                              HasSubstr("1073741824"), HasSubstr("the 5 left")));
   }
-  EXPECT_THAT(refusal(one("a\0string\0"s + number(0xffffffffu))), HasSubstr("4294967295 bytes"));
+  EXPECT_THAT(rejection(one("a\0string\0"s + number(0xffffffffu))), HasSubstr("4294967295 bytes"));
   EXPECT_EQ(walked(one(attribute("a", "string", ""))).width, 0);
 }
 
@@ -158,45 +158,45 @@ TEST(ExrHeader, ValuesHaveTheSizeOfTheirTypes) {
                                  "v3d",
                                  "v3f",
                                  "v3i"}) {
-    EXPECT_THAT(refusal(one(attribute("a", type, ""))), HasSubstr("'a' (" + type + "): found 0 bytes"));
-    EXPECT_THAT(refusal(one(attribute("a", type, std::string(200, '\0')))), HasSubstr("found 200 bytes"));
+    EXPECT_THAT(rejection(one(attribute("a", type, ""))), HasSubstr("'a' (" + type + "): found 0 bytes"));
+    EXPECT_THAT(rejection(one(attribute("a", type, std::string(200, '\0')))), HasSubstr("found 200 bytes"));
   }
-  EXPECT_THAT(refusal(one(attribute("a", "floatvector", "12345"))), HasSubstr("4 a number"));
+  EXPECT_THAT(rejection(one(attribute("a", "floatvector", "12345"))), HasSubstr("4 a number"));
 }
 
 TEST(ExrHeader, ValuesHaveTheSizeThatTheySay) {
   const auto preview = [](std::uint32_t width, std::uint32_t height, std::size_t bytes) {
     return one(attribute("preview", "preview", number(width) + number(height) + std::string(bytes, 'x')));
   };
-  EXPECT_EQ(refusal(preview(2, 3, 24)), "not refused");
+  EXPECT_EQ(rejection(preview(2, 3, 24)), "not rejected");
   for (const std::string& bytes :
        {preview(2, 3, 23), preview(2, 3, 28), preview(40000, 40000, 24), preview(0xffffffffu, 0xffffffffu, 4),
         preview(0x7fffffff, 0x7fffffff, 4)}) {
-    EXPECT_THAT(refusal(bytes), HasSubstr("pixels in"));
+    EXPECT_THAT(rejection(bytes), HasSubstr("pixels in"));
   }
-  EXPECT_THAT(refusal(one(attribute("preview", "preview", "1234567"))), HasSubstr("no size"));
+  EXPECT_THAT(rejection(one(attribute("preview", "preview", "1234567"))), HasSubstr("no size"));
   const auto texts = [](const std::string& value) { return one(attribute("a", "stringvector", value)); };
-  EXPECT_EQ(refusal(texts(number(1) + "a" + number(0) + number(2) + "bc")), "not refused");
-  EXPECT_THAT(refusal(texts(number(1) + "a" + number(9) + "bc")), HasSubstr("found 9 bytes"));
-  EXPECT_THAT(refusal(texts(number(1) + "ab")), HasSubstr("found 4 bytes"));
+  EXPECT_EQ(rejection(texts(number(1) + "a" + number(0) + number(2) + "bc")), "not rejected");
+  EXPECT_THAT(rejection(texts(number(1) + "a" + number(9) + "bc")), HasSubstr("found 9 bytes"));
+  EXPECT_THAT(rejection(texts(number(1) + "ab")), HasSubstr("found 4 bytes"));
 }
 
 TEST(ExrHeader, ChannelsAreCountedAndEndWhereTheySay) {
   const auto channels = [](const std::string& list) { return one(attribute("channels", "chlist", list)); };
   EXPECT_EQ(walked(channels(channel("B") + channel("G") + '\0')).channels, 2);
   EXPECT_EQ(walked(channels("\0"s)).channels, 0);
-  EXPECT_THAT(refusal(channels(channel("B"))), HasSubstr("does not end within 0 bytes"));
-  EXPECT_THAT(refusal(channels(channel("B") + '\0' + "more")), HasSubstr("4 bytes after the last channel"));
-  EXPECT_THAT(refusal(channels("B\0"s + "123")), HasSubstr("found 16 bytes"));
-  EXPECT_THAT(refusal(one(attribute(std::string(256, 'n'), "int", "1234"))),
+  EXPECT_THAT(rejection(channels(channel("B"))), HasSubstr("does not end within 0 bytes"));
+  EXPECT_THAT(rejection(channels(channel("B") + '\0' + "more")), HasSubstr("4 bytes after the last channel"));
+  EXPECT_THAT(rejection(channels("B\0"s + "123")), HasSubstr("found 16 bytes"));
+  EXPECT_THAT(rejection(one(attribute(std::string(256, 'n'), "int", "1234"))),
               HasSubstr("does not end within 256 bytes"));
 }
 
 TEST(ExrHeader, NamesAreThereOnce) {
-  EXPECT_THAT(refusal(one(window(4, 4) + window(4, 4), 64)),
+  EXPECT_THAT(rejection(one(window(4, 4) + window(4, 4), 64)),
               HasSubstr("attribute 'dataWindow' (box2i): found a second of this name"));
   const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';
-  EXPECT_EQ(refusal(file(several, part + part + '\0', 64)), "not refused");
+  EXPECT_EQ(rejection(file(several, part + part + '\0', 64)), "not rejected");
 }
 
 TEST(ExrHeader, PartsAndAttributesAreBounded) {
@@ -205,11 +205,11 @@ TEST(ExrHeader, PartsAndAttributesAreBounded) {
     attributes += attribute(fmt::format("a{}", i), "int", "1234");
     parts += part_type("scanlineimage") + '\0';
   }
-  EXPECT_EQ(refusal(one(attributes)), "not refused");
-  EXPECT_THAT(refusal(one(attributes + attribute("b", "int", "1234"))),
+  EXPECT_EQ(rejection(one(attributes)), "not rejected");
+  EXPECT_THAT(rejection(one(attributes + attribute("b", "int", "1234"))),
               HasSubstr("part 0: found over 1024 attributes"));
-  EXPECT_EQ(refusal(file(several, parts + '\0')), "not refused");
-  EXPECT_THAT(refusal(file(several, parts + part_type("scanlineimage") + '\0' + '\0')),
+  EXPECT_EQ(rejection(file(several, parts + '\0')), "not rejected");
+  EXPECT_THAT(rejection(file(several, parts + part_type("scanlineimage") + '\0' + '\0')),
               HasSubstr("over 1024 parts"));
 }
 
@@ -220,21 +220,22 @@ TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
   // 1000 rows: one by one, by 16 (ZIP), by 256 (DWAB), each with 8 bytes in the table.
   for (const auto& [kind, chunks] : {std::pair{'\0', 1000}, {'\3', 63}, {'\11', 4}, {'\177', 4}}) {
     const std::string attributes = window(5, 1000) + compressed(kind);
-    EXPECT_EQ(refusal(one(attributes, 8 * chunks)), "not refused") << chunks;
-    EXPECT_THAT(refusal(one(attributes, 8 * chunks - 1)),
+    EXPECT_EQ(rejection(one(attributes, 8 * chunks)), "not rejected") << chunks;
+    EXPECT_THAT(rejection(one(attributes, 8 * chunks - 1)),
                 HasSubstr(fmt::format("part 0: found {} chunks", chunks)));
   }
   const auto tiles = [](std::uint32_t width, std::uint32_t height) {
     return window(16384, 16384) + attribute("tiles", "tiledesc", number(width) + number(height) + '\0');
   };
-  EXPECT_THAT(refusal(file(tiled, tiles(1, 1) + '\0')), HasSubstr("found 268435456 chunks"));
-  EXPECT_EQ(refusal(file(tiled, tiles(16384, 8192) + '\0', 16)), "not refused");
-  EXPECT_EQ(refusal(file(tiled, tiles(0, 0) + '\0', 0)), "not refused");  // which OpenEXR does
-  EXPECT_THAT(refusal(one(attribute("chunkCount", "int", number(1u << 30)))), HasSubstr("1073741824 chunks"));
+  EXPECT_THAT(rejection(file(tiled, tiles(1, 1) + '\0')), HasSubstr("found 268435456 chunks"));
+  EXPECT_EQ(rejection(file(tiled, tiles(16384, 8192) + '\0', 16)), "not rejected");
+  EXPECT_EQ(rejection(file(tiled, tiles(0, 0) + '\0', 0)), "not rejected");  // which OpenEXR does
+  EXPECT_THAT(rejection(one(attribute("chunkCount", "int", number(1u << 30)))),
+              HasSubstr("1073741824 chunks"));
   const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';  // 4 chunks, and as many
-  EXPECT_EQ(refusal(file(several, part + part + '\0', 64)), "not refused");
-  EXPECT_THAT(refusal(file(several, part + part + '\0', 8)), HasSubstr("part 1: found 4 chunks"));
-  EXPECT_THAT(refusal(file(several, part + part + '\0', 40)),
+  EXPECT_EQ(rejection(file(several, part + part + '\0', 64)), "not rejected");
+  EXPECT_THAT(rejection(file(several, part + part + '\0', 8)), HasSubstr("part 1: found 4 chunks"));
+  EXPECT_THAT(rejection(file(several, part + part + '\0', 40)),
               HasSubstr("all parts: found 8 chunks; allowed: 5,"));
 }
 
@@ -250,7 +251,7 @@ TEST(ExrHeader, WindowsAreTakenAsTheyAre) {
 TEST(ExrHeader, AFileMayEndAnywhere) {
   const std::string whole = one(window(4, 4) + attribute("channels", "chlist", channel("Y") + '\0'), 0);
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    EXPECT_THAT(refusal(whole.substr(0, length)), AllOf(HasSubstr("a.exr"), HasSubstr("found"))) << length;
+    EXPECT_THAT(rejection(whole.substr(0, length)), AllOf(HasSubstr("a.exr"), HasSubstr("found"))) << length;
   }
 }
 

@@ -163,7 +163,7 @@ TEST(Frame, WithoutOcclusionThereIsMoreLight) {
   EXPECT_GT(mean(open, 0, 0, kWidth, kHeight, 1), 1.05 * mean(occluded, 0, 0, kWidth, kHeight, 1));
 }
 
-TEST(Frame, SweepsRefuseWhatIsOfSteps) {
+TEST(Frame, SweepsRejectWhatIsOfSteps) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   const std::vector<std::function<void(RenderOptions&)>> changes = {
       [](RenderOptions& o) { o.state = State::fluxes; },

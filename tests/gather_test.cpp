@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Gathering against closed forms: uniform and linear fields, seams between cascades, clamp.
-// Every field is gathered by the kernels and by the twin, and both are held against mathematics.
+// Every field is gathered by the kernels and by the CPU reference, and both are held against mathematics.
 #include "pipeline/gather.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <random>
 
 #include "pipeline/cascade.hpp"
-#include "pipeline/see.hpp"
-#include "reference/see.hpp"
+#include "pipeline/visibility.hpp"
+#include "reference/visibility.hpp"
 #include "support/error.hpp"
 #include "tests/support/gather_fields.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -206,7 +206,7 @@ TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
 TEST(Gather, WhereNothingIsSeenAllCellsCount) {
   const auto basis = make_basis("sh2");
   const SurfaceImage image = walk({-1, 0.1, 0.3}, {1, -0.2, 0.1}, kTilted);
-  const std::vector<std::uint8_t> nothing(SceneSight::bytes(kGrid), 0xff);
+  const std::vector<std::uint8_t> nothing(CellVisibility::bytes(kGrid), 0xff);
   const Both both = gather(*basis, TransportKind::sampled, {.gather = Gathering::visible},
                            {uniform(times(1.75, basis->constant()))}, image, nothing);
   expect_all(both, 4 * 1.75 / (kCell * kCell));
@@ -228,7 +228,7 @@ TEST(Gather, LightIsContinuousWhereCellsGoOutOfSight) {
     ASSERT_LT(std::abs(both.device[pixel].x - both.device[pixel - 1].x), 12 * step * lit) << pixel;
 }
 
-TEST(Gather, RefusesWhatDoesNotFit) {
+TEST(Gather, RejectsWhatDoesNotFit) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const auto make = [&](GatherOptions options) {
     Gatherer(test_session(), *basis, TransportKind::sampled, options);
@@ -244,7 +244,7 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {}, e), Error);
 }
 
-TEST(Gather, KernelsAgreeWithTheTwin) {
+TEST(Gather, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::gather, test_session(), test::few_variants()));
 }
 

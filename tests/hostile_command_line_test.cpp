@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Command lines that ask for what cannot be: each is refused before a scene is read or a device is asked, with exit code 2 and
+// Command lines that ask for what cannot be: each is rejected before a scene is read or a device is asked, with exit code 2 and
 // words that name the option and what is allowed.
 #include "tests/support/hostile.hpp"
 
@@ -14,7 +14,7 @@ struct BadLine {
 };
 
 void expect_usage(const std::string& before, const std::vector<BadLine>& lines) {
-  for (const auto& [arguments, words] : lines) expect_refused({arguments, before + arguments, 2, words});
+  for (const auto& [arguments, words] : lines) expect_rejected({arguments, before + arguments, 2, words});
 }
 
 TEST(HostileCommandLines, OfFrames) {
@@ -65,7 +65,7 @@ TEST(HostileCommandLines, OfFrames) {
 
 TEST(HostileCommandLines, OfCommands) {
   const std::string film = "sequence " + kCornell + " -o @/out ", quality = "quality " + kCornell + " ",
-                    truth = "reference " + kCornell + " ";
+                    truth = "pathtrace " + kCornell + " ";
   expect_usage("", {
                        {"render -o @/out.exr", {"scene"}},
                        {"render " + kCornell, {"--output"}},
@@ -74,6 +74,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {"render " + kCornell + " -o @/out", {"''", ".exr, .png"}},
                        {"paint it", {"'paint'", "render", "compare"}},
                        {"--quiet renderr " + kCornell, {"'renderr'", "did you mean render?"}},
+                       {"reference scene.json -o a.exr", {"now 'pathtrace'"}},
                        {"qualtiy", {"did you mean quality?"}},
                        {"--quiet", {"subcommand"}},
                        {"--device 99 devices2", {"devices"}},
@@ -139,16 +140,16 @@ TEST(HostileCommandLines, OfCommands) {
 TEST(HostileCommandLines, OfDevices) {
   const std::vector<std::string> absent = {"99", "'no such thing'", "7:7"};
   for (const std::string& device : absent)
-    expect_refused({device, "--device " + device + " check --stage sizes", 4, {words_of(device).front()}});
-  expect_refused({"below none", "--device=-1 check --stage sizes", 4, {"'-1'"}});
-  expect_refused({"by the environment", "check --stage sizes", 4, {"'99'"}, {}, {}, "CLPV_DEVICE=99"});
-  expect_refused({"no device at all",
-                  "check --stage sizes",
-                  4,
-                  {"no OpenCL device found"},
-                  {},
-                  {},
-                  "OCL_ICD_VENDORS=/nowhere CLPV_DEVICE="});
+    expect_rejected({device, "--device " + device + " check --stage sizes", 4, {words_of(device).front()}});
+  expect_rejected({"below none", "--device=-1 check --stage sizes", 4, {"'-1'"}});
+  expect_rejected({"by the environment", "check --stage sizes", 4, {"'99'"}, {}, {}, "CLPV_DEVICE=99"});
+  expect_rejected({"no device at all",
+                   "check --stage sizes",
+                   4,
+                   {"no OpenCL device found"},
+                   {},
+                   {},
+                   "OCL_ICD_VENDORS=/nowhere CLPV_DEVICE="});
 }
 
 }  // namespace

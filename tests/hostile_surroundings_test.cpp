@@ -19,39 +19,39 @@ const std::string kTiny =
 const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
 
 TEST(HostileSurroundings, Outputs) {
-  const auto refused = [](const std::string& command, const std::vector<std::string>& words) {
-    expect_refused({command, command, 1, words, {{"file", ""}}, [](const TemporaryFolder& folder) {
-                      fs::create_directories(folder / "folder.exr");
-                      fs::create_symlink("/dev/null", folder / "null.exr");
-                      fs::create_symlink("none/at/all.exr", folder / "link.exr");
-                    }});
+  const auto rejected = [](const std::string& command, const std::vector<std::string>& words) {
+    expect_rejected({command, command, 1, words, {{"file", ""}}, [](const TemporaryFolder& folder) {
+                       fs::create_directories(folder / "folder.exr");
+                       fs::create_symlink("/dev/null", folder / "null.exr");
+                       fs::create_symlink("none/at/all.exr", folder / "link.exr");
+                     }});
   };
-  refused(kTiny + "-o @/none/a.exr", {"none/a.exr", "no folder"});
-  refused(kTiny + "-o @/folder.exr", {"folder.exr", "folder"});
-  refused(kTiny + "-o @/null.exr", {"null.exr", "not a regular file"});
-  refused(kTiny + "-o @/link.exr", {"link.exr"});
-  refused(kTiny + "-o @/" + std::string(300, 'a') + ".exr", {"cannot be written"});
-  refused(kTiny + "-o @/out.exr --stats @/none/s.json", {"none/s.json"});
-  refused(kTiny + "-o @/out.exr --dump-normals @/none/n.json", {"none/n.json"});
-  refused(kTiny + "-o @/out.exr --dump-volume @/file", {"file"});
-  refused("bench ceilings --out @/none/r.json", {"none/r.json"});
-  refused("compare a.exr b.exr -o @/none/out.png", {"none/out.png"});
-  refused("propagate --at 4,4,4 --grid 8 -o @/none/a.npy", {"none/a.npy"});
+  rejected(kTiny + "-o @/none/a.exr", {"none/a.exr", "no folder"});
+  rejected(kTiny + "-o @/folder.exr", {"folder.exr", "folder"});
+  rejected(kTiny + "-o @/null.exr", {"null.exr", "not a regular file"});
+  rejected(kTiny + "-o @/link.exr", {"link.exr"});
+  rejected(kTiny + "-o @/" + std::string(300, 'a') + ".exr", {"cannot be written"});
+  rejected(kTiny + "-o @/out.exr --stats @/none/s.json", {"none/s.json"});
+  rejected(kTiny + "-o @/out.exr --dump-normals @/none/n.json", {"none/n.json"});
+  rejected(kTiny + "-o @/out.exr --dump-volume @/file", {"file"});
+  rejected("bench ceilings --out @/none/r.json", {"none/r.json"});
+  rejected("compare a.exr b.exr -o @/none/out.png", {"none/out.png"});
+  rejected("propagate --at 4,4,4 --grid 8 -o @/none/a.npy", {"none/a.npy"});
 }
 
 TEST(HostileSurroundings, Variables) {
-  const auto refused = [](const std::string& variables, int code, const std::vector<std::string>& words) {
-    expect_refused({variables,
-                    kTiny + "-o @/out.exr",
-                    code,
-                    words,
-                    {{"file", ""}, {"k/rasterize.cl", "nonsense\n"}},
-                    {},
-                    variables});
+  const auto rejected = [](const std::string& variables, int code, const std::vector<std::string>& words) {
+    expect_rejected({variables,
+                     kTiny + "-o @/out.exr",
+                     code,
+                     words,
+                     {{"file", ""}, {"k/rasterize.cl", "nonsense\n"}},
+                     {},
+                     variables});
   };
-  refused("CLPV_PROGRAM_CACHE=off CLPV_PROGRAM_DUMP=@/none", 1, {"none/", "there is no folder"});
-  refused("CLPV_PROGRAM_CACHE=off CLPV_KERNEL_DIR=@/k", 1, {"does not build"});
-  refused("env -u POCL_CACHE_DIR XDG_CACHE_HOME=@/file", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
+  rejected("CLPV_PROGRAM_CACHE=off CLPV_PROGRAM_DUMP=@/none", 1, {"none/", "there is no folder"});
+  rejected("CLPV_PROGRAM_CACHE=off CLPV_KERNEL_DIR=@/k", 1, {"does not build"});
+  rejected("env -u POCL_CACHE_DIR XDG_CACHE_HOME=@/file", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
 }
 
 /// The program for someone who is not root, for whom permissions count; empty where that cannot be had.
@@ -72,7 +72,7 @@ TEST(HostileSurroundings, Permissions) {
     };
     const char* made = inside != nullptr ? inside : file;
     const char* words = code == 1 ? "Permission denied" : "cannot be read";
-    expect_refused({command, command, code, {file, words}, {{made, "{}"}}, lock, nobody});
+    expect_rejected({command, command, code, {file, words}, {{made, "{}"}}, lock, nobody});
   };
   locked(kTiny + "-o @/f/a.exr", 1, "f", 0555, "f/x");
   locked(kTiny + "-o @/a.exr", 1, "a.exr", 0444);

@@ -22,7 +22,7 @@ std::string bare(const std::string& png) {
   return {kept.begin(), kept.end()};
 }
 
-/// A chunk whose checksum is 0, which decoders of the chunks that matter would refuse.
+/// A chunk whose checksum is 0, which decoders of the chunks that matter would reject.
 std::string chunk(const std::string& type, const std::string& bytes) {
   const auto length = static_cast<char>(bytes.size());
   return std::string(3, '\0') + length + type + bytes + std::string(4, '\0');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Images in and out: what is written comes back, the same bytes each time, and bad files are refused in
+// Images in and out: what is written comes back, the same bytes each time, and bad files are rejected in
 // words.
 #include <gtest/gtest.h>
 
@@ -20,11 +20,11 @@ namespace fs = std::filesystem;
 class ImageFiles : public testing::Test {
  protected:
   /// What read_image says about `bytes` under `name`.
-  std::string refusal(const std::string& name, const std::string& bytes) {
+  std::string rejection(const std::string& name, const std::string& bytes) {
     write_file(folder_ / name, bytes);
-    return refusal(name);
+    return rejection(name);
   }
-  std::string refusal(const std::string& name) {
+  std::string rejection(const std::string& name) {
     try {
       read_image(folder_ / name);
     } catch (const Error& error) {
@@ -162,15 +162,15 @@ std::string with(std::string image, const std::string& after, std::size_t skip, 
   return image.replace(at + after.size() + skip, bytes.size(), bytes);
 }
 
-TEST_F(ImageFiles, RefusesWhatIsNoImageOrTooLarge) {
+TEST_F(ImageFiles, RejectsWhatIsNoImageOrTooLarge) {
   Image image = sample(8, 6, {"R", "G", "B"});
   write_exr(folder_ / "good.exr", image);
   image.encoding = Encoding::srgb;
   for (float& value : image.pixels) value /= 400;
   write_png(folder_ / "good.png", image);
   fs::create_directories(folder_ / "folder.exr");
-  EXPECT_NE(refusal("missing.exr").find("no file"), std::string::npos);
-  EXPECT_NE(refusal("folder.exr").find("a folder"), std::string::npos);
+  EXPECT_NE(rejection("missing.exr").find("no file"), std::string::npos);
+  EXPECT_NE(rejection("folder.exr").find("a folder"), std::string::npos);
 
   const std::string exr = read_file(folder_ / "good.exr"), png = read_file(folder_ / "good.png");
   const std::string window("dataWindow\0box2i\0", 17), compression("compression\0compression\0", 24);
@@ -210,12 +210,12 @@ TEST_F(ImageFiles, RefusesWhatIsNoImageOrTooLarge) {
       {"none.hdr", hdr + "\n-Y 0 +X 0\n", "hdr"},
   };
   for (const auto& [name, bytes, word] : rows) {
-    const std::string message = refusal(name, bytes);
+    const std::string message = rejection(name, bytes);
     EXPECT_NE(message.find(word), std::string::npos) << message;
   }
   for (const auto& [name, whole] : {std::pair("cut.exr", exr), {"cut.png", png}}) {
     for (const double share : {0.02, 0.1, 0.5, 0.9, 0.98})
-      refusal(name, whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+      rejection(name, whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
   }
   const std::size_t table =
       exr.find("screenWindowWidth") + std::string("screenWindowWidth.float.size1234.").size();
@@ -223,7 +223,7 @@ TEST_F(ImageFiles, RefusesWhatIsNoImageOrTooLarge) {
        {0xffffffffffffffffull, 0x8000000000000000ull, 0xffffffff00000000ull, 1ull << 40, exr.size() - 1ull}) {
     std::string moved = exr;
     std::memcpy(moved.data() + table, &place, sizeof place);
-    EXPECT_NE(refusal("moved.exr", moved).find("damaged or truncated"), std::string::npos) << place;
+    EXPECT_NE(rejection("moved.exr", moved).find("damaged or truncated"), std::string::npos) << place;
   }
   for (const ImageLimits& limits :
        {ImageLimits{.pixel_bytes = 100}, ImageLimits{.channels = 2}, ImageLimits{.file_bytes = 20}})

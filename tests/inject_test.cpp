@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Injection against closed forms: where light goes and how much, what walls block, merging, repeatability; and the
-// kernels against their twin.
+// kernels against their CPU reference.
 #include "pipeline/inject.hpp"
 
 #include <gmock/gmock.h>
@@ -329,7 +329,7 @@ TEST(Inject, ASmallerSurfaceOfMoreSegmentsFollowsALargerOne) {
   EXPECT_EQ(found, light(fresh, smaller));
 }
 
-TEST(Inject, KernelsAgreeWithTheTwin) {
+TEST(Inject, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::inject, test_session(), test::few_variants()));
 }
 

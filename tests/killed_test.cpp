@@ -171,7 +171,7 @@ TEST_F(Killed, AnInterruptIsTold) {
 TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
   const fs::path image = folder_ / "truth.exr", said = folder_ / "said";
   Child child(
-      CLPV_PROGRAM " reference " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " + image.string(),
+      CLPV_PROGRAM " pathtrace " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " + image.string(),
       said);
   for (int i = 0; i < 600 && !child.listens(); ++i) std::this_thread::sleep_for(100ms);
   std::this_thread::sleep_for(500ms);

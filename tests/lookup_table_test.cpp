@@ -73,7 +73,7 @@ TEST(LookupTable, IsNotThereWhereNothingIsLookedUp) {
   }
 }
 
-TEST(LookupTable, RefusesImagesThatTheDeviceHasNot) {
+TEST(LookupTable, RejectsImagesThatTheDeviceHasNot) {
   Device without = choose_device();
   without.images = false;
   Session other(without);
@@ -161,7 +161,7 @@ TEST(RunTimeLobes, OfUnevenLambdasGiveTheLightOfConstantOnes) {
   }
 }
 
-TEST(RunTimeLobes, AreRefusedWhereNoStepMakesAny) {
+TEST(RunTimeLobes, AreRejectedWhereNoStepMakesAny) {
   const auto basis = make_basis("sh2");
   EXPECT_THAT(test::error_of(ExitCode::usage,
                              [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The options of a frame: each goes from text to a value and back, what is no value is refused with those that are, and
+// The options of a frame: each goes from text to a value and back, what is no value is rejected with those that are, and
 // every enumeration that stands for a choice has all its names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(Options, TheirDefaultsAreTextsTheyTake) {
   EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
 }
 
-TEST(Options, WhatIsMisspeltIsRefusedWithTheValueAndWhatIsAllowed) {
+TEST(Options, WhatIsMisspeltIsRejectedWithTheValueAndWhatIsAllowed) {
   for (const OptionDescription& info : list_options(RenderOptions{})) {
     SCOPED_TRACE(info.name);
     for (const std::string& bad : {info.value + "x", std::string()}) {
@@ -165,7 +165,7 @@ TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {
   EXPECT_EQ(name_of(static_cast<TypeParam>(values.size())), "");
 }
 
-TYPED_TEST(EachNamedEnum, RefusesOthersAndListsThem) {
+TYPED_TEST(EachNamedEnum, RejectsOthersAndListsThem) {
   const std::string bad = std::string(name_of(values_of<TypeParam>().front())) + "s";
   const std::string message = test::error_of(ExitCode::usage, [&] { named<TypeParam>("it", bad); });
   EXPECT_THAT(message, HasSubstr("it: found '" + bad + "', allowed: "));

@@ -49,7 +49,7 @@ TEST_F(OutputFile, CheckLeavesNothingAndKeepsWhatIsThere) {
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(OutputFile, RefusesPlacesThatTakeNoFileAndNamesThem) {
+TEST_F(OutputFile, RejectsPlacesThatTakeNoFileAndNamesThem) {
   EXPECT_NE(
       error_of(ExitCode::run_time, [&] { check_writable(folder_ / "none" / "a.exr"); }).find("no folder"),
       std::string::npos);

@@ -288,7 +288,7 @@ TEST(PathTracer, BackgroundIsZero) {
   }
 }
 
-TEST(PathTracer, RefusesWhatItCannotTrace) {
+TEST(PathTracer, RejectsWhatItCannotTrace) {
   Scene sound = floor_scene(0.5);
   sound.lights = {sun({0, -1, 0}, 1)};
   const auto trace = [](const Scene& scene, const PathTracerOptions& options) {

@@ -182,15 +182,15 @@ TEST_F(CachedSession, TakesTheStoredProgram) {
   EXPECT_EQ(answer(1), 2) << "the cache was not asked";
 }
 
-TEST_F(CachedSession, RebuildsWhatIsDamagedOrRefused) {
+TEST_F(CachedSession, RebuildsWhatIsDamagedOrRejected) {
   EXPECT_EQ(answer(3), 3);
   write_file(cache_.file_of(key(3)), "clpv program 1\nrubbish");
   EXPECT_EQ(answer(3), 3);
   EXPECT_TRUE(cache_.load(key(3)).has_value()) << "and replaced";
-  const Binary refused(100, 42);
-  cache_.store(key(3), refused);
+  const Binary rejected(100, 42);
+  cache_.store(key(3), rejected);
   EXPECT_EQ(answer(3), 3);
-  EXPECT_NE(cache_.load(key(3)), refused);
+  EXPECT_NE(cache_.load(key(3)), rejected);
 }
 
 }  // namespace

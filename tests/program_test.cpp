@@ -61,7 +61,7 @@ TEST(KernelFiles, FolderOverridesFileByFile) {
   EXPECT_THAT(assemble_kernel_source("sizes.cl"), HasSubstr("} ClpvGrid;")) << "the rest stays embedded";
 }
 
-TEST(KernelFiles, UnknownAndEndlessOnesAreRefused) {
+TEST(KernelFiles, UnknownAndEndlessOnesAreRejected) {
   EXPECT_THROW(kernel_file("no_such.cl"), Error);
   KernelFolder folder;
   folder.write("loop.cl", "#include \"loop.cl\"\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Propagation: kernels against the twin, and the twin against closed forms.
+// Propagation: kernels against the CPU reference, and the CPU reference against closed forms.
 #include "pipeline/propagate.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ std::vector<double> device_energies(const Basis& basis, const Transport& transpo
   return energies;
 }
 
-TEST(Propagate, KernelsAgreeWithTheTwin) {
+TEST(Propagate, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::propagate, test_session(), test::few_variants()));
 }
 
@@ -160,15 +160,16 @@ TEST(Propagate, WhatIsLostIsWhatLeavesTheGrid) {
 }
 
 TEST(Propagate, AnAlteredLiteralIsCaught) {
-  // The twin takes its constants from the transport; so does the kernel. Alter one on the kernel's side
+  // The CPU reference takes its constants from the transport; so does the kernel. Alter one on the kernel's side
   // alone.
   const auto basis = make_basis("sh2");
   Transport altered = make_transport(TransportKind::sampled, *basis);
   std::get<FaceTransport>(altered.scheme).faces[3].flux[0] *= 1.001;
   const auto light = one_source(*basis, 5, isotropic(*basis), {2, 2, 2});
   const auto kernel = device_energies(*basis, altered, light, 2);
-  const auto twin = reference::propagate(make_transport(TransportKind::sampled, *basis), light, nullptr, 2);
-  EXPECT_GT(std::abs(kernel[2] - reference::energy(*basis, twin.travelling)[0]), 1e-5);
+  const auto expected =
+      reference::propagate(make_transport(TransportKind::sampled, *basis), light, nullptr, 2);
+  EXPECT_GT(std::abs(kernel[2] - reference::energy(*basis, expected.travelling)[0]), 1e-5);
 }
 
 }  // namespace

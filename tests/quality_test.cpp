@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Quality runs: the matrix of variants, what is kept of a stopped run, how results are told, and the command.
-#include "evaluate/quality.hpp"
+#include "quality/quality.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "evaluate/quality_report.hpp"
+#include "quality/quality_report.hpp"
 #include "support/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -22,7 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 
-std::string refusal(const std::string& vary) {
+std::string rejection(const std::string& vary) {
   return test::error_of(ExitCode::usage, [&] { parse_varied(vary); });
 }
 
@@ -37,12 +37,12 @@ TEST(QualityMatrix, EveryCombinationOnceTheLastFastest) {
   EXPECT_EQ(describe(all[1]), "basis=sh2 iterations=8");
 }
 
-TEST(QualityMatrix, RefusesWhatCannotVary) {
-  EXPECT_THAT(refusal("basis"), HasSubstr("OPTION=a,b,c"));
-  EXPECT_THAT(refusal("fog=1,2"), HasSubstr("fog"));
-  EXPECT_THAT(refusal("basis=sh2,sh99"), HasSubstr("sh99"));
-  EXPECT_THAT(refusal("iterations=4,,8"), HasSubstr("iterations"));
-  EXPECT_THAT(refusal("iterations=4,4"), HasSubstr("twice"));
+TEST(QualityMatrix, RejectsWhatCannotVary) {
+  EXPECT_THAT(rejection("basis"), HasSubstr("OPTION=a,b,c"));
+  EXPECT_THAT(rejection("fog=1,2"), HasSubstr("fog"));
+  EXPECT_THAT(rejection("basis=sh2,sh99"), HasSubstr("sh99"));
+  EXPECT_THAT(rejection("iterations=4,,8"), HasSubstr("iterations"));
+  EXPECT_THAT(rejection("iterations=4,4"), HasSubstr("twice"));
   EXPECT_THROW(combinations({parse_varied("basis=sh2"), parse_varied("basis=sh3")}), Error);
 }
 
@@ -61,18 +61,18 @@ QualityCell cell(const std::string& basis, const std::string& camera, double nrm
   return c;
 }
 
-QualityCell refused(const std::string& basis, const std::string& camera) {
+QualityCell rejected(const std::string& basis, const std::string& camera) {
   QualityCell c = cell(basis, camera, 0, 0);
   c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(),
       c.perceptual.reset();
   c.stage_ms.clear();
-  c.refused = "a \"quoted\" reason, with a comma";
+  c.rejected = "a \"quoted\" reason, with a comma";
   return c;
 }
 
 TEST(QualityReport, SummariesAreMeansBestFirst) {
   const auto sums =
-      summarise({cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), refused("sh4", "a"),
+      summarise({cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), rejected("sh4", "a"),
                  cell("sh4", "b", 0.1, 10), cell("sh3", "a", 0.4, 20), cell("sh3", "b", 0.6, 40)});
   ASSERT_EQ(sums.size(), 3u);
   EXPECT_EQ(sums[0].variant[0].second, "sh3");
@@ -81,13 +81,13 @@ TEST(QualityReport, SummariesAreMeansBestFirst) {
   EXPECT_DOUBLE_EQ(sums[0].frame_ms, 30);
   EXPECT_DOUBLE_EQ(sums[0].stage_ms.at("propagate"), 15);
   EXPECT_DOUBLE_EQ(sums[1].nrmse_best_gain, 0.35);
-  EXPECT_EQ(sums[2].refused, 1) << "a low error on one view does not make up for one that is missing";
+  EXPECT_EQ(sums[2].rejected, 1) << "a low error on one view does not make up for one that is missing";
 }
 
 TEST(QualityReport, CsvHasALineACell) {
-  const std::string csv = quality_csv({cell("sh2", "a", 0.9, 10), refused("sh4", "a")});
+  const std::string csv = quality_csv({cell("sh2", "a", 0.9, 10), rejected("sh4", "a")});
   EXPECT_EQ(csv,
-            "scene,camera,basis,refused,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms,"
+            "scene,camera,basis,rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms,"
             "propagate_ms,rasterize-camera_ms,rasterize-rsm_ms\n"
             "room,a,sh2,,0.9,0.9,0.45,1.5,0.25,10,5,2.5,2.5\n"
             "room,a,sh4,\"a \"\"quoted\"\" reason, with a comma\",,,,,,,,,\n");
@@ -95,11 +95,11 @@ TEST(QualityReport, CsvHasALineACell) {
 
 TEST(QualityReport, TableHasALineAVariant) {
   const std::string table = quality_table(
-      {cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), refused("sh4", "a"), refused("sh4", "b")});
+      {cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), rejected("sh4", "a"), rejected("sh4", "b")});
   EXPECT_THAT(table, HasSubstr("room:a"));
   EXPECT_THAT(table, HasSubstr("90.0"));
   EXPECT_THAT(table, HasSubstr("70.0"));
-  EXPECT_THAT(table, HasSubstr("refused"));
+  EXPECT_THAT(table, HasSubstr("rejected"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
 }
 
@@ -107,7 +107,7 @@ TEST(QualityStore, GivesBackWhatItKept) {
   const test::TemporaryFolder folder;
   const QualityStore store(folder.path());
   EXPECT_FALSE(store.find("k"));
-  for (const QualityCell& kept : {cell("sh2", "a", 0.9, 10), refused("sh4", "a")}) {
+  for (const QualityCell& kept : {cell("sh2", "a", 0.9, 10), rejected("sh4", "a")}) {
     store.keep("k", kept);
     const auto found = store.find("k");
     ASSERT_TRUE(found);
@@ -166,7 +166,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
   ASSERT_EQ(json["variants"].size(), 2u);
   ASSERT_EQ(json["references"].size(), 2u);
   for (const nlohmann::json& one : json["cells"]) {
-    EXPECT_EQ(one["refused"], "") << one.dump();
+    EXPECT_EQ(one["rejected"], "") << one.dump();
     EXPECT_GT(one["nrmse"], 0.01);
     EXPECT_LT(one["nrmse"], 5);
     EXPECT_LE(one["nrmse_best_gain"], one["nrmse"]);
@@ -192,7 +192,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
   EXPECT_THAT(test::read_file(file("a.csv")), HasSubstr("room,left,srbf4,,"));
 }
 
-TEST_F(QualityCommand, RefusesWithItsOwnExitCode) {
+TEST_F(QualityCommand, RejectsWithItsOwnExitCode) {
   const test::Outcome nobody = quality("--camera nobody");
   EXPECT_EQ(nobody.exit_code, 2);
   EXPECT_THAT(nobody.err, HasSubstr("left, right"));

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "evaluate/light_field.hpp"
-#include "evaluate/points_file.hpp"
 #include "pipeline/view.hpp"
+#include "quality/light_field.hpp"
+#include "quality/points_file.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/error_of.hpp"
@@ -102,7 +102,7 @@ TEST(LightField, FillsTheRoomAndEndsWithItsCascades) {
 struct PointsFile : ::testing::Test {
   TemporaryFolder folder;
   std::vector<SurfacePoint> read(const std::string& text) { return read_points(folder.write("p.csv", text)); }
-  std::string refused(const std::string& text) {
+  std::string rejected(const std::string& text) {
     const std::string message = error_of(ExitCode::bad_input, [&] { read(text); });
     EXPECT_THAT(message, HasSubstr("p.csv"));
     return message;
@@ -122,16 +122,16 @@ TEST_F(PointsFile, LinesOfSixNumbers) {
 TEST_F(PointsFile, BadLinesAreNamed) {
   for (const std::string bad : {"1,2,3,0,0", "1,2,3,0,0,1,7", "1,2,3,0,0,", "1,2,three,0,0,1", "1 2 3 0 0 1",
                                 "nan,2,3,0,0,1", "inf,2,3,0,0,1", "1,2,3,0,nan,1", "1,2,3,0,0,1e999", ","}) {
-    EXPECT_THAT(refused("0,0,0,0,0,1\n" + bad + "\n"),
+    EXPECT_THAT(rejected("0,0,0,0,0,1\n" + bad + "\n"),
                 AllOf(HasSubstr("line 2"), HasSubstr("six finite numbers")))
         << bad;
   }
-  EXPECT_THAT(refused("nan,2,3,0,0,1"), HasSubstr("line 1"));
-  EXPECT_THAT(refused("x,y,z,nx,ny,nz\nx,y,z,nx,ny,nz\n"), HasSubstr("line 2"));
-  EXPECT_THAT(refused("1,2,3,0,0,0"),
+  EXPECT_THAT(rejected("nan,2,3,0,0,1"), HasSubstr("line 1"));
+  EXPECT_THAT(rejected("x,y,z,nx,ny,nz\nx,y,z,nx,ny,nz\n"), HasSubstr("line 2"));
+  EXPECT_THAT(rejected("1,2,3,0,0,0"),
               AllOf(HasSubstr("line 1"), HasSubstr("normal of length 0"), HasSubstr("a direction")));
-  EXPECT_THAT(refused("1e8,2,3,0,0,1"), AllOf(HasSubstr("line 1"), HasSubstr("within +-10000000 m")));
-  EXPECT_THAT(refused(std::string("1,2,3,0,0,1\n\0\0", 14)), HasSubstr("line 2"));
+  EXPECT_THAT(rejected("1e8,2,3,0,0,1"), AllOf(HasSubstr("line 1"), HasSubstr("within +-10000000 m")));
+  EXPECT_THAT(rejected(std::string("1,2,3,0,0,1\n\0\0", 14)), HasSubstr("line 2"));
   EXPECT_THROW(read_points(folder / "none.csv"), Error);
   EXPECT_THROW(read_points(folder.path()), Error);
 }

@@ -1,181 +1,78 @@
 // SPDX-License-Identifier: MIT
-// clpv under mpirun: what two and three ranks make has the bytes of what one process makes; a rank that is killed, or fails,
-// ends the job, and the same command goes on.
-#include <fmt/format.h>
+// Teams of threads, which share work as teams of ranks do: every item belongs to one rank, sums do not depend on who adds, and
+// path tracing gives the same bytes on any number of ranks.
+#include "parallel/ranks.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 
-#include <chrono>
-#include <future>
-#include <nlohmann/json.hpp>
-#include <thread>
+#include <mutex>
 
-#include "tests/support/moving_scene.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/thread_ranks.hpp"
+#include "tests/support/traced_scenes.hpp"
 
-namespace clpv::test::ranks_test {
+namespace clpv::ranks_test {
 namespace {
 
-namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using ::testing::ElementsAre;
 
-const std::string kSmall =
-    " --basis sh2 --gather all --blockers seen --grid 8 --cascades 1 --rsm-size 16 --shadow-size 16 ";
+TEST(TeamTest, OneProcessIsATeamToo) {
+  Ranks team;
+  EXPECT_TRUE(team.alone() && team.is_root());
+  EXPECT_GE(team.processors(), 1);
+  EXPECT_TRUE(team.takes(0) && team.takes(7));
+  double value = 2.5;
+  team.sum({&value, 1});
+  EXPECT_EQ(value, 2.5);
+  EXPECT_THAT(team.gather("mine"), ElementsAre("mine"));
+  EXPECT_EQ(team.from_root([] { return "made"; }), "made");
+}
 
-class Ranks : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (std::string(CLPV_MPIEXEC).empty()) GTEST_SKIP() << "clpv is built without MPI";
-    if (run(CLPV_MPIEXEC " --version | grep -qE 'Open MPI|OpenRTE'").exit_code != 0)
-      GTEST_SKIP() << CLPV_MPIEXEC " is not Open MPI's, whose options this needs";
-    write_moving_scene(folder);
+TEST(TeamTest, EachItemBelongsToOneRank) {
+  for (const int size : {2, 3, 7}) {
+    std::vector<std::atomic<int>> counts(100);
+    test::as_team(size, [&](Ranks& team) {
+      for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += team.takes(i);
+    });
+    for (const auto& count : counts) EXPECT_EQ(count, 1) << size << " ranks";
   }
+}
 
-  static std::string mpirun() { return CLPV_MPIEXEC " --allow-run-as-root --oversubscribe --bind-to none "; }
-  std::string here() const { return "cd " + folder.path().string() + " && "; }
-  Outcome plain(const std::string& arguments) const { return run(here() + CLPV_PROGRAM " " + arguments); }
-  Outcome by(int ranks, const std::string& arguments) const {
-    return run(here() + mpirun() + fmt::format("-n {} " CLPV_PROGRAM " ", ranks) + arguments);
+TEST(TeamTest, WhatOneRankMakesAllHave) {
+  test::as_team(4, [](Ranks& team) {
+    EXPECT_EQ(team.name(), "rank " + std::to_string(team.rank()) + " on threads");
+    EXPECT_EQ(team.from_root([&] { return "of rank " + std::to_string(team.rank()); }), "of rank 0");
+    double values[] = {team.rank() == 2 ? 0.1 : 0.0, 1.0};
+    team.sum(values);
+    EXPECT_EQ(values[0], 0.1) << "others add nothing to it";
+    EXPECT_EQ(values[1], 4);
+    const std::vector<std::string> all = team.gather(std::string(static_cast<std::size_t>(team.rank()), 'x'));
+    if (team.is_root()) {
+      EXPECT_THAT(all, ElementsAre("", "x", "xx", "xxx"));
+    }
+  });
+}
+
+TEST(TeamTest, PathsOfAnyNumberOfRanksAreTheSame) {
+  Scene scene = test::floor_scene(0.5f);
+  test::add_quad(scene, {-2, 0, -3}, {4, 0, 0}, {0, 4, 0}, 0);
+  scene.lights = {test::sun({0.3f, -1, -0.2f}, 3)};
+  const ClpvView view = test::view_of({0, 2, 3}, {0, -0.6f, -1}, {0, 1, 0}, 0.7f, 37, 21);
+  for (const auto& [samples, noise] : {std::pair{7u, 0.0}, {0u, 0.05}}) {
+    test::PathTracerOptions options;
+    options.samples = samples, options.threads = 2;
+    if (noise > 0) options.noise = noise;
+    const test::TracedImage plain = test::trace_paths(scene, view, options);
+    for (const int size : {2, 3}) {
+      test::as_team(size, [&](Ranks& team) {
+        const test::TracedImage shared = reference::trace_paths(scene, scene.lights, view, options, {}, team);
+        EXPECT_EQ(shared.irradiance, plain.irradiance) << size << " ranks";
+        EXPECT_EQ(shared.rays, plain.rays);
+        EXPECT_EQ(shared.samples, plain.samples);
+      });
+    }
   }
-  /// Two ranks, the second started by a shell line that may do something besides.
-  std::string second_as(const std::string& line, const std::string& arguments) const {
-    const fs::path script = folder.write("second", "#!/bin/sh\n" + line + " " CLPV_PROGRAM " \"$@\"\n");
-    fs::permissions(script, fs::perms::owner_all);
-    return here() + mpirun() + "-n 1 " CLPV_PROGRAM " " + arguments + " : -n 1 " + script.string() + " " +
-           arguments;
-  }
-  std::string bytes(const std::string& file) const { return read_file(folder / file); }
-
-  static std::string film(const std::string& to, int frames) {
-    return fmt::format(
-               "sequence moving.json -o {} --frames {} --fps 24 --width 96 --height 72 --transport sampled",
-               to, frames) +
-           kSmall;
-  }
-  static std::string frame(const std::string& of, int i) { return fmt::format("{}/frame-{:04}.exr", of, i); }
-  int there(const std::string& of, int frames) const {
-    int count = 0;
-    for (int i = 0; i < frames; ++i) count += fs::exists(folder / frame(of, i));
-    return count;
-  }
-  void expect_film(const std::string& of, int frames) const {
-    for (int i = 0; i < frames; ++i)
-      EXPECT_TRUE(bytes(frame(of, i)) == bytes(frame("plain", i))) << of << " frame " << i;
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder / of), {}), frames + 1)
-        << "the frames and times.json";
-  }
-
-  TemporaryFolder folder;
-};
-
-/// A quality run's JSON without what was measured by the clock, and without where it was kept.
-json without_times(const std::string& text) {
-  json run = json::parse(text);
-  for (json& reference : run["references"]) reference.erase("file");
-  for (json& cell : run["cells"])
-    for (const char* key : {"frame_ms", "stage_ms", "compute_units", "made_s", "measured_s"}) cell.erase(key);
-  for (json& variant : run["variants"])
-    for (const char* key : {"frame_ms", "stage_ms"}) variant.erase(key);
-  return run;
-}
-
-TEST_F(Ranks, AMatrixIsThePlainRuns) {
-  const std::string matrix =
-      "quality moving.json --vary transport=sampled,exact --vary iterations=2,4 --width 24 --height 18 "
-      "--spp 16 "
-      "--frames 1 --format json" +
-      kSmall;
-  const Outcome alone = plain(matrix + "--cache plain");
-  ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  const Outcome many = by(3, matrix + "--cache of3");
-  ASSERT_EQ(many.exit_code, 0) << many.err;
-  EXPECT_THAT(many.err, HasSubstr(" of 3: ")) << "which device rank 0 has";
-  EXPECT_EQ(without_times(many.out), without_times(alone.out));
-  for (const auto& entry : fs::directory_iterator(folder / "plain/references"))
-    EXPECT_TRUE(read_file(entry.path()) == bytes("of3/references/" + entry.path().filename().string()));
-  // What either kept, the other takes, times and all.
-  EXPECT_EQ(plain(matrix + "--cache of3").out, many.out);
-  EXPECT_EQ(by(2, matrix + "--cache plain").out, alone.out);
-}
-
-TEST_F(Ranks, AFilmIsThePlainRuns) {
-  ASSERT_EQ(plain(film("plain", 7)).exit_code, 0);
-  const Outcome many = by(3, film("of3", 7));
-  ASSERT_EQ(many.exit_code, 0) << many.err;
-  expect_film("of3", 7);
-  EXPECT_EQ(json::parse(bytes("of3/times.json"))["frames"].size(), 7u) << "of all ranks";
-}
-
-TEST_F(Ranks, ATruthIsThePlainRuns) {
-  const std::string truth =
-      "reference moving.json --width 40 --height 30 --bounces all --view indirect,direct --noise 0.2";
-  ASSERT_EQ(plain(truth + " -o plain.exr --stats plain.json").exit_code, 0);
-  const Outcome many = by(3, truth + " -o many.exr --stats many.json");
-  ASSERT_EQ(many.exit_code, 0) << many.err;
-  EXPECT_TRUE(bytes("many.exr") == bytes("plain.exr"));
-  EXPECT_EQ(json::parse(bytes("many.json"))["rays"], json::parse(bytes("plain.json"))["rays"]);
-}
-
-TEST_F(Ranks, AKilledRankEndsAllAndTheSameCommandGoesOn) {
-  constexpr int kEndless = 20000, kFrames = 12;
-  const std::string killed = second_as("echo $$ >pid; exec", film("killed", kEndless));
-  std::future<Outcome> job = std::async(std::launch::async, [&] { return run(killed); });
-  const fs::path begun = folder / frame("killed", 5);
-  for (int i = 0; i < 3000 && !fs::exists(begun); ++i) std::this_thread::sleep_for(10ms);
-  ASSERT_EQ(::kill(std::stoi(bytes("pid")), SIGKILL), 0);
-  const Outcome outcome = job.get();
-  ASSERT_TRUE(fs::exists(begun)) << outcome.err;
-  EXPECT_NE(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err + outcome.out, HasSubstr("signal 9"));
-  EXPECT_LT(there("killed", kEndless), kEndless) << "it went on";
-  // Any number of ranks goes on.
-  const Outcome again = by(3, film("killed", kFrames));
-  ASSERT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_THAT(again.err, HasSubstr(fmt::format(" of {} frames were there already", kFrames)));
-  ASSERT_EQ(plain(film("plain", kFrames)).exit_code, 0);
-  for (int i = 0; i < kFrames; ++i)
-    EXPECT_TRUE(bytes(frame("killed", i)) == bytes(frame("plain", i))) << "frame " << i;
-}
-
-TEST_F(Ranks, ARankThatFailsSaysSoAndEndsAll) {
-  constexpr int kEndless = 20000, kFrames = 6;
-  const Outcome outcome =
-      run(second_as("CLPV_SHIM=memory:5:-4 LD_PRELOAD=" CLPV_OPENCL_SHIM " exec", film("failed", kEndless)));
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("clpv: rank 1 on "), HasSubstr("CL_MEM_OBJECT_ALLOCATION_FAILURE")));
-  EXPECT_LT(there("failed", kEndless), kEndless) << "it went on";
-  ASSERT_EQ(plain(film("plain", kFrames)).exit_code, 0);
-  ASSERT_EQ(plain(film("failed", kFrames)).exit_code, 0);
-  for (int i = 0; i < kFrames; ++i) EXPECT_TRUE(bytes(frame("failed", i)) == bytes(frame("plain", i))) << i;
-}
-
-TEST_F(Ranks, ExitCodesComeThrough) {
-  const Outcome absent = by(3, "reference absent.json -o a.exr");
-  EXPECT_EQ(absent.exit_code, 3);
-  EXPECT_THAT(absent.err, AllOf(HasSubstr("clpv: rank "), HasSubstr(": absent.json")));
-  const Outcome usage = by(3, "reference moving.json");
-  EXPECT_EQ(usage.exit_code, 2);
-  EXPECT_THAT(usage.err, HasSubstr("--output is required"));
-  const Outcome other = by(2, "render moving.json -o a.exr");
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err,
-              AllOf(HasSubstr("render: not for several processes (found: rank "), HasSubstr(" of 2)")));
-  EXPECT_FALSE(fs::exists(folder / "a.exr"));
-}
-
-TEST_F(Ranks, OneRankIsThePlainProgram) {
-  const Outcome one =
-      by(1, "render moving.json -o one.exr --width 24 --height 18 --transport sampled" + kSmall);
-  ASSERT_EQ(one.exit_code, 0) << one.err;
-  ASSERT_EQ(
-      plain("render moving.json -o plain.exr --width 24 --height 18 --transport sampled" + kSmall).exit_code,
-      0);
-  EXPECT_TRUE(bytes("one.exr") == bytes("plain.exr"));
 }
 
 }  // namespace
-}  // namespace clpv::test::ranks_test
+}  // namespace clpv::ranks_test

@@ -337,7 +337,7 @@ TEST(Rasterize, DrawnInSeveralGoesItIsTheSame) {
   }
 }
 
-TEST(Rasterize, ScenesThatDoNotHoldTogetherAreRefused) {
+TEST(Rasterize, ScenesThatDoNotHoldTogetherAreRejected) {
   const std::vector<std::function<void(Scene&)>> faults = {
       [](Scene& scene) { scene.triangles[1].vertex[2] = 4; },
       [](Scene& scene) { scene.triangles[0].material = 1; },
@@ -351,7 +351,7 @@ TEST(Rasterize, ScenesThatDoNotHoldTogetherAreRefused) {
   }
 }
 
-TEST(Rasterize, MatchesItsTwin) {
+TEST(Rasterize, MatchesTheReference) {
   expect_passed(reference::check(Stage::rasterize, test_session()));
 }
 

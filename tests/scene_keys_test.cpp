@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras and lights of scene files that move by keys: where they are at an instant, and keys that are refused.
+// Cameras and lights of scene files that move by keys: where they are at an instant, and keys that are rejected.
 #include "scene/scene_keys.hpp"
 
 #include <cmath>
@@ -28,8 +28,8 @@ struct SceneKeysTest : BadInputTest {
   static std::string sun(const std::string& members) {
     return R"("lights": [{"kind": "directional", )" + members + "}]";
   }
-  std::string refused_file(const std::string& members) {
-    const std::string message = refusal(file(members));
+  std::string rejected_file(const std::string& members) {
+    const std::string message = rejection(file(members));
     EXPECT_THAT(message, HasSubstr("scene.json"));
     return message;
   }
@@ -91,53 +91,53 @@ TEST_F(SceneKeysTest, LightsThatStep) {
 
 TEST_F(SceneKeysTest, TimesThatDoNotRise) {
   EXPECT_THAT(
-      refused_file(camera(R"("target": [0, 0, 1], "keys": [
+      rejected_file(camera(R"("target": [0, 0, 1], "keys": [
                   {"time": 2, "eye": [0, 0, 0]}, {"time": 2, "eye": [1, 0, 0]}])")),
       AllOf(HasSubstr("/cameras/0/keys/1/time"), HasSubstr("found 2 s"), HasSubstr("more than the 2 s")));
   for (const std::string time : {"-1", "1e7", "\"noon\"", "null"}) {
-    EXPECT_THAT(
-        refused_file(camera(R"("target": [0, 0, 1], "keys": [{"time": )" + time + R"(, "eye": [0, 0, 0]}])")),
-        AllOf(HasSubstr("/cameras/0/keys/0/time"), HasSubstr("a number from 0 to 1000000")));
+    EXPECT_THAT(rejected_file(
+                    camera(R"("target": [0, 0, 1], "keys": [{"time": )" + time + R"(, "eye": [0, 0, 0]}])")),
+                AllOf(HasSubstr("/cameras/0/keys/0/time"), HasSubstr("a number from 0 to 1000000")));
   }
-  EXPECT_THAT(refused_file(camera(R"("target": [0, 0, 1], "keys": [{"eye": [0, 0, 0]}])")),
+  EXPECT_THAT(rejected_file(camera(R"("target": [0, 0, 1], "keys": [{"eye": [0, 0, 0]}])")),
               AllOf(HasSubstr("/cameras/0/keys/0/time"), HasSubstr("found nothing")));
 }
 
 TEST_F(SceneKeysTest, KeysThatSayNothingOrTooMuch) {
   EXPECT_THAT(
-      refused_file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "keys": [{"time": 0}])")),
+      rejected_file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "keys": [{"time": 0}])")),
       AllOf(HasSubstr("/cameras/0/keys/0"), HasSubstr("a time alone"), HasSubstr("vertical_fov_degrees")));
-  EXPECT_THAT(refused_file(camera(
+  EXPECT_THAT(rejected_file(camera(
                   R"("eye": [0, 0, 0], "target": [0, 0, 1], "keys": [{"time": 0, "eye": [0, 0, 0]}])")),
               AllOf(HasSubstr("/cameras/0/keys/0/eye"), HasSubstr("/cameras/0/eye says too")));
-  EXPECT_THAT(refused_file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "keys": [])")),
+  EXPECT_THAT(rejected_file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "keys": [])")),
               AllOf(HasSubstr("/cameras/0/keys"), HasSubstr("an array of 1 to 65536")));
-  EXPECT_THAT(refused_file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "interpolation": "step")")),
+  EXPECT_THAT(rejected_file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "interpolation": "step")")),
               AllOf(HasSubstr("/cameras/0/interpolation"), HasSubstr("no keys")));
   EXPECT_THAT(
-      refused_file(
+      rejected_file(
           sun(R"("direction": [0, -1, 0], "illuminance_lux": 1, "keys": [{"time": 0, "eye": [0, 0, 0]}])")),
       AllOf(HasSubstr("/lights/0/keys/0/eye"), HasSubstr("unknown key")));
   EXPECT_THAT(
-      refused_file(sun(
+      rejected_file(sun(
           R"("illuminance_lux": 1, "interpolation": "smooth", "keys": [{"time": 0, "direction": [0, -1, 0]}])")),
       AllOf(HasSubstr("/lights/0/interpolation"), HasSubstr("linear, step")));
 }
 
 TEST_F(SceneKeysTest, DirectionsWithoutAWayBetweenThem) {
-  EXPECT_THAT(refused_file(sun(R"("illuminance_lux": 1, "keys": [
+  EXPECT_THAT(rejected_file(sun(R"("illuminance_lux": 1, "keys": [
                   {"time": 0, "direction": [0, -2, 0]}, {"time": 1, "direction": [0, 1, 0]}])")),
               AllOf(HasSubstr("/lights/0/keys/1/direction"), HasSubstr("the opposite of the key before")));
-  EXPECT_THAT(refused_file(sun(R"("illuminance_lux": 1, "keys": [{"time": 0, "direction": [0, 0, 0]}])")),
+  EXPECT_THAT(rejected_file(sun(R"("illuminance_lux": 1, "keys": [{"time": 0, "direction": [0, 0, 0]}])")),
               AllOf(HasSubstr("/lights/0/keys/0/direction"), HasSubstr("no length")));
 }
 
 TEST_F(SceneKeysTest, WhatNeitherTheEntryNorItsKeysSay) {
-  EXPECT_THAT(refused_file(camera(R"("keys": [{"time": 0, "eye": [0, 0, 0]}])")),
+  EXPECT_THAT(rejected_file(camera(R"("keys": [{"time": 0, "eye": [0, 0, 0]}])")),
               AllOf(HasSubstr("/cameras/0/target"), HasSubstr("found nothing"), HasSubstr("or in keys")));
-  EXPECT_THAT(refused_file(sun(R"("keys": [{"time": 0, "direction": [0, -1, 0]}])")),
+  EXPECT_THAT(rejected_file(sun(R"("keys": [{"time": 0, "direction": [0, -1, 0]}])")),
               AllOf(HasSubstr("/lights/0/illuminance_lux"), HasSubstr("needs it")));
-  EXPECT_THAT(refused_file(R"("lights": [{"kind": "point", "position": [0, 0, 0], "intensity_candela": 1,
+  EXPECT_THAT(rejected_file(R"("lights": [{"kind": "point", "position": [0, 0, 0], "intensity_candela": 1,
                               "keys": [{"time": 0, "direction": [0, -1, 0]}]}])"),
               AllOf(HasSubstr("/lights/0/direction"), HasSubstr("a point light has not")));
 }

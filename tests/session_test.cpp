@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A device in use: memory it refuses, launches of any size, times by events and by the host's clock, shared
+// A device in use: memory it rejects, launches of any size, times by events and by the host's clock, shared
 // structs.
 #include "device/session.hpp"
 
@@ -9,11 +9,11 @@
 
 #include <sstream>
 
-#include "checks/check.hpp"
 #include "device/compile_notice.hpp"
 #include "device/kernel.hpp"
 #include "support/log.hpp"
 #include "tests/support/error_of.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::session_test {
 namespace {
@@ -22,7 +22,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
+TEST(Session, RejectsABufferTheDeviceCannotHoldAndSaysWhatFits) {
   Device device = choose_device();
   device.max_alloc_bytes = 4u << 20;
   device.memory_bytes = 6u << 20;
@@ -31,7 +31,7 @@ TEST(Session, RefusesABufferTheDeviceCannotHoldAndSaysWhatFits) {
   EXPECT_EQ(session.largest_buffer(), 2u << 20);
   EXPECT_THAT(test::error_of(ExitCode::run_time, [&] { session.buffer(3u << 20, "light volume"); }),
               AllOf(HasSubstr("light volume needs 3.0 MiB"), HasSubstr("at most 2.0 MiB")));
-  EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was refused does not count";
+  EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was rejected does not count";
 }
 
 TEST(Session, WhatWasEnqueuedIsDoneWhenItEnds) {

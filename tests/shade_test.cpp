@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shading against closed forms: Lambert's law for every kind of light, what each view shows, and the kernels' twin.
+// Shading against closed forms: Lambert's law for every kind of light, what each view shows, and the kernels' CPU reference.
 #include "pipeline/shade.hpp"
 
 #include "support/error.hpp"
@@ -59,7 +59,7 @@ TEST(Shade, SpotLightFadesAcrossItsCone) {
   expect_lit(floor_image(), light, expected, 4);
 }
 
-TEST(Shade, AnUnknownKindOfLightIsDarkAndTheTwinRefusesIt) {
+TEST(Shade, AnUnknownKindOfLightIsDarkAndTheReferenceRejectsIt) {
   MappedLight light = bulb({0, 2, 0}, 40);
   light.light.kind = 3;
   for (const glm::vec4& pixel : show(Show::direct, floor_image(), {light}))
@@ -120,7 +120,7 @@ TEST(Shade, EachViewShowsItsShare) {
   }
 }
 
-TEST(Shade, RefusesMapsThatDoNotFit) {
+TEST(Shade, RejectsMapsThatDoNotFit) {
   const SurfaceImage image = floor_image();
   const Surface camera = upload_surface(test_session(), image);
   Shader shader(test_session());
@@ -132,7 +132,7 @@ TEST(Shade, RefusesMapsThatDoNotFit) {
   EXPECT_THROW(shader.light(camera, {shadowed}), Error);
 }
 
-TEST(Shade, KernelsAgreeWithTheirTwin) {
+TEST(Shade, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::shade, test_session()));
 }
 

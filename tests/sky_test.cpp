@@ -71,7 +71,7 @@ TEST(SkyLight, EachDirectionLiesInItsOwnPart) {
     const std::vector<SweepBin> bins = sweep_bins(parts);
     for (int b = 0; b < kSweepBins; ++b) {
       for (int part = 0; part < parts * parts; ++part) {
-        const SweepPart found =
+        const BinPart found =
             part_along(bins[static_cast<std::size_t>(b)].directions[static_cast<std::size_t>(part)].w, parts);
         EXPECT_EQ(found.bin, b);
         EXPECT_EQ(found.part, part);
@@ -243,7 +243,7 @@ TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   EXPECT_TRUE(frame.read(Show::full) == full);
 }
 
-TEST(SkyFrame, StepsRefuseIt) {
+TEST(SkyFrame, StepsRejectIt) {
   const Scene scene = under(even_sky(glm::vec3(1)));
   RenderOptions options = small_frame();
   options.transport = TransportKind::sampled;
@@ -254,8 +254,8 @@ TEST(SkyFrame, StepsRefuseIt) {
 /// A scene file with that member "sky", beside a map of two texels whose red is `value` in the second.
 class SkyFile : public ::testing::Test {
  protected:
-  std::string refusal(const std::string& sky, float value = 1,
-                      std::vector<std::string> channels = {"R", "G", "B"}) {
+  std::string rejection(const std::string& sky, float value = 1,
+                        std::vector<std::string> channels = {"R", "G", "B"}) {
     Image image = make_image(2, 1, channels);
     std::fill(image.pixels.begin(), image.pixels.end(), 0.5f);
     image.pixels[channels.size()] = value;
@@ -275,27 +275,27 @@ class SkyFile : public ::testing::Test {
 };
 
 TEST_F(SkyFile, IsAConstantOrAMap) {
-  EXPECT_EQ(refusal(R"({"radiance": [1, 2, 3]})"), "none");
+  EXPECT_EQ(rejection(R"({"radiance": [1, 2, 3]})"), "none");
   EXPECT_EQ(scene_.sky->texels[0], glm::vec3(1, 2, 3));
   EXPECT_TRUE(scene_.lights.empty()) << "a sky is light enough";
-  EXPECT_EQ(refusal(R"({"radiance": [1, 2, 3], "ground": [0.5, 0, 0]})"), "none");
+  EXPECT_EQ(rejection(R"({"radiance": [1, 2, 3], "ground": [0.5, 0, 0]})"), "none");
   EXPECT_EQ(scene_.sky->radiance({0, 1, 0}), glm::vec3(1, 2, 3));
   EXPECT_EQ(scene_.sky->radiance(glm::normalize(glm::dvec3(1, -0.01, 1))), glm::vec3(0.5f, 0, 0));
-  EXPECT_EQ(refusal(R"({"map": "map.exr", "scale": 4, "rotation_degrees": 90})", 3), "none");
+  EXPECT_EQ(rejection(R"({"map": "map.exr", "scale": 4, "rotation_degrees": 90})", 3), "none");
   EXPECT_EQ(scene_.sky->texels[1].x, 12);
   EXPECT_EQ(scene_.sky->texels[0].x, 2);
   EXPECT_NEAR(scene_.sky->rotation, pi / 2, 1e-12);
 }
 
 TEST_F(SkyFile, IsFoundFromTheFolderThatItLiesIn) {
-  ASSERT_EQ(refusal(R"({"map": "map.exr"})"), "none");
+  ASSERT_EQ(rejection(R"({"map": "map.exr"})"), "none");
   const auto before = std::filesystem::current_path();
   std::filesystem::current_path(folder_.path());
   for (const char* name : {"scene.json", "./scene.json"}) EXPECT_NO_THROW(load_scene(name)) << name;
   std::filesystem::current_path(before);
 }
 
-TEST_F(SkyFile, RefusesWhatCannotShine) {
+TEST_F(SkyFile, RejectsWhatCannotShine) {
   const std::pair<std::string, std::string> members[] = {
       {"{}", "/sky: found neither radiance nor map"},
       {R"({"map": "map.exr", "radiance": [1, 1, 1]})", "/sky: found radiance and map"},
@@ -305,13 +305,13 @@ TEST_F(SkyFile, RefusesWhatCannotShine) {
       {R"({"map": "../map.exr"})", "no such file"},
       {R"({"map": "none.exr"})", "none.exr"},
       {R"({"map": "scene.json"})", "extension"}};
-  for (const auto& [sky, words] : members) EXPECT_THAT(refusal(sky), HasSubstr(words));
+  for (const auto& [sky, words] : members) EXPECT_THAT(rejection(sky), HasSubstr(words));
   const std::string map = R"({"map": "map.exr", "scale": 2})";
-  EXPECT_THAT(refusal(map, -0.5f), HasSubstr("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"));
-  EXPECT_THAT(refusal(map, std::numeric_limits<float>::quiet_NaN()),
+  EXPECT_THAT(rejection(map, -0.5f), HasSubstr("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"));
+  EXPECT_THAT(rejection(map, std::numeric_limits<float>::quiet_NaN()),
               HasSubstr("pixel 1,0 channel R: found nan"));
-  EXPECT_THAT(refusal(map, std::numeric_limits<float>::infinity()), HasSubstr("found inf"));
-  EXPECT_THAT(refusal(map, 1, {"R", "G"}), HasSubstr("no channel B"));
+  EXPECT_THAT(rejection(map, std::numeric_limits<float>::infinity()), HasSubstr("found inf"));
+  EXPECT_THAT(rejection(map, 1, {"R", "G"}), HasSubstr("no channel B"));
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(SortByCell, OneSorterTakesSurfacesOfAllSizes) {
   }
 }
 
-TEST(SortByCell, RefusesMoreTexelsThanRunsCanName) {
+TEST(SortByCell, RejectsMoreTexelsThanRunsCanName) {
   CellSorter sorter(test_session());
   EXPECT_THROW(sorter.reserve((std::size_t{1} << 28) + 1), Error);
 }

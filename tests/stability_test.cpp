@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How steady light is: closed cases of the measure, and frames of a camera that moves.
-#include "evaluate/stability.hpp"
+#include "quality/stability.hpp"
 
 #include <gtest/gtest.h>
 

@@ -123,7 +123,7 @@ TEST_F(Starved, OfDisk) {
   const fs::path difference = folder_ / "a.png", truth = folder_ / "a.exr";
   const std::map<fs::path, std::string> writers = {
       {difference, " compare " + image + " " + image},
-      {truth, " reference " CLPV_SOURCE_DIR "/scenes/cornell.json --width 8 --height 6 --spp 1"}};
+      {truth, " pathtrace " CLPV_SOURCE_DIR "/scenes/cornell.json --width 8 --height 6 --spp 1"}};
   for (const auto& [path, command] : writers) {
     SCOPED_TRACE(command);
     // What is said goes through a pipe: it may not go into a file either.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sweep, held against what is known of light in closed form; and the kernels against the twin.
+// The sweep, held against what is known of light in closed form; and the kernels against the CPU reference.
 #include "pipeline/sweep.hpp"
 
 #include <gmock/gmock.h>
@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "basis/sweep.hpp"
-#include "checks/check.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/propagate.hpp"
 #include "reference/sweep.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::sweep_test {
 namespace {
@@ -116,7 +116,7 @@ ClpvGrid grid_of(int n) {
   return cascade_grids(glm::vec3(0.5f), 1, n, n).front();  // cells of 1 m
 }
 
-/// Light of one cascade, by the twin: `inject(bin, cell)` is the same in all channels.
+/// Light of one cascade, by the CPU reference: `inject(bin, cell)` is the same in all channels.
 reference::Volume swept(int n, int parts, const std::function<double(int bin, const glm::ivec3&)>& inject,
                         const reference::Volume* geometry = nullptr) {
   const auto basis = make_basis("bins24");
@@ -141,9 +141,9 @@ double fluence(const reference::Volume& light, const glm::ivec3& p) {
   return sum;
 }
 
-/// Of a shell of cells `r` from the middle: mean of the fluence over that of an isotropic source of 1 W/sr there, and the
+/// Of a halo of cells `r` from the middle: mean of the fluence over that of an isotropic source of 1 W/sr there, and the
 /// root of its mean square.
-std::pair<double, double> shell(const reference::Volume& light, double r) {
+std::pair<double, double> halo(const reference::Volume& light, double r) {
   const int middle = light.n / 2;
   double sum = 0, squares = 0;
   int cells = 0;
@@ -164,10 +164,10 @@ TEST(Sweep, APointSourceFallsOffWithTheSquareOfItsDistance) {
   for (const int parts : {1, 2}) {
     const reference::Volume light = swept(kGrid, parts, point);
     for (const double r : {3.0, 6.0, 8.0, 12.0})
-      EXPECT_NEAR(shell(light, r).first, 1, 0.12) << parts << ' ' << r;
+      EXPECT_NEAR(halo(light, r).first, 1, 0.12) << parts << ' ' << r;
     // Rays between few directions: the more of them, the more even.
-    EXPECT_LT(shell(light, 12).second, 0.9 * unevenness);
-    unevenness = shell(light, 12).second;
+    EXPECT_LT(halo(light, 12).second, 0.9 * unevenness);
+    unevenness = halo(light, 12).second;
   }
 }
 
@@ -260,21 +260,21 @@ TEST(Sweep, UniformLightStaysSoThroughAllCascades) {
   std::vector<SweptCascade> cascades;
   for (std::size_t c = 0; c < grids.size(); ++c)
     cascades.push_back({grids[c], c == 2 ? &uniform : &dark, nullptr, parts[c]});
-  const auto twin = reference::sweep(*basis, swept_by(*basis), cascades);
+  const auto expected = reference::sweep(*basis, swept_by(*basis), cascades);
 
   const std::size_t cells = kGrid * kGrid * kGrid;
   for (std::size_t c = 0; c < grids.size(); ++c) {
-    for (std::size_t i = 0; i < twin[c].values.size(); ++i) {
+    for (std::size_t i = 0; i < expected[c].values.size(); ++i) {
       const std::size_t plane = i / cells;
       const double wanted = (1 + static_cast<double>(plane / kSweepBins)) *
                             std::pow(4.0, static_cast<double>(c) - 2) /
                             bins[plane % kSweepBins].directions[0].flux;
-      ASSERT_NEAR(twin[c].values[i], wanted, kFloat * wanted) << c << ' ' << i;
+      ASSERT_NEAR(expected[c].values[i], wanted, kFloat * wanted) << c << ' ' << i;
     }
   }
 }
 
-TEST(Sweep, RefusesGridsThatAreNotNested) {
+TEST(Sweep, RejectsGridsThatAreNotNested) {
   const auto basis = make_basis("bins24");
   Sweeper sweeper(test_session(), *basis, swept_by(*basis), {.grid = 6, .parts = {1, 1}, .blocking = false});
   Volume light(test_session(), {6, kSweepBins, 3}, "test: light");
@@ -282,7 +282,7 @@ TEST(Sweep, RefusesGridsThatAreNotNested) {
   EXPECT_THROW(sweeper.sweep(1, {grids[0], grids[2]}, light, light), Error);
 }
 
-TEST(Sweep, RefusesVolumesThatKernelsCannotAddress) {
+TEST(Sweep, RejectsVolumesThatKernelsCannotAddress) {
   const SweepVolumes volumes(test_session(), 512, {Layout::soa, Storage::float16});
   EXPECT_THAT([&] { volumes.make(3 * kSweepBins, "light to sweep"); },
               ThrowsMessage<Error>(HasSubstr("light to sweep of 9")));
@@ -293,7 +293,7 @@ TEST(Sweep, IsNoMatterOfSteps) {
   EXPECT_THROW(Propagator(test_session(), *basis, swept_by(*basis), {.grid = 4}), Error);
 }
 
-TEST(Sweep, KernelsAgreeWithTheirTwin) {
+TEST(Sweep, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::sweep, test_session(), few_variants()), 6);
 }
 

@@ -145,7 +145,7 @@ TEST(View, WideSpotsTakeSixViews) {
   EXPECT_THROW(spot_view(wide, kSize, kBounds), Error);
 }
 
-TEST(View, UnknownKindsOfLightAreRefused) {
+TEST(View, UnknownKindsOfLightAreRejected) {
   ClpvLight light = directional_light({0, -1, 0});
   light.kind = 3;
   EXPECT_THROW(rsm_views(light, {{0, 0, 0}, 0.5f, 8, {}}, kBounds, kSize), Error);

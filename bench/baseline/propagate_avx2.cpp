@@ -54,7 +54,7 @@ class Plane {
   std::unique_ptr<float, Free> values_;
 };
 
-constexpr int kN = 4, kChannels = 3, kWays = 30, kCorners = 8;
+constexpr int kN = 4, kChannels = 3, kLinks = 30, kCorners = 8;
 constexpr double kSame = 1e-9;  // of constants that are equal but for rounding in double
 
 /// Rows of n cells between borders of kLane zeros, slices of n rows between borders of one row, and so on.
@@ -119,19 +119,19 @@ Constants constants_of(const Basis& basis, const Transport& transport) {
   return c;
 }
 
-/// The way (index of FaceTransport::faces) through neighbour k's face of normal 2 axis + negative.
-struct WayTable {
-  int way[6][6];
-  glm::dvec3 against[kWays];  // the direction its blocker is looked up in
-  glm::ivec3 side[kWays];
+/// The link (index of FaceTransport::faces) through neighbour k's face of normal 2 axis + negative.
+struct FaceTable {
+  int link[6][6];
+  glm::dvec3 against[kLinks];  // the direction its blocker is looked up in
+  glm::ivec3 side[kLinks];
 };
 
-WayTable ways_of(const FaceTransport& faces) {
-  WayTable table{};
-  for (int f = 0; f < kWays; ++f) {
+FaceTable links_of(const FaceTransport& faces) {
+  FaceTable table{};
+  for (int f = 0; f < kLinks; ++f) {
     const Face& face = faces.faces[static_cast<std::size_t>(f)];
     const auto normal = std::find(kAxes.begin(), kAxes.end(), face.normal) - kAxes.begin();
-    table.way[f / 5][normal] = f;
+    table.link[f / 5][normal] = f;
     table.against[f] = -face.direction;
     table.side[f] = face.normal;
   }
@@ -143,8 +143,8 @@ WayTable ways_of(const FaceTransport& faces) {
 struct PropagateBaseline::Impl {
   Shape shape;
   Constants constants;
-  WayTable ways;
-  float blocker[kWays][kN];  // basis functions in the way's direction, over the number of corners
+  FaceTable links;
+  float blocker[kLinks][kN];  // basis functions in the link's direction, over the number of corners
   bool blocks = false;
   Plane injected, first, second, sum;  // 12 planes each
   Plane corners;                       // 4 planes of n + 1 samples, in rows as wide as the cells'
@@ -153,15 +153,15 @@ struct PropagateBaseline::Impl {
   Impl(const Basis& basis, const Transport& transport, int grid)
       : shape{grid},
         constants(constants_of(basis, transport)),
-        ways(ways_of(std::get<FaceTransport>(transport.scheme))),
+        links(links_of(std::get<FaceTransport>(transport.scheme))),
         injected(planes()),
         first(planes()),
         second(planes()),
         sum(planes()),
         corners(static_cast<std::size_t>(shape.plane()) * kN),
-        open(static_cast<std::size_t>(grid) * grid * grid * kWays) {
-    for (int w = 0; w < kWays; ++w) {
-      const std::vector<double> b = basis.evaluate(ways.against[w]);
+        open(static_cast<std::size_t>(grid) * grid * grid * kLinks) {
+    for (int w = 0; w < kLinks; ++w) {
+      const std::vector<double> b = basis.evaluate(links.against[w]);
       for (int i = 0; i < kN; ++i) blocker[w][i] = static_cast<float>(b[static_cast<std::size_t>(i)] / 4);
     }
   }
@@ -193,9 +193,9 @@ CLPV_AVX2 inline void receive(const Impl& p, const float* from, std::ptrdiff_t a
   const __m256 c0 = _mm256_loadu_ps(cell), ca = _mm256_loadu_ps(cell + p.constants.of_axis[kAxis] * plane);
   const __m256 cb = _mm256_loadu_ps(cell + p.constants.of_axis[kB] * plane),
                cc = _mm256_loadu_ps(cell + p.constants.of_axis[kC] * plane);
-  const auto way = [&](int normal) { return kBlocked ? open + p.ways.way[kK][normal] * cells : nullptr; };
+  const auto link = [&](int normal) { return kBlocked ? open + p.links.link[kK][normal] * cells : nullptr; };
   const auto add = [&](int normal, __m256 flux) CLPV_AVX2 {
-    sums[normal] = _mm256_add_ps(sums[normal], through<kBlocked>(flux, way(normal)));
+    sums[normal] = _mm256_add_ps(sums[normal], through<kBlocked>(flux, link(normal)));
   };
   add(kK, _mm256_fmadd_ps(_mm256_set1_ps(sent.far1), ca, _mm256_mul_ps(_mm256_set1_ps(sent.far0), c0)));
   const __m256 side =
@@ -253,7 +253,7 @@ void step(const Impl& p, const float* from, float* to, const float* so_far) {
   }
 }
 
-/// 1 - B of every way into the cells of a row.
+/// 1 - B of every link into the cells of a row.
 CLPV_AVX2 void open_row(const Impl& p, int y, int z) {
   const Shape& s = p.shape;
   const __m256 one = _mm256_set1_ps(1.0f), zero = _mm256_setzero_ps();
@@ -273,8 +273,8 @@ CLPV_AVX2 void open_row(const Impl& p, int y, int z) {
         mean[side][i] = sum;
       }
     }
-    for (int w = 0; w < kWays; ++w) {
-      const glm::ivec3& normal = p.ways.side[w];
+    for (int w = 0; w < kLinks; ++w) {
+      const glm::ivec3& normal = p.links.side[w];
       const int axis = normal.x != 0   ? 0
                        : normal.y != 0 ? 1
                                        : 2,
@@ -287,7 +287,7 @@ CLPV_AVX2 void open_row(const Impl& p, int y, int z) {
   }
 }
 
-void open_ways(const Impl& p) {
+void open_links(const Impl& p) {
   const int n = p.shape.n;
 #pragma omp parallel for schedule(static)
   for (int z = 0; z < n; ++z) {
@@ -298,7 +298,7 @@ void open_ways(const Impl& p) {
 // Operations by hand, as written above, a cell (and channel).
 constexpr double kFluxFlops = 6 * (3 + 3 + 4 * 2 + 5), kSumFlops = 24, kLobeFlops = 5 + 1 + 3 * 2,
                  kAddFlops = 4;
-constexpr double kOpenFlops = kN * 6 * 3 + kWays * (1 + 3 * 2 + 3);
+constexpr double kOpenFlops = kN * 6 * 3 + kLinks * (1 + 3 * 2 + 3);
 
 }  // namespace
 
@@ -328,7 +328,7 @@ void PropagateBaseline::set(const std::vector<float>& injected, const std::vecto
 
 void PropagateBaseline::propagate(int iterations) {
   Impl& p = *impl_;
-  if (p.blocks && iterations > 1) open_ways(p);
+  if (p.blocks && iterations > 1) open_links(p);
   const float* from = p.injected.data();
   if (iterations == 0) std::copy_n(from, p.planes(), p.sum.data());
   for (int i = 1; i <= iterations; ++i) {
@@ -361,14 +361,14 @@ double PropagateBaseline::flops(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
   const double blocked = impl_->blocks ? iterations - 1 : 0;
   return cells * (iterations * kChannels * (kFluxFlops + kSumFlops + kLobeFlops + kAddFlops) +
-                  blocked * kChannels * kWays + (impl_->blocks ? kOpenFlops : 0));
+                  blocked * kChannels * kLinks + (impl_->blocks ? kOpenFlops : 0));
 }
 
 double PropagateBaseline::bytes(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
   const double step = kChannels * 4.0 * kN, blocked = impl_->blocks ? iterations : 0;
   return sizeof(float) * cells *
-         (iterations * step - kChannels * kN + blocked * kWays + (impl_->blocks ? kN : 0));
+         (iterations * step - kChannels * kN + blocked * kLinks + (impl_->blocks ? kN : 0));
 }
 
 #else  // no AVX2 on this architecture

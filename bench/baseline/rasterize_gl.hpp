@@ -20,7 +20,7 @@ class GlRasterizer {
  public:
   /// `pass`: rasterize_camera (depth, normal and albedo as floats, a quadruple each of the last two), rasterize_shadow
   /// (depth alone), rasterize_rsm (depth, normal, flux). Of `views`, all of one size. Throws Error(device) where
-  /// gl_missing(), Error(run_time) where the driver refuses.
+  /// gl_missing(), Error(run_time) where the driver rejects.
   GlRasterizer(const Scene& scene, Pass pass, std::vector<ClpvView> views, const ClpvLight& light);
   ~GlRasterizer();
 

@@ -8,10 +8,10 @@
 #include "basis/basis.hpp"
 #include "bench/baseline/propagate_avx2.hpp"
 #include "bench/suites.hpp"
-#include "checks/tolerances.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
+#include "verify/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {

@@ -9,9 +9,9 @@
 #include <map>
 
 #include "bench/suites.hpp"
-#include "checks/comparison.hpp"
 #include "options/presets.hpp"
 #include "support/named_enum.hpp"
+#include "verify/comparison.hpp"
 
 namespace clpv {
 namespace bench {
@@ -68,12 +68,12 @@ struct Path {
   /// Cascades stay where they are if nothing is to be made anew.
   Camera at(int number) const { return on_path(start, number, anew == Anew::nothing ? 0 : kSway); }
 
-  void forget() {
+  void invalidate() {
     switch (anew) {
       case Anew::light:
         return frame.forget_light();
       case Anew::everything:
-        return frame.forget();
+        return frame.invalidate();
       case Anew::nothing:
         return;
     }
@@ -113,7 +113,7 @@ std::vector<Row> stage_rows(const Path& path, const Row& frame) {
 Deviation repeat(Path& path, Session& session) {
   const std::vector<float> timed = path.frame.read(Show::full);
   path.frame.render(path.at(path.next + kPathFrames / 2));
-  path.frame.forget();
+  path.frame.invalidate();
   path.frame.render(path.at(path.next - 1));
   session.queue().finish();
   const std::vector<float> again = path.frame.read(Show::full);
@@ -130,7 +130,7 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   const auto path = std::make_shared<Path>(session, scene_of(options), options.camera, render, anew);
   Job job;
   job.own_stages = true;
-  job.reset = [path] { path->forget(); };
+  job.reset = [path] { path->invalidate(); };
   job.run = [path] { path->frame.render(path->at(path->next++)); };
   job.after_run = [path](const std::vector<StageTime>& times) { path->add(times); };
   job.more_rows = [path](const Row& row) { return stage_rows(*path, row); };

@@ -106,7 +106,7 @@ std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
   return cases;
 }
 
-/// The twin's way to run on a part of the device: its own session, so timed by the wall clock.
+/// The CPU reference's way to run on a part of the device: its own session, so timed by the wall clock.
 Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
   Case result;
   const Variant variant = plain_variant(options, basis);

@@ -52,7 +52,7 @@ Matrix leaving_light() {
 }
 
 double edge_loss() {
-  static const double loss = lost_at_edges();  // a quadrature, and the twin asks in every cell
+  static const double loss = lost_at_edges();  // a quadrature, and the CPU reference asks in every cell
   return loss;
 }
 

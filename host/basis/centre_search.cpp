@@ -133,7 +133,7 @@ std::vector<double> descended(Problem& problem, std::vector<double> x) {
   return x;
 }
 
-/// Whether a basis can be made of it: two centres that met, each with a lambda of its own, are refused there.
+/// Whether a basis can be made of it: two centres that met, each with a lambda of its own, are rejected there.
 bool usable(const CentreSet& set) {
   try {
     make_basis_from_centres("found", set.centres, set.lambdas);

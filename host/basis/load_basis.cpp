@@ -17,20 +17,20 @@ using nlohmann::json;
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 
 glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t index) {
-  const auto refuse = [&](const std::string& place, const json& found) {
+  const auto reject = [&](const std::string& place, const json& found) {
     return Error(ExitCode::bad_input, "{}: /centres/{}{} is {}; allowed: three finite numbers, not all 0",
                  path, index, place, quoted(found));
   };
-  if (!value.is_array() || value.size() != 3) throw refuse("", value);
+  if (!value.is_array() || value.size() != 3) throw reject("", value);
   glm::dvec3 v;
   double largest = 0;
   for (int i = 0; i < 3; ++i) {
     const json& number = value[i];
-    if (!number.is_number()) throw refuse(fmt::format("/{}", i), number);
+    if (!number.is_number()) throw reject(fmt::format("/{}", i), number);
     v[i] = number.get<double>();
     largest = std::max(largest, std::abs(v[i]));
   }
-  if (!std::isfinite(largest) || largest == 0) throw refuse("", value);
+  if (!std::isfinite(largest) || largest == 0) throw reject("", value);
   return glm::normalize(v / largest);  // the square of a large number would overflow
 }
 

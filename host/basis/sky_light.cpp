@@ -37,7 +37,7 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
     const double angle = 2 * std::numbers::pi / columns * (top - bottom);
     for (int x = 0; x < columns; ++x) {
       const glm::dvec2& turn = turns[x];
-      const SweepPart to = part_along(-glm::dvec3(out * turn.x, up, out * turn.y), parts);
+      const BinPart to = part_along(-glm::dvec3(out * turn.x, up, out * turn.y), parts);
       const std::size_t i = to.bin * parts * parts + to.part;
       const std::size_t texel = y / down * sky.width + x / across;
       sums[i] += angle * glm::dvec3(sky.texels[texel]);

@@ -88,7 +88,7 @@ std::vector<SweepBin> sweep_bins(int parts) {
   return bins;
 }
 
-SweepPart part_along(const glm::dvec3& w, int parts) {
+BinPart part_along(const glm::dvec3& w, int parts) {
   const glm::dvec3 size = glm::abs(w);
   const int n = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   const int u = (n + 1) % 3, v = (n + 2) % 3, face = 2 * n + (w[n] < 0 ? 1 : 0);
@@ -166,47 +166,48 @@ Matrix swept_projection() {
   return projection;
 }
 
-void close_diagonals(std::vector<SweepWay>& ways, double power) {
-  for (SweepWay& way : ways) {
-    const double longer = std::pow(glm::length(glm::dvec3(way.offset)), power);
-    for (double& weight : way.blocked_by) weight *= longer;
+void close_diagonals(std::vector<SweepLink>& links, double power) {
+  for (SweepLink& link : links) {
+    const double longer = std::pow(glm::length(glm::dvec3(link.offset)), power);
+    for (double& weight : link.blocked_by) weight *= longer;
   }
 }
 
-std::vector<SweepWay> sweep_ways() {
-  std::vector<SweepWay> ways;
+std::vector<SweepLink> sweep_links() {
+  std::vector<SweepLink> links;
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (offset != glm::ivec3(0)) ways.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
+    if (offset != glm::ivec3(0)) links.push_back({offset, glm::normalize(glm::dvec3(offset)), {}});
   }
-  return ways;
+  return links;
 }
 
 namespace {
 
-int way_number(const glm::ivec3& offset) {
+int link_number(const glm::ivec3& offset) {
   const int place = (offset.x + 1) + 3 * (offset.y + 1) + 9 * (offset.z + 1);
   return place - (place > 13 ? 1 : 0);  // 13 is the cell itself
 }
 
 }  // namespace
 
-int WayVolumes::volume(int axis, const glm::ivec3& offset) const {
+int LinkVolumes::volume(int axis, const glm::ivec3& offset) const {
   int before = 0;
   for (int i = 0; i < axis; ++i) before += static_cast<int>(across[i].size());
   return before +
-         static_cast<int>(std::ranges::find(across[axis], way_number(offset)) - across[axis].begin());
+         static_cast<int>(std::ranges::find(across[axis], link_number(offset)) - across[axis].begin());
 }
 
-WayVolumes way_volumes() {
-  WayVolumes ways;
+LinkVolumes link_volumes() {
+  LinkVolumes links;
   for (const SweepBin& bin : sweep_bins(1)) {
-    std::vector<int>& across = ways.across[bin.axis];
+    std::vector<int>& across = links.across[bin.axis];
     for (const glm::ivec3& offset : bin.offset) {
-      if (std::ranges::find(across, way_number(offset)) == across.end()) across.push_back(way_number(offset));
+      if (std::ranges::find(across, link_number(offset)) == across.end())
+        across.push_back(link_number(offset));
     }
   }
-  return ways;
+  return links;
 }
 
 }  // namespace clpv

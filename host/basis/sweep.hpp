@@ -40,10 +40,10 @@ inline constexpr int kMostSweepParts = 4;
 std::vector<SweepBin> sweep_bins(int parts);
 
 /// The bin that a unit vector w lies in, and which of its parts^2 parts.
-struct SweepPart {
+struct BinPart {
   int bin, part;
 };
-SweepPart part_along(const glm::dvec3& w, int parts);
+BinPart part_along(const glm::dvec3& w, int parts);
 
 /// Which of `coarser_parts`^2 parts of a bin a part of `parts`^2 lies in, or mostly.
 int coarser_part(int part, int parts, int coarser_parts);
@@ -63,20 +63,20 @@ std::unique_ptr<Basis> swept_basis();
 /// 9 x 24: the projection on them of light that is the same all over each bin.
 Matrix swept_projection();
 
-/// What blocks along diagonal ways grows by their length to that power: by 1 a wall that fills its faces lets nothing through.
-void close_diagonals(std::vector<SweepWay>& ways, double power);
+/// What blocks along diagonal links grows by their length to that power: by 1 a wall that fills its faces lets nothing through.
+void close_diagonals(std::vector<SweepLink>& links, double power);
 
-/// The ways from a cell's 26 neighbours, as kernels/transmit.cl numbers them.
-std::vector<SweepWay> sweep_ways();
+/// The links from a cell's 26 neighbours, as kernels/transmittance.cl numbers them.
+std::vector<SweepLink> sweep_links();
 
-/// Volumes of the transmittance of ways that sweep_ways.cl writes: for each axis, x's first, those that directions across it use.
-struct WayVolumes {
-  std::array<std::vector<int>, 3> across;  ///< numbers of sweep_ways()
+/// Volumes of the transmittance of links that sweep_links.cl writes: for each axis, x's first, those that directions across it use.
+struct LinkVolumes {
+  std::array<std::vector<int>, 3> across;  ///< numbers of sweep_links()
 
   int count() const { return static_cast<int>(across[0].size() + across[1].size() + across[2].size()); }
-  /// The number of the volume that holds the way from `offset` for directions across `axis`.
+  /// The number of the volume that holds the link from `offset` for directions across `axis`.
   int volume(int axis, const glm::ivec3& offset) const;
 };
-WayVolumes way_volumes();
+LinkVolumes link_volumes();
 
 }  // namespace clpv

@@ -63,8 +63,8 @@ void look_up_blockers(Transport& transport, const Basis& basis) {
     for (Face& face : faces->faces) face.blocked_by = weights(face.direction);
     return;
   }
-  for (SweepWay& way : std::get<std::vector<SweepWay>>(transport.scheme))
-    way.blocked_by = weights(way.direction);
+  for (SweepLink& link : std::get<std::vector<SweepLink>>(transport.scheme))
+    link.blocked_by = weights(link.direction);
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
       transport.unit_flux_lobes = true;
       break;
     case TransportKind::sweep:
-      transport.scheme = sweep_ways();
+      transport.scheme = sweep_links();
       break;
   }
   look_up_blockers(transport, basis);

@@ -16,7 +16,7 @@
 
 namespace clpv {
 
-/// One of the thirty ways from a source cell to a face of a neighbour (Kaplanyan & Dachsbacher 2010;
+/// One of the thirty links from a source cell to a face of a neighbour (Kaplanyan & Dachsbacher 2010;
 /// docs/method.md, 'Propagation').
 struct Face {
   glm::ivec3 travel;         ///< k: from the source cell to its neighbour, a unit axis
@@ -24,7 +24,7 @@ struct Face {
   glm::dvec3 direction;      ///< w_f, unit: from the source's centre to the face's centre
   double solid_angle;        ///< Omega_f, seen from the source's centre [sr]
   std::vector<double> flux;  ///< N: flux through the face [W] = flux . c, before blocking and clamping
-  std::vector<double> blocked_by;  ///< blocking_weights of what blocks on the way
+  std::vector<double> blocked_by;  ///< blocking_weights of what blocks on the link
 };
 
 /// Fluxes through faces, clamped at 0, re-emitted as lobes: `sampled` (the paper) and `exact`.
@@ -33,8 +33,8 @@ struct FaceTransport {
   Matrix lobes;  ///< N x 6: what 1 W through the face of normal +x -x +y -y +z -z adds to the coefficients
 };
 
-/// One of a sweep's 26 ways into a cell from a neighbour, through the face, edge or corner that the two share.
-struct SweepWay {
+/// One of a sweep's 26 links into a cell from a neighbour, through the face, edge or corner that the two share.
+struct SweepLink {
   glm::ivec3 offset;               ///< how far the light travels, in cells
   glm::dvec3 direction;            ///< unit
   std::vector<double> blocked_by;  ///< as in Face
@@ -43,7 +43,7 @@ struct SweepWay {
 enum class TransportKind {
   sampled,  ///< the paper's: fluxes through faces, each seen along one direction
   exact,    ///< fluxes through faces, integrated over each
-  sweep,    ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its ways
+  sweep,    ///< no steps: directions of its own, swept through the grid (basis/sweep.hpp); here its links
 };
 
 /// Whether its scheme is a FaceTransport. Then gathering evaluates radiant intensity, E(n) = 4 b(-n) . c / s^2; of swept light
@@ -59,7 +59,7 @@ struct Transport {
   TransportKind kind = TransportKind::sampled;
   LobeOptions lobes;  ///< that it was made with, and so is
   Blocking blocking = Blocking::one_sided;
-  std::variant<FaceTransport, std::vector<SweepWay>> scheme;
+  std::variant<FaceTransport, std::vector<SweepLink>> scheme;
   /// Lobes carry their nominal flux exactly: injection scales each virtual point light's lobe f to Int f dw =
   /// its flux.
   bool unit_flux_lobes = false;

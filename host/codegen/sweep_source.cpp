@@ -8,20 +8,20 @@
 
 #include "basis/bounce.hpp"
 #include "codegen/linear_code.hpp"
-#include "codegen/transmit_source.hpp"
+#include "codegen/transmittance_source.hpp"
 
 namespace clpv {
 namespace {
 
 constexpr const char* kAxisNames = "XYZ";
 
-std::string way_macros() {
-  const WayVolumes ways = way_volumes();
-  std::string text = fmt::format("#define CLPV_X_WAYS {}\n", ways.across[0].size());
+std::string link_macros() {
+  const LinkVolumes links = link_volumes();
+  std::string text = fmt::format("#define CLPV_X_LINKS {}\n", links.across[0].size());
   int volume = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    text += fmt::format("#define CLPV_EACH_{}_WAY(DO)", kAxisNames[axis]);
-    for (const int way : ways.across[axis]) text += fmt::format(" DO({}, {})", volume++, way);
+    text += fmt::format("#define CLPV_EACH_{}_LINK(DO)", kAxisNames[axis]);
+    for (const int link : links.across[axis]) text += fmt::format(" DO({}, {})", volume++, link);
     text += "\n";
   }
   return text;
@@ -53,8 +53,8 @@ CountedText sweep_source_text(const Basis& basis) {
           code.operations()};
 }
 
-std::string sweep_ways_text(const Basis& basis, const Transport& transport) {
-  return transmit_source(basis, transport).text + way_macros();
+std::string sweep_links_text(const Basis& basis, const Transport& transport) {
+  return transmittance_source(basis, transport).text + link_macros();
 }
 
 CountedText sweep_collect_text() {

@@ -19,8 +19,8 @@ struct CountedText {
 };
 /// For sweep_source.cl: coefficient_macros, the struct Swept, and clpv_bin_means.
 CountedText sweep_source_text(const Basis& basis);
-/// For sweep_ways.cl: transmit_source's text, and which ways go where.
-std::string sweep_ways_text(const Basis& basis, const Transport& transport);
+/// For sweep_links.cl: transmittance_source's text, and which links go where.
+std::string sweep_links_text(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
 CountedText sweep_collect_text();
 

@@ -60,25 +60,25 @@ void generate_faces(TransportCode& out, const Basis& basis, const FaceTransport&
                             : out.arrive.product(five, fields(fmt::format("a{}", k), rows.columns()),
                                                  mirrors.across(axis_of(travel)));
     for (int f = 0; f < 5; ++f) {
-      const int way = 5 * k + f;
+      const int link = 5 * k + f;
       const std::string& half = fluxes[f];
       std::string flux =
-          out.arrive.name(form.functions_at_run_time ? fmt::format("clpv_flux_through(a{}, at[{}])", k, way)
+          out.arrive.name(form.functions_at_run_time ? fmt::format("clpv_flux_through(a{}, at[{}])", k, link)
                                                      : fmt::format("{0} + fabs({0})", half),
                           {.additions = 1});
       if (form.lobes_at_run_time) {
         if (form.blocking)
-          flux = out.arrive.name(fmt::format("{} * t.c{}", flux, way), {.multiplications = 1});
+          flux = out.arrive.name(fmt::format("{} * t.c{}", flux, link), {.multiplications = 1});
         out.gains.push_back(flux);
         continue;
       }
-      std::string& sum = through[axis_index(faces.faces[way].normal)];
+      std::string& sum = through[axis_index(faces.faces[link].normal)];
       if (!form.blocking) {
         sum = out.arrive.add(sum, flux);
       } else if (sum == "0.0f") {
-        sum = out.arrive.name(fmt::format("{} * t.c{}", flux, way), {.multiplications = 1});
+        sum = out.arrive.name(fmt::format("{} * t.c{}", flux, link), {.multiplications = 1});
       } else {
-        sum = out.arrive.name(fmt::format("fma({}, t.c{}, {})", flux, way, sum), {.fused = 1});
+        sum = out.arrive.name(fmt::format("fma({}, t.c{}, {})", flux, link, sum), {.fused = 1});
       }
     }
     add_neighbour(out, travel);

@@ -39,7 +39,7 @@ class ProgramCache {
   bool store(const std::string& key, const Binary& binary) const;
 
   void remove(
-      const std::string& key) const;  ///< a binary that the driver refused; nothing where there is none
+      const std::string& key) const;  ///< a binary that the driver rejected; nothing where there is none
 
   std::filesystem::path file_of(const std::string& key) const;
   const std::filesystem::path& folder() const { return folder_; }

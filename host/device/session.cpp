@@ -18,7 +18,7 @@ namespace clpv {
 namespace {
 
 ProgramSource words_program() {
-  return {.file = "words.cl", .literals = {}, .generated = {}};
+  return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
 constexpr int kKeepingPart = 10;  // of the time that a process runs, for programs to be kept in
@@ -44,7 +44,7 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
     program.build(device.handle, options.c_str());
     return program;
   } catch (const cl::Error& error) {
-    spdlog::debug("{} refuses a compiled program: {}; building anew", device.name,
+    spdlog::debug("{} rejects a compiled program: {}; building anew", device.name,
                   cl_error_name(error.err()));
     return std::nullopt;
   }

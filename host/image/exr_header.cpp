@@ -65,7 +65,7 @@ std::int32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
   return static_cast<std::int32_t>(little_endian_word(bytes, at));
 }
 
-/// The bytes from some place on; whoever takes more than there are is refused.
+/// The bytes from some place on; whoever takes more than there are is rejected.
 class Cursor {
  public:
   Cursor(std::string file, std::span<const unsigned char> bytes) : file_(std::move(file)), left_(bytes) {}
@@ -75,7 +75,7 @@ class Cursor {
 
   std::span<const unsigned char> take(std::size_t count, std::string_view place) {
     if (count > left_.size()) {
-      refuse(file_, place, fmt::format("{} bytes", count), fmt::format("the {} left", left_.size()));
+      reject(file_, place, fmt::format("{} bytes", count), fmt::format("the {} left", left_.size()));
     }
     const auto taken = left_.first(count);
     left_ = left_.subspan(count);
@@ -89,7 +89,7 @@ class Cursor {
     const auto within = left_.first(std::min(left_.size(), kNameBytes + 1));
     const auto end = std::ranges::find(within, 0);
     if (end == within.end()) {
-      refuse(file_, place, fmt::format("a name that does not end within {} bytes", within.size()),
+      reject(file_, place, fmt::format("a name that does not end within {} bytes", within.size()),
              fmt::format("{}", kNameBytes));
     }
     const auto taken = take(static_cast<std::size_t>(end - within.begin()) + 1, place);
@@ -116,7 +116,7 @@ std::int64_t count_channels(Cursor list, std::string_view place) {
   std::int64_t count = 0;
   for (; !list.name(place).empty(); ++count) list.take(kChannelBytes, place);
   if (list.left() != 0) {
-    refuse(list.file(), place, fmt::format("{} bytes after the last channel", list.left()), "none");
+    reject(list.file(), place, fmt::format("{} bytes after the last channel", list.left()), "none");
   }
   return count;
 }
@@ -124,12 +124,12 @@ std::int64_t count_channels(Cursor list, std::string_view place) {
 /// Its size stands in its first two numbers too, and those OpenEXR believes.
 void check_preview(const Cursor& file, std::string_view place, std::span<const unsigned char> bytes) {
   constexpr std::size_t kPixelsAt = 8, kPixelBytes = 4;
-  if (bytes.size() < kPixelsAt) refuse(file.file(), place, "no size", "two numbers, then pixels");
+  if (bytes.size() < kPixelsAt) reject(file.file(), place, "no size", "two numbers, then pixels");
   const std::int64_t width = number_at(bytes, 0), height = number_at(bytes, 4);
   const std::size_t pixels = (bytes.size() - kPixelsAt) / kPixelBytes;
   const bool whole = bytes.size() == kPixelsAt + kPixelBytes * pixels;
   if (!whole || width < 0 || height < 0 || width * height != static_cast<std::int64_t>(pixels)) {
-    refuse(file.file(), place,
+    reject(file.file(), place,
            fmt::format("{} x {} pixels in {} bytes", width, height, bytes.size() - kPixelsAt),
            "4 bytes each");
   }
@@ -140,17 +140,17 @@ void check_texts(Cursor list, std::string_view place) {
   while (list.left() > 0) list.take(list.number(place), place);
 }
 
-/// Refuses a value that is not as long as its type, or as what it holds says.
+/// Rejects a value that is not as long as its type, or as what it holds says.
 void check_value(const Cursor& file, std::string_view place, std::string_view type,
                  std::span<const unsigned char> bytes) {
   const auto fixed = std::ranges::find(kFixedSizes, type, &FixedSize::type);
   if (fixed != kFixedSizes.end() && fixed->bytes != bytes.size()) {
-    refuse(file.file(), place, fmt::format("{} bytes", bytes.size()), fmt::format("{}", fixed->bytes));
+    reject(file.file(), place, fmt::format("{} bytes", bytes.size()), fmt::format("{}", fixed->bytes));
   }
   if (type == "preview") check_preview(file, place, bytes);
   if (type == "stringvector") check_texts(Cursor(file.file(), bytes), place);
   if (type == "floatvector" && bytes.size() % 4 != 0) {
-    refuse(file.file(), place, fmt::format("{} bytes", bytes.size()), "4 a number");
+    reject(file.file(), place, fmt::format("{} bytes", bytes.size()), "4 a number");
   }
 }
 
@@ -188,10 +188,10 @@ ExrPart read_part(Cursor& file, std::size_t index) {
     const std::string place = fmt::format("{}, attribute '{}' ({})", before, name, type);
     const auto bytes = file.take(file.number(place), place);
     if (names.size() == kMostAttributes) {
-      refuse(file.file(), before, fmt::format("over {} attributes", names.size()), "at most as many");
+      reject(file.file(), before, fmt::format("over {} attributes", names.size()), "at most as many");
     }
     // OpenEXR would add a second list of channels to the first.
-    if (!names.insert(name).second) refuse(file.file(), place, "a second of this name", "one of each name");
+    if (!names.insert(name).second) reject(file.file(), place, "a second of this name", "one of each name");
     check_value(file, place, type, bytes);
     keep_value(part, file, place, name, type, bytes);
   }
@@ -213,7 +213,7 @@ std::int64_t least_chunks(const ExrPart& part) {
 /// that OpenImageIO 2.4 ends the program at what their headers hold.
 void check_type(const Cursor& file, const std::string& place, const ExrPart& part) {
   if (std::ranges::count(kPartTypes, part.type) > 0) return;
-  refuse(file.file(), place, fmt::format("type '{}'", part.type),
+  reject(file.file(), place, fmt::format("type '{}'", part.type),
          fmt::format("{}", fmt::join(kPartTypes, ", ")));
 }
 
@@ -236,7 +236,7 @@ ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const un
   const auto check_tables = [&](const std::string& place, std::int64_t chunks) {
     const std::int64_t most = static_cast<std::int64_t>(file.left()) / kOffsetBytes;
     if (chunks <= most) return;
-    refuse(file.file(), place, fmt::format("{} chunks", chunks),
+    reject(file.file(), place, fmt::format("{} chunks", chunks),
            fmt::format("{}, as the rest of the file has places for", most));
   };
   ImageClaim first;
@@ -247,7 +247,7 @@ ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const un
     if (typed) check_type(file, fmt::format("part {}", index), part);
     settle_chunks(part, flags, typed);
     if (index == 0) first = part;
-    if (index == kMostParts) refuse(file.file(), {}, fmt::format("over {} parts", index), "at most as many");
+    if (index == kMostParts) reject(file.file(), {}, fmt::format("over {} parts", index), "at most as many");
     check_tables(fmt::format("part {}", index), least_chunks(part));
     chunks += least_chunks(part);
     if (!several) break;

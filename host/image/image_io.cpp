@@ -29,7 +29,7 @@ constexpr const char* kFixedDate = "1970:01:01 00:00:00";
 // A tile may be larger than its image, but is decoded whole: one of 65535 a side would take 20 s and its memory.
 constexpr std::int64_t kLargestTile = 1024;
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+[[noreturn]] void reject(const fs::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
 }
 
@@ -57,10 +57,10 @@ std::string checked_format(const fs::path& path, const std::vector<unsigned char
   std::string named = format_of_name(path);
   const std::string found = format_of_content(bytes);
   if (named.empty()) {
-    refuse(path, fmt::format("extension '{}'; allowed are .exr, .png and .hdr", path.extension().string()));
+    reject(path, fmt::format("extension '{}'; allowed are .exr, .png and .hdr", path.extension().string()));
   }
   if (found != named) {
-    refuse(path, fmt::format("named as {}, but its content is {}", named,
+    reject(path, fmt::format("named as {}, but its content is {}", named,
                              found.empty() ? "no image known here" : found));
   }
   return named;
@@ -69,22 +69,22 @@ std::string checked_format(const fs::path& path, const std::vector<unsigned char
 /// Of an image and of what is decoded of it at once, as the file says and as OpenImageIO does.
 void check_size(const fs::path& path, const ImageClaim& found, const ImageLimits& limits) {
   if (found.width < 1 || found.height < 1 || found.width > limits.side || found.height > limits.side) {
-    refuse(path,
+    reject(path,
            fmt::format("{} x {} pixels; allowed are 1 to {} a side", found.width, found.height, limits.side));
   }
   if (found.channels < 1 || found.channels > limits.channels) {
-    refuse(path, fmt::format("{} channels; allowed are 1 to {}", found.channels, limits.channels));
+    reject(path, fmt::format("{} channels; allowed are 1 to {}", found.channels, limits.channels));
   }
   const std::int64_t tile_side = std::max({found.width, found.height, kLargestTile});
   if (found.tiled && (found.chunk_width > tile_side || found.chunk_height > tile_side)) {
-    refuse(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed are {} a side",
+    reject(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed are {} a side",
                              found.chunk_width, found.chunk_height, found.width, found.height, tile_side));
   }
-  if (found.deep) refuse(path, "a volume or deep image; allowed are flat ones");
+  if (found.deep) reject(path, "a volume or deep image; allowed are flat ones");
   const auto check_bytes = [&](const char* what, std::int64_t width, std::int64_t height) {
     const auto bytes = static_cast<std::size_t>(width * height * found.channels) * sizeof(float);
     if (bytes <= limits.pixel_bytes) return;
-    refuse(path, fmt::format("{}{} x {} pixels of {} channels take {} MiB; allowed are {}", what, width,
+    reject(path, fmt::format("{}{} x {} pixels of {} channels take {} MiB; allowed are {}", what, width,
                              height, found.channels, bytes >> 20, limits.pixel_bytes >> 20));
   };
   check_bytes("", found.width, found.height);
@@ -123,7 +123,7 @@ void check_before_decoding(const fs::path& path, const std::string& format, std:
   if (format == "openexr") check_size(path, read_exr_header(path, bytes), limits);
   if (format != "png") return;
   const auto header = read_image_header(bytes);
-  if (!header || !header->complete) refuse(path, "damaged or truncated: a PNG's chunks do not end within it");
+  if (!header || !header->complete) reject(path, "damaged or truncated: a PNG's chunks do not end within it");
   check_size(path, {.width = header->width, .height = header->height, .channels = 1}, limits);
   bytes = bare_png(bytes);
 }
@@ -141,14 +141,14 @@ struct OpenImage {
         format(checked_format(path, bytes)),
         input(OIIO::ImageInput::create(format)) {
     if (!input)
-      refuse(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
+      reject(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
     check_before_decoding(path, format, bytes, limits);
     memory.emplace(bytes);
     input->set_ioproxy(&*memory);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open(path.string(), spec, config))
-      refuse(path, "cannot be read: " + first_line(input->geterror()));
+      reject(path, "cannot be read: " + first_line(input->geterror()));
     check_size(path, claim_of(spec), limits);
   }
 };
@@ -180,7 +180,7 @@ Image read_image(const fs::path& path, const ImageLimits& limits) {
   image.metadata = metadata_of(spec);
   image.encoding = opened.format == "png" ? Encoding::srgb : Encoding::linear;
   if (!opened.input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data())) {
-    refuse(path, "damaged or truncated: " + first_line(opened.input->geterror()));
+    reject(path, "damaged or truncated: " + first_line(opened.input->geterror()));
   }
   return image;
 }

@@ -11,7 +11,7 @@ namespace clpv {
 
 static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
 
-/// One value a pixel, row 0 first: a Surface (pipeline/surface.hpp) read back, or made by a test. What the twins of
+/// One value a pixel, row 0 first: a Surface (pipeline/surface.hpp) read back, or made by a test. What the CPU references of
 /// host/reference work on. Depth [m] along the view's forward axis, 0: no surface there; normals and colours as Surface's.
 struct SurfaceImage {
   ClpvView view{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What each stage is told of a frame's choices, and the one place where that comes from them. Knows no OpenCL, so that
-// stages and their twins share it.
+// stages and their CPU references share it.
 #pragma once
 
 #include <vector>

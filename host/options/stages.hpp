@@ -7,26 +7,27 @@
 
 namespace clpv {
 
-/// As the house files them: kernels, what launches them, twin, check and test of one stem. `sizes`, the layout of structs
+/// As the house files them: kernels, what launches them, CPU reference, check and test of one stem. `sizes`, the layout of structs
 /// that both sides share, is none of a frame's: it is checked before all others.
 enum class Stage {
   sizes,
   rasterize,
   emit,
   inject,
-  block,
-  reflect,
+  blockers,
+  reflectors,
   propagate,
   sweep,
   bounce,
-  see,
+  visibility,
   gather,
   shade
 };
 
 template <>
-inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "inject", "block", "reflect",
-                                                "propagate", "sweep", "bounce", "see", "gather", "shade");
+inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "inject", "blockers",
+                                                "reflectors", "propagate", "sweep", "bounce", "visibility",
+                                                "gather", "shade");
 
 /// A part of a frame with a time of its own: a stage, or what it does for one purpose. `whole`: what a benchmark times as
 /// one, whatever it launches.
@@ -34,13 +35,13 @@ enum class Pass {
   rasterize_camera,
   rasterize_shadow,  ///< a light
   rasterize_rsm,     ///< a cascade and light
-  emit,              ///< points of surfaces that glow
+  emit,              ///< points of emissive surfaces
   inject_light,      ///< a cascade, as are the next five
   inject_geometry,
-  block,
-  reflect,
-  propagate,  ///< in steps, or by a sweep and its bounces
-  see,        ///< a cascade
+  blockers,
+  reflectors,
+  propagate,   ///< in steps, or by a sweep and its bounces
+  visibility,  ///< a cascade
   gather,
   shade,
   whole,
@@ -48,7 +49,8 @@ enum class Pass {
 
 template <>
 inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow", "rasterize-rsm",
-                                               "emit", "inject-light", "inject-geometry", "block", "reflect",
-                                               "propagate", "see", "gather", "shade", "whole");
+                                               "emit", "inject-light", "inject-geometry", "blockers",
+                                               "reflectors", "propagate", "visibility", "gather", "shade",
+                                               "whole");
 
 }  // namespace clpv

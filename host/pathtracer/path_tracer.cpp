@@ -34,7 +34,7 @@ glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py
 class Work {
  public:
   Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-       const PathTracerOptions& options, const TraceProgress& progress, Team& team)
+       const PathTracerOptions& options, const TraceProgress& progress, Ranks& team)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
         sky_(scene.sky.get()),
@@ -179,7 +179,7 @@ class Work {
   const std::vector<Light>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
-  Team& team_;
+  Ranks& team_;
   std::vector<std::optional<Hit>> hits_;  // a pixel
   // Irradiance [W/m^2], summed over paths: two independent halves of each pixel's estimate, of this rank and of all.
   std::vector<glm::dvec3> mine_, sums_;
@@ -217,7 +217,7 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 }  // namespace
 
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-                        const PathTracerOptions& options, const TraceProgress& progress, Team& team) {
+                        const PathTracerOptions& options, const TraceProgress& progress, Ranks& team) {
   check(scene, lights, options);
   Work work(scene, lights, view, options, progress, team);
   work.look();

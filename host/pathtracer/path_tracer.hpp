@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "kernels/shared/view.h"
-#include "parallel/team.hpp"
+#include "parallel/ranks.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {
@@ -60,6 +60,6 @@ using TraceProgress = std::function<void(double)>;
 /// Error(usage) for options out of range.
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
-                        Team& team = alone());
+                        Ranks& team = alone());
 
 }  // namespace clpv::reference

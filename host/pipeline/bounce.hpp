@@ -23,7 +23,7 @@ class Bouncer {
   /// finer ones go by what falls on surfaces there.
   Bouncer(Session& session, const SweepOptions& options);
 
-  /// What reflects in a cascade from now on (SceneReflector::reflectors, which must live on), once.
+  /// What reflects in a cascade from now on (ReflectorVoxelizer::reflectors, which must live on), once.
   void reflect(std::size_t cascade, const Volume& reflectors);
 
   /// What reflects in the coarsest cascade sends back 1 W on each face, and what it sends back further, as is known by now: into

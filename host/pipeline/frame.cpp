@@ -22,7 +22,7 @@ constexpr double kClosedUnderASky = 0.75;
 Transport transport_for(const RenderOptions& options, const Basis& basis, const Scene& scene) {
   Transport transport = make_transport(options, basis);
   if (scene.sky && options.transport == TransportKind::sweep)
-    close_diagonals(std::get<std::vector<SweepWay>>(transport.scheme), kClosedUnderASky);
+    close_diagonals(std::get<std::vector<SweepLink>>(transport.scheme), kClosedUnderASky);
   return transport;
 }
 
@@ -72,9 +72,9 @@ void Frame::scene_moved() {
   upload_moving(session_, scene_, buffers_);
 }
 
-void Frame::forget() {
+void Frame::invalidate() {
   forget_light();
-  buffers_.runs->forget();
+  buffers_.clusters->invalidate();
 }
 
 void Frame::rasterize_camera(const Camera& camera) {

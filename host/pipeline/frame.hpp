@@ -41,8 +41,8 @@ class Frame {
 
   /// For benchmarks: the next frame recomputes all lighting, from shadow maps on; or everything, with what the scene's
   /// triangles block and hide.
-  void forget_light() { lights_.forget(); }
-  void forget();
+  void forget_light() { lights_.invalidate(); }
+  void invalidate();
 
   /// Empty before the first render.
   GatheredLight light() const { return cascades_.light(); }

@@ -21,7 +21,7 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
       accumulated_(
           volumes(options.cascades, light_shape(options, swept ? *swept : basis), "accumulated light")),
       geometry_(volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
-      ways_(options.cascades),
+      links_(options.cascades),
       seen_(options.cascades),
       reflected_(options.cascades),
       keys_(options.cascades) {
@@ -68,7 +68,7 @@ FrameCascades::Keys FrameCascades::keys_of(std::size_t cascade) const {
   // Where in a cascade the eye is matters to gathering alone.
   const CacheKey place = Fingerprint().add(grid.origin).add(grid.cell).value();
   Keys keys;
-  keys.triangles = Fingerprint().add(place).add(buffers_.runs->instant()).value();
+  keys.triangles = Fingerprint().add(place).add(buffers_.clusters->instant()).value();
   keys.injected = Fingerprint().add(place).add(lights_.sources_key(c)).value();
   if (!geometry_.empty()) keys.geometry = keys.triangles;
   if (!geometry_.empty() && !blocker_)
@@ -79,7 +79,7 @@ FrameCascades::Keys FrameCascades::keys_of(std::size_t cascade) const {
   accumulated.add(keys.injected).add(keys.geometry);
   if (reflector_) accumulated.add(keys.reflected);
   // A sweep takes light at its border from the next coarser cascade, and keeps what the next finer one will take.
-  if (sweeper_) accumulated.add(sweeper_->shell(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
+  if (sweeper_) accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
   if (sweeper_ && cascade + 1 < keys_.size()) accumulated.add(keys_[cascade + 1].accumulated);
   keys.accumulated = accumulated.value();
   return keys;
@@ -102,7 +102,7 @@ void FrameCascades::block(std::size_t cascade) {
   CachedVolume& geometry = of_cascade(geometry_, cascade);
   geometry.cached.update(keys_[cascade].geometry, [&] {
     if (!blocker_) return inject_geometry(cascade, *geometry.volume);
-    const StageScope scope(session_, {Pass::block, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::blockers, static_cast<int>(cascade)});
     blocker_->block(cascade, grids_[cascade], *geometry.volume);
   });
 }
@@ -118,13 +118,13 @@ void FrameCascades::inject_geometry(std::size_t cascade, Volume& geometry) {
 
 void FrameCascades::let_through(std::size_t cascade) {
   if (const Volume* blockers = geometry(cascade))
-    ways_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->block(cascade, *blockers); });
+    links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->block(cascade, *blockers); });
 }
 
 void FrameCascades::reflect(std::size_t cascade) {
   if (!reflector_) return;
   reflected_[cascade].update(keys_[cascade].reflected, [&] {
-    const StageScope scope(session_, {Pass::reflect, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::reflectors, static_cast<int>(cascade)});
     let_through(cascade);
     reflector_->reflect(cascade, grids_[cascade]);
     sweeper_->reflect(cascade, reflector_->reflectors(cascade));
@@ -134,7 +134,7 @@ void FrameCascades::reflect(std::size_t cascade) {
 void FrameCascades::see(std::size_t cascade) {
   if (!sight_) return;
   seen_[cascade].update(keys_[cascade].triangles, [&] {
-    const StageScope scope(session_, {Pass::see, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::visibility, static_cast<int>(cascade)});
     sight_->see(cascade, grids_[cascade]);
   });
 }

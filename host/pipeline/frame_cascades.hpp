@@ -12,15 +12,15 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/block.hpp"
+#include "pipeline/blockers.hpp"
 #include "pipeline/cached.hpp"
 #include "pipeline/frame_lights.hpp"
 #include "pipeline/inject.hpp"
 #include "pipeline/propagate.hpp"
-#include "pipeline/reflect.hpp"
+#include "pipeline/reflectors.hpp"
 #include "pipeline/scene_buffers.hpp"
-#include "pipeline/see.hpp"
 #include "pipeline/sweep.hpp"
+#include "pipeline/visibility.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -40,7 +40,7 @@ using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;
-  const Buffer* hidden;  ///< SceneSight::hidden(); null where all cells light a surface
+  const Buffer* hidden;  ///< CellVisibility::hidden(); null where all cells light a surface
   float scale;           ///< they hold so many times the light
 };
 
@@ -91,14 +91,15 @@ class FrameCascades {
   const RenderOptions& options_;
   FrameLights& lights_;
   Injector injector_;
-  std::optional<SceneBlocker> blocker_;      ///< none: what is seen blocks
-  std::optional<SceneReflector> reflector_;  ///< none: one bounce
-  std::optional<Propagator> propagator_;     ///< one of the two
+  std::optional<BlockerVoxelizer> blocker_;      ///< none: what is seen blocks
+  std::optional<ReflectorVoxelizer> reflector_;  ///< none: one bounce
+  std::optional<Propagator> propagator_;         ///< one of the two
   std::optional<Sweeper> sweeper_;
-  std::optional<SceneSight> sight_;  ///< none: all cells light a surface
+  std::optional<CellVisibility> sight_;  ///< none: all cells light a surface
   std::vector<CachedVolume> injected_, accumulated_;
-  std::vector<CachedVolume> geometry_;           ///< none without occlusion
-  std::vector<Cached> ways_, seen_, reflected_;  ///< of the sweeper, the sight, the reflector and the sweeper
+  std::vector<CachedVolume> geometry_;  ///< none without occlusion
+  std::vector<Cached> links_, seen_,
+      reflected_;  ///< of the sweeper, the sight, the reflector and the sweeper
   std::vector<ClpvGrid> grids_;
   std::vector<Keys> keys_;
   const Surface* camera_ = nullptr;

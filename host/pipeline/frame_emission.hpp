@@ -31,7 +31,7 @@ class FrameEmission {
 
  private:
   /// The version of the emissive triangles.
-  unsigned instant() const { return moving_ ? buffers_.runs->instant() : 0; }
+  unsigned instant() const { return moving_ ? buffers_.clusters->instant() : 0; }
 
   Session& session_;
   const Scene& scene_;

@@ -82,7 +82,7 @@ void FrameLights::find_scale(const ClpvGrid& coarsest) {
 }
 
 CacheKey FrameLights::key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const {
-  return Fingerprint().add(light).add(views).add(buffers_.runs->instant()).add(epoch_).value();
+  return Fingerprint().add(light).add(views).add(buffers_.clusters->instant()).add(epoch_).value();
 }
 
 void FrameLights::rasterize_shadows() {

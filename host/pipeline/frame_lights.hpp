@@ -52,7 +52,7 @@ class FrameLights {
   float scale() const { return scale_; }
 
   /// The next frame computes all of it again.
-  void forget() { ++epoch_; }
+  void invalidate() { ++epoch_; }
 
  private:
   struct Rsms {  ///< a view each: one, or six

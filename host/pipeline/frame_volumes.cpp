@@ -6,10 +6,10 @@
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
 #include "options/stage_options.hpp"
-#include "pipeline/block.hpp"
-#include "pipeline/reflect.hpp"
-#include "pipeline/see.hpp"
+#include "pipeline/blockers.hpp"
+#include "pipeline/reflectors.hpp"
 #include "pipeline/sweep.hpp"
+#include "pipeline/visibility.hpp"
 #include "support/error.hpp"
 #include "volume/accumulator.hpp"
 
@@ -22,7 +22,7 @@ bool sweeps(const RenderOptions& options) {
 
 /// Of what is hidden, in one buffer.
 std::size_t sight_bytes(const RenderOptions& options, int grid) {
-  return options.gather == Gathering::visible ? SceneSight::bytes(grid, options.cascades) : 0;
+  return options.gather == Gathering::visible ? CellVisibility::bytes(grid, options.cascades) : 0;
 }
 
 /// Bytes of the volumes of a frame at this grid.
@@ -35,12 +35,12 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
   const VolumeShape lit = light_shape(tried, basis), blocking = geometry_shape(tried, basis),
                     carried{grid, options.state == State::fluxes ? 6 : basis.size(), 3};
   const double masks = options.blockers == Blockers::scene
-                           ? static_cast<double>(SceneBlocker::bytes(grid, options.cascades))
+                           ? static_cast<double>(BlockerVoxelizer::bytes(grid, options.cascades))
                            : 0;
   const double reflecting = options.bounces == Bounces::one
                                 ? 0
                                 : options.cascades * bytes({grid, kReflectingSides, 3}) +
-                                      static_cast<double>(SceneReflector::bytes(grid));
+                                      static_cast<double>(ReflectorVoxelizer::bytes(grid));
   const auto sight = static_cast<double>(sight_bytes(options, grid));
   if (sweeps(options)) {
     return sight + injected_volumes(options) * bytes(lit) +
@@ -60,7 +60,7 @@ double volume_bytes(const RenderOptions& options, const Basis& basis, int grid) 
          cells(lit) + cells(blocking);
 }
 
-/// Refuses a grid whose volumes exceed the device, naming the largest that fits.
+/// Rejects a grid whose volumes exceed the device, naming the largest that fits.
 void require_memory(const Session& session, const RenderOptions& options, const Basis& basis) {
   const Device& device = session.device();
   const auto fits = [&](int grid) {
@@ -78,7 +78,7 @@ void require_memory(const Session& session, const RenderOptions& options, const 
               device.memory_bytes >> 20, device.max_alloc_bytes >> 20, grid);
 }
 
-/// Refuses what needs a transport by faces.
+/// Rejects what needs a transport by faces.
 void require_faces(const RenderOptions& options) {
   if (has_faces(options.transport)) return;
   if (options.state != State::coefficients) {
@@ -92,7 +92,7 @@ void require_faces(const RenderOptions& options) {
   }
 }
 
-/// Refuses what a transport cannot do, and what the scene's triangles cannot.
+/// Rejects what a transport cannot do, and what the scene's triangles cannot.
 void require_compatible(const RenderOptions& options) {
   if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
     throw Error(ExitCode::usage,

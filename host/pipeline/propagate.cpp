@@ -61,7 +61,7 @@ Propagator::Form Propagator::make_form(bool first, bool blocking) {
   const bool first_too = blocking && large && !lobes_ && options_.state == State::coefficients;
   ProgramSource program{"propagate.cl", stencil_.literals(), source.text};
   if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
-  if (blocking) program.generated += way_macros(transmitter_->transmittance().shape().coefficients);
+  if (blocking) program.generated += link_macros(transmitter_->transmittance().shape().coefficients);
   program.literals.flag("CLPV_BLOCKING", blocking)
       .flag("CLPV_FIRST_TOO", first_too)
       .integer("CLPV_CHANNELS", channels);
@@ -83,7 +83,7 @@ Propagator::Form& Propagator::form(bool first, bool blocking) {
 
 void Propagator::transmit(const Volume& geometry) {
   if (!transmitter_)
-    transmitter_ = std::make_unique<Transmitter>(session_, basis_, transport_, options_.stencil());
+    transmitter_ = std::make_unique<LinkTransmittance>(session_, basis_, transport_, options_.stencil());
   transmitter_->transmit(geometry);
 }
 

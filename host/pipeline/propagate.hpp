@@ -14,7 +14,7 @@
 #include "options/stage_options.hpp"
 #include "pipeline/run_time_lobes.hpp"
 #include "pipeline/stencil.hpp"
-#include "pipeline/transmit.hpp"
+#include "pipeline/transmittance.hpp"
 #include "volume/accumulator.hpp"
 #include "volume/volume.hpp"
 
@@ -43,10 +43,10 @@ class Propagator {
 
   /// What a later step's kernel executes.
   const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
-  /// Whether a step of something that has blocked reads what the ways let through: the first may have to, in vain.
+  /// Whether a step of something that has blocked reads what the links let through: the first may have to, in vain.
   bool reads_transmittance(int step) { return step > 1 || (transmitter_ && form(false, true).first_too); }
   /// Null until something has blocked.
-  const Transmitter* transmitter() const { return transmitter_.get(); }
+  const LinkTransmittance* transmitter() const { return transmitter_.get(); }
 
  private:
   struct Form {
@@ -73,7 +73,7 @@ class Propagator {
   std::optional<RunTimeLobes> lobes_;      ///< none: they are constants
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
-  std::unique_ptr<Transmitter> transmitter_;
+  std::unique_ptr<LinkTransmittance> transmitter_;
   std::unique_ptr<Volume> sum_;  ///< of the six fluxes
   Accumulator accumulator_;
 };

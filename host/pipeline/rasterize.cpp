@@ -14,11 +14,11 @@ namespace {
 static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
 constexpr std::size_t kRasterGroup = 64;
-constexpr std::size_t kItemsARun = CLPV_RUN / 8;  // a work-item sets eight triangles up
+constexpr std::size_t kItemsARun = CLPV_CLUSTER / 8;  // a work-item sets eight triangles up
 constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
 constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
-const ProgramSource kBin{"bin.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
+const ProgramSource kBin{"bin_tiles.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
 
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
@@ -52,7 +52,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       resolve_depth_(session, kDraw, "resolve_depth") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
-  session_.reserve(runs_, scene.runs->bounds().size() * sizeof(cl_uint), "runs of triangles in sight");
+  session_.reserve(clusters_, scene.clusters->bounds().size() * sizeof(cl_uint),
+                   "clusters of triangles in sight");
   reserve_list(scene.triangle_count / 2 + kRasterGroup);
   reserve_entries(scene.triangle_count + kRasterGroup);
 }
@@ -114,12 +115,12 @@ void Rasterizer::find_visible(const Pass& pass) {
 /// Runs of triangles that may be in sight; how many these are.
 unsigned Rasterizer::list_runs(const ClpvView& view) {
   const std::vector<cl_uint> in_sight =
-      scene_.runs->which([&](const Bounds& run) { return may_be_in_sight(view, run); });
-  session_.write(runs_, in_sight);
+      scene_.clusters->which([&](const Bounds& run) { return may_be_in_sight(view, run); });
+  session_.write(clusters_, in_sight);
   return static_cast<unsigned>(in_sight.size());
 }
 
-/// Lists the triangles of a range of runs that may cover a pixel, and enters them for the tiles they are over.
+/// Lists the triangles of a range of clusters that may cover a pixel, and enters them for the tiles they are over.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   SetUp& kernels = set_up_kernels(pass.view);
   const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
@@ -127,7 +128,7 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
   kernels.triangles
-      .set(pass.view, runs_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
+      .set(pass.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
            scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, places_, to_clip_)
       .launch(count * kItemsARun, kRasterGroup);
   kernels.clipped
@@ -147,7 +148,7 @@ void Rasterizer::bin(const ClpvView& view) {
       .launch(groups * kRasterGroup, kRasterGroup);
 }
 
-/// Lists the triangles of a range of runs by tile, growing the lists where they are too short; false where they would
+/// Lists the triangles of a range of clusters by tile, growing the lists where they are too short; false where they would
 /// grow too long.
 bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
   for (;;) {
@@ -162,7 +163,7 @@ bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
   }
 }
 
-/// Draws a range of runs; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
+/// Draws a range of clusters; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
 /// lists would grow too long.
 void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
   if (list(pass, first, count)) return draw_tiles(pass.view, fresh);

@@ -3,7 +3,7 @@
 //
 // Vertices snap to 1/256 pixel; edges are then exact in integers and follow the top-left rule, so that
 // triangles which share an edge leave no pixel out and draw none twice. Of two surfaces at the same depth the
-// triangle that comes first in the scene is seen: two runs give the same bytes.
+// triangle that comes first in the scene is seen: two clusters give the same bytes.
 #pragma once
 
 #include <compare>
@@ -46,7 +46,7 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
-  /// Of one projection, which is in the code: chosen as it runs, it would take RSMs a twelfth longer.
+  /// Of one projection, which is in the code: chosen as it clusters, it would take RSMs a twelfth longer.
   struct SetUp {
     Kernel triangles, clipped;
   };
@@ -77,7 +77,7 @@ class Rasterizer {
   std::map<bool, SetUp> set_up_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_places_, start_places_, bin_entries_, draw_tiles_, resolve_depth_;
-  Buffer runs_, listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
+  Buffer clusters_, listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
 };
 
 }  // namespace clpv

@@ -23,16 +23,16 @@ cl_float4 packed(const glm::dvec3& v, double w) {
   return {{narrow.x, narrow.y, narrow.z, narrow.w}};
 }
 
-/// `clpv_functions_of(way)`: the basis functions along a way, times its solid angle.
+/// `clpv_functions_of(link)`: the basis functions along a way, times its solid angle.
 std::string functions_source(const Basis& basis, const LobeOptions& lobes) {
   const bool looked_up = lobes.table_functions && !basis.centres().empty();
   std::string text = looked_up ? table_basis_source(basis, lobes.table_size, kFunctionsTable) : "";
   text += fmt::format(
-      "CLPV_INLINE Coefficients clpv_functions_of(const float4 way CLPV_AND_FUNCTIONS) {{\n"
+      "CLPV_INLINE Coefficients clpv_functions_of(const float4 link CLPV_AND_FUNCTIONS) {{\n"
       "  Coefficients b = {};\n",
-      looked_up ? "clpv_table_basis(way.x, way.y, way.z CLPV_PASS_FUNCTIONS)"
-                : "clpv_basis(way.x, way.y, way.z)");
-  for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c{} *= way.w;\n", i);
+      looked_up ? "clpv_table_basis(link.x, link.y, link.z CLPV_PASS_FUNCTIONS)"
+                : "clpv_basis(link.x, link.y, link.z)");
+  for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c{} *= link.w;\n", i);
   return text + "  return b;\n}\n";
 }
 
@@ -49,14 +49,14 @@ RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport
     throw Error(ExitCode::usage,
                 "lobe-time kernel: with state fluxes no step makes lobes; allowed: host, or coefficients");
   }
-  std::vector<cl_float4> normals, ways;
+  std::vector<cl_float4> normals, links;
   for (const Face& face : faces_of(transport)) {
     normals.push_back(packed(glm::dvec3(face.normal), 0));
-    ways.push_back(packed(face.direction, face.solid_angle));
+    links.push_back(packed(face.direction, face.solid_angle));
   }
   faces_ = normals.size();
   normals_ = session.upload(normals, "normals of faces");
-  ways_ = session.upload(ways, "ways through faces");
+  links_ = session.upload(links, "links through faces");
 }
 
 void RunTimeLobes::add_literals(Literals& literals) const {
@@ -67,7 +67,7 @@ void RunTimeLobes::add_literals(Literals& literals) const {
 }
 
 void RunTimeLobes::add_to(Kernel& step) const {
-  step.add(normals_, ways_);
+  step.add(normals_, links_);
   table_.add_to(step);
   functions_.add_to(step);
 }

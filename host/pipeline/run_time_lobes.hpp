@@ -38,7 +38,7 @@ class RunTimeLobes {
   std::size_t faces_ = 0;
   bool unit_flux_, evaluates_;
   Buffer normals_;
-  Buffer ways_;  ///< where light goes through each face, and the face's solid angle
+  Buffer links_;  ///< where light goes through each face, and the face's solid angle
 };
 
 }  // namespace clpv

@@ -16,7 +16,7 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw Error(ExitCode::bad_input, message);
 }
 
-/// Kernels trust every index: what does not fit is refused here, whoever made the scene.
+/// Kernels trust every index: what does not fit is rejected here, whoever made the scene.
 void check_indices(const Scene& scene) {
   require(scene.triangles.size() <= CLPV_TRIANGLE_INDEX && scene.vertices.size() <= CLPV_TRIANGLE_INDEX,
           fmt::format("{}: {} triangles and {} vertices; allowed: below 2^30 each", scene.path,
@@ -145,12 +145,12 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
   buffers.masked = std::any_of(scene.materials.begin(), scene.materials.end(), is_masked);
   buffers.bounds = bounds_of_all(scene.vertices);
-  buffers.runs = std::make_shared<TriangleRuns>(scene);
+  buffers.clusters = std::make_shared<TriangleClusters>(scene);
   return buffers;
 }
 
 void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) {
-  const std::vector<Part> changed = buffers.runs->move(scene);
+  const std::vector<Part> changed = buffers.clusters->move(scene);
   if (changed.empty()) return;
   for (const Part& part : changed) {
     session.write(buffers.vertices, std::span(scene.vertices).subspan(part.first_vertex, part.vertices),

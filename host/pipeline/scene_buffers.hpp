@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "device/session.hpp"
-#include "pipeline/triangle_runs.hpp"
+#include "pipeline/triangle_clusters.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -23,8 +23,8 @@ struct SceneBuffers {
   unsigned vertex_count = 0, triangle_count = 0;
   /// What the scene has at all: textures, vertex colours other than 1, materials that emit, materials with holes.
   bool textured = false, coloured = false, emissive = false, masked = false;
-  Bounds bounds;                       ///< of all vertices [m]
-  std::shared_ptr<TriangleRuns> runs;  ///< where triangles are: one for all copies
+  Bounds bounds;                               ///< of all vertices [m]
+  std::shared_ptr<TriangleClusters> clusters;  ///< where triangles are: one for all copies
 };
 
 /// Copies a scene to the device. Mip levels are box-filtered in linear light; those of a texture that a
@@ -34,7 +34,7 @@ struct SceneBuffers {
 SceneBuffers upload_scene(Session& session, const Scene& scene);
 
 /// Brings `buffers`, made of the same scene at another instant, to the one it shows now: its moving parts and its bounds.
-/// TriangleRuns::instant() is the version of what they hold.
+/// TriangleClusters::instant() is the version of what they hold.
 void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers);
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Launching kernels that serve every cell of a grid (propagate.cl, transmit.cl).
+// Launching kernels that serve every cell of a grid (propagate.cl, transmittance.cl).
 #pragma once
 
 #include <cstddef>

@@ -32,28 +32,28 @@ std::size_t plane_numbers(int grid) {
 }
 
 /// The coarser cells that a finer cascade's border is made of, `offset` finer cells from the coarser grid's least corner.
-ClpvSweepShell shell_of(int grid, const std::array<int, 3>& offset) {
+ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
   const auto lower = [](int u) { return (u - 1) >> 1; };  // of the two coarser cells round a finer one
-  ClpvSweepShell shell{};
-  shell.side = CLPV_SWEEP_SHELL_SIDE_OF(grid);
+  ClpvSweepHalo halo{};
+  halo.side = CLPV_SWEEP_HALO_SIDE_OF(grid);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    shell.first[axis] = lower(offset[axis] - 1);
-    shell.layers[2 * axis] = lower(offset[axis] - 1);
-    shell.layers[2 * axis + 1] = lower(offset[axis] + grid);
+    halo.first[axis] = lower(offset[axis] - 1);
+    halo.layers[2 * axis] = lower(offset[axis] - 1);
+    halo.layers[2 * axis + 1] = lower(offset[axis] + grid);
   }
-  return shell;
+  return halo;
 }
 
 /// Of what a cascade keeps for the next finer one.
-std::size_t shell_bytes(const SweepOptions& options, int parts, std::size_t cascade) {
+std::size_t halo_bytes(const SweepOptions& options, int parts, std::size_t cascade) {
   if (cascade == 0) return sizeof(float);
-  const std::size_t side = CLPV_SWEEP_SHELL_SIDE_OF(options.grid);
-  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_SHELL_FACE_OF(side) * number_bytes(options.format);
+  const std::size_t side = CLPV_SWEEP_HALO_SIDE_OF(options.grid);
+  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_HALO_FACE_OF(side) * number_bytes(options.format);
 }
 
-bool within(const ClpvSweepShell& shell, int grid) {
-  return std::all_of(shell.first, shell.first + 3,
-                     [&](int first) { return first >= 0 && first + shell.side <= grid; });
+bool within(const ClpvSweepHalo& halo, int grid) {
+  return std::all_of(halo.first, halo.first + 3,
+                     [&](int first) { return first >= 0 && first + halo.side <= grid; });
 }
 
 ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_bins) {
@@ -96,16 +96,16 @@ double Sweeper::bytes(const SweepOptions& options) {
   const auto volume = static_cast<double>(SweepVolumes::bytes(options.grid, options.format));
   const auto plane = static_cast<double>(plane_numbers(options.grid));
   const bool once = options.bounces == Bounces::one;
-  double most = 0, shells = 0;
+  double most = 0, halos = 0;
   for (std::size_t c = 0; c < options.parts.size(); ++c) {
     most = std::max(most, static_cast<double>(3 * directions_of(options.parts[c])));
-    shells += static_cast<double>(shell_bytes(options, options.parts[c], c));
-    if (options.bounces == Bounces::two) shells += static_cast<double>(shell_bytes(options, kFirstParts, c));
+    halos += static_cast<double>(halo_bytes(options, options.parts[c], c));
+    if (options.bounces == Bounces::two) halos += static_cast<double>(halo_bytes(options, kFirstParts, c));
   }
-  const double ways =
-      options.blocking ? static_cast<double>(options.parts.size()) * way_volumes().count() : 0;
+  const double links =
+      options.blocking ? static_cast<double>(options.parts.size()) * link_volumes().count() : 0;
   const int lights = once ? 1 : (options.bounces == Bounces::two ? 2 : 3);
-  return (3 * lights * kSweepBins + ways) * volume + most * 2 * plane * (sizeof(float) + number) + shells +
+  return (3 * lights * kSweepBins + links) * volume + most * 2 * plane * (sizeof(float) + number) + halos +
          Bouncer::bytes(options);
 }
 
@@ -126,11 +126,11 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   border_ = zeroed_buffer(session, 2 * swept * plane_numbers(options.grid) * number_bytes(options.format),
                           "light at the border");
   if (options.blocking)
-    ways_.emplace(session, volumes_.program("sweep_ways.cl", sweep_ways_text(basis, transport)),
-                  "sweep_ways");
-  const std::size_t ways = options.blocking ? way_volumes().count() : 1;
+    links_.emplace(session, volumes_.program("sweep_links.cl", sweep_links_text(basis, transport)),
+                   "sweep_links");
+  const std::size_t links = options.blocking ? link_volumes().count() : 1;
   for (std::size_t c = 0; c < options.parts.size(); ++c)
-    through_.push_back(volumes_.make(ways, "transmittance to sweep through"));
+    through_.push_back(volumes_.make(links, "transmittance to sweep through"));
   passes_ = make_passes(options.parts);
   if (options.bounces == Bounces::one) return;
   bouncer_.emplace(session, options);
@@ -159,7 +159,7 @@ Sweeper::Passes Sweeper::make_passes(const std::vector<int>& parts) {
               Kernel(session_, sweep_program(options_, parts[c], whole_bins()),
                      whole_bins() ? "sweep_bin" : "sweep_plane"),
               {},
-              zeroed_buffer(session_, shell_bytes(options_, parts[c], c), "light for a finer cascade"),
+              zeroed_buffer(session_, halo_bytes(options_, parts[c], c), "light for a finer cascade"),
               {},
               {}};
     if (coarser > 0)
@@ -170,8 +170,8 @@ Sweeper::Passes Sweeper::make_passes(const std::vector<int>& parts) {
 }
 
 void Sweeper::block(std::size_t cascade, const Volume& geometry) {
-  ways_.value().set(geometry.memory(), through_[cascade]);
-  volumes_.launch(*ways_, 1);
+  links_.value().set(geometry.memory(), through_[cascade]);
+  volumes_.launch(*links_, 1);
 }
 
 void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
@@ -222,24 +222,24 @@ bool Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<Clpv
   if (!pass.let_in) return let_beyond_in(pass, grids[cascade].cell);
   const std::size_t swept = 3 * directions_of(pass.parts);
   const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
-  pass.let_in->set(bins_, pass.directions, passes[cascade + 1].shell, shell_of(options_.grid, offset),
+  pass.let_in->set(bins_, pass.directions, passes[cascade + 1].halo, halo_of(options_.grid, offset),
                    offset[0], offset[1], offset[2], live_, static_cast<cl_int>(before_first(pass)), border_);
   const auto rows = static_cast<std::size_t>(options_.grid) + 2;
   pass.let_in->launch({(rows + 7) / 8, rows, 3 * swept}, {1, std::min(rows, kRowGroup), 1});
   return true;
 }
 
-ClpvSweepShell Sweeper::shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const {
+ClpvSweepHalo Sweeper::halo(std::size_t cascade, const std::vector<ClpvGrid>& grids) const {
   if (cascade == 0) return {};
-  return shell_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
+  return halo_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
 }
 
 /// `lit`: light has been let in at the border.
-void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell,
+void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepHalo& halo,
                     bool lit) {
   const auto set = [&](cl_int last) {
-    pass.sweep.set(bins_, pass.directions, light.injected, light.sources, through_[cascade], border_, shell,
-                   live_, light.sums, pass.shell, last);
+    pass.sweep.set(bins_, pass.directions, light.injected, light.sources, through_[cascade], border_, halo,
+                   live_, light.sums, pass.halo, last);
   };
   if (whole_bins()) {
     set(lit ? 0 : 1);
@@ -265,9 +265,9 @@ void Sweeper::sweep(Passes& passes, std::size_t cascade, const Light& light,
                     const std::vector<ClpvGrid>& grids) {
   const bool lit = let_in(passes, cascade, grids);
   Pass& pass = passes[cascade];
-  const ClpvSweepShell kept = shell(cascade, grids);
+  const ClpvSweepHalo kept = halo(cascade, grids);
   // What lies beyond this grid is dark.
-  if (!within(kept, options_.grid)) session_.fill_zero(pass.shell, pass.shell.bytes());
+  if (!within(kept, options_.grid)) session_.fill_zero(pass.halo, pass.halo.bytes());
   sweep(pass, cascade, light, kept, lit);
 }
 

@@ -22,7 +22,7 @@ namespace clpv {
 
 static_assert(sizeof(ClpvSweepBin) == CLPV_SIZEOF_SWEEP_BIN &&
               sizeof(ClpvSweepDirection) == CLPV_SIZEOF_SWEEP_DIRECTION &&
-              sizeof(ClpvSweepShell) == CLPV_SIZEOF_SWEEP_SHELL);
+              sizeof(ClpvSweepHalo) == CLPV_SIZEOF_SWEEP_SHELL);
 
 /// Sweeps the cascades of a frame, coarsest first. Deterministic to the bit, whatever the number of compute units.
 class Sweeper {
@@ -33,7 +33,7 @@ class Sweeper {
   /// What blocks in a cascade from now on: (grid + 1)^3 samples.
   void block(std::size_t cascade, const Volume& geometry);
 
-  /// What reflects in a cascade from now on (SceneReflector), where SweepOptions::bounces are more than one; after block(),
+  /// What reflects in a cascade from now on (ReflectorVoxelizer), where SweepOptions::bounces are more than one; after block(),
   /// for what is sent back in all bounces depends on both. `reflectors` must live on.
   void reflect(std::size_t cascade, const Volume& reflectors);
 
@@ -48,7 +48,7 @@ class Sweeper {
              Volume& accumulated);
 
   /// The cells of a cascade whose light a sweep of it keeps for the next finer one; those of the finest are none.
-  ClpvSweepShell shell(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
+  ClpvSweepHalo halo(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
 
   /// Whether a launch sweeps all planes, a work-item a bin; else it sweeps one (kernels/sweep.cl).
   bool whole_bins() const;
@@ -65,7 +65,7 @@ class Sweeper {
     Buffer directions;  ///< ClpvSweepDirection
     Kernel sweep;
     std::optional<Kernel> let_in;      ///< none: no coarser cascade is beyond
-    Buffer shell;                      ///< light for the next finer cascade
+    Buffer halo;                       ///< light for the next finer cascade
     std::optional<Kernel> let_sky_in;  ///< none: nor is a sky
     Buffer sky;                        ///< what comes in along each direction, of cells of 1 m^2
   };
@@ -81,7 +81,7 @@ class Sweeper {
     const Buffer& sources;
     const Buffer& sums;  ///< may be the same
   };
-  void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepShell& shell, bool lit);
+  void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepHalo& halo, bool lit);
   void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
   void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
   void bounce_in_all(float cell);
@@ -92,10 +92,10 @@ class Sweeper {
   SweepOptions options_;
   SweepVolumes volumes_;
   Buffer bins_, light_, live_, border_;
-  std::vector<Buffer> through_;  ///< transmittance of the ways through each cascade
+  std::vector<Buffer> through_;  ///< transmittance of the links through each cascade
   bool in_place_;
   Kernel source_, collect_;
-  std::optional<Kernel> ways_, collect_for_finer_;
+  std::optional<Kernel> links_, collect_for_finer_;
   Passes passes_;
   std::optional<Bouncer> bouncer_;  ///< none: one bounce
   Passes

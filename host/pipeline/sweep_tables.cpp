@@ -35,7 +35,7 @@ bool swept_in_place(const Basis& basis, const VolumeFormat& injected) {
 }
 
 std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected) {
-  const WayVolumes ways = way_volumes();
+  const LinkVolumes links = link_volumes();
   const std::vector<SweepBin> bins = sweep_bins(1);
   std::vector<ClpvSweepBin> table;
   for (std::size_t b = 0; b < bins.size(); ++b) {
@@ -44,7 +44,8 @@ std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFo
     entry.plane_axis = bin.axis, entry.row_axis = bin.v, entry.column_axis = bin.u;
     entry.plane_sign = bin.sign[bin.axis], entry.row_sign = bin.sign[bin.v],
     entry.column_sign = bin.sign[bin.u];
-    for (std::size_t k = 0; k < bin.offset.size(); ++k) entry.ways[k] = ways.volume(bin.axis, bin.offset[k]);
+    for (std::size_t k = 0; k < bin.offset.size(); ++k)
+      entry.links[k] = links.volume(bin.axis, bin.offset[k]);
     const int volume = CLPV_SWEEP_VOLUME_OF(grid);
     entry.source = static_cast<int>(b) * volume, entry.channel = kSweepBins * volume;
     entry.plane = CLPV_SWEEP_PLANE_OF(grid), entry.row = CLPV_SWEEP_ROW_OF(grid);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `bounce` in double: the twin of kernels/bounce.cl (docs/method.md, 'More bounces').
+// Stage `bounce` in double: the CPU reference of kernels/bounce.cl (docs/method.md, 'More bounces').
 #pragma once
 
 #include <vector>

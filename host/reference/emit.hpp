@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `emit` in double: the twin of kernels/emit.cl.
+// Stage `emit` in double: the CPU reference of kernels/emit.cl.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `gather` in double: the twin of kernels/gather.cl.
+// Stage `gather` in double: the CPU reference of kernels/gather.cl.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ namespace clpv::reference {
 struct Cascade {
   ClpvGrid grid{};
   const Volume* accumulated = nullptr;
-  const std::uint8_t* hidden = nullptr;  ///< as SceneSight keeps it, where GatherOptions::gather is `visible`
+  const std::uint8_t* hidden =
+      nullptr;  ///< as CellVisibility keeps it, where GatherOptions::gather is `visible`
 };
 
 /// Irradiance [W/m^2] of red, green, blue that the cascades, finest first, put on a surface at `position` [m]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The twin of kernels/inject.cl: one texel after another in double, straight from docs/method.md, 'Injection'.
+// The CPU reference of kernels/inject.cl: one texel after another in double, straight from docs/method.md, 'Injection'.
 #pragma once
 
 #include "basis/basis.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a light sends to a point in space, before anything stands in its way: the twin of kernels/lighting.h.
+// What a light sends to a point in space, before anything stands in its way: the CPU reference of kernels/lighting.h.
 #pragma once
 
 #include <glm/glm.hpp>

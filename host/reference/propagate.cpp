@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "reference/transmit.hpp"
+#include "reference/transmittance.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -29,7 +29,7 @@ int column_of(const glm::ivec3& normal) {
 /// One number a cell, in the order of Volume::values.
 using Plane = std::vector<double>;
 
-/// 1 - B of every cell on one way into it.
+/// 1 - B of every cell on one link into it.
 Plane transmittances(const Volume& geometry, const glm::ivec3& side, const std::vector<double>& weights) {
   Plane open;
   for_each_cell(geometry.n - 1,
@@ -41,7 +41,7 @@ const FaceTransport& faces_of(const Transport& transport) {
   return std::get<FaceTransport>(transport.scheme);
 }
 
-/// The ways into a cell, each with what it lets through; empty where nothing blocks.
+/// The links into a cell, each with what it lets through; empty where nothing blocks.
 std::vector<Plane> shares_of(const Transport& transport, const Volume* geometry) {
   std::vector<Plane> shares;
   if (geometry == nullptr) return shares;
@@ -73,9 +73,9 @@ void add(const Plane& light, double factor, int channel, int i, Volume& to) {
   for (std::size_t at = 0; at < light.size(); ++at) c[at] += factor * light[at];
 }
 
-void block(Plane& light, const std::vector<Plane>& shares, std::size_t way) {
+void block(Plane& light, const std::vector<Plane>& shares, std::size_t link) {
   if (shares.empty()) return;
-  for (std::size_t at = 0; at < light.size(); ++at) light[at] *= shares[way][at];
+  for (std::size_t at = 0; at < light.size(); ++at) light[at] *= shares[link][at];
 }
 
 void add_faces(const FaceTransport& scheme, const Volume& from, const std::vector<Plane>& shares, bool clamp,

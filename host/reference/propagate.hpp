@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The twin of kernels/propagate.cl: one step after another in double, a plane at a time (a plane: one coefficient of all
+// The CPU reference of kernels/propagate.cl: one step after another in double, a plane at a time (a plane: one coefficient of all
 // cells), straight from docs/method.md, 'Propagation'.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view sees of a scene, by brute force in double: the twin of the rasteriser.
+// What a view sees of a scene, by brute force in double: the CPU reference of the rasteriser.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace clpv::reference {
 
-/// A twin's surface, and where rounding may decide otherwise.
+/// A CPU reference's surface, and where rounding may decide otherwise.
 struct Rasterized {
   SurfaceImage image;
   /// Pixels where a hair's breadth decides what they see: an edge within 1/64 pixel of their centre, two surfaces

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `shade` in double: the twin of kernels/shade.cl.
+// Stage `shade` in double: the CPU reference of kernels/shade.cl.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -9,7 +9,7 @@
 
 #include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "reference/transmit.hpp"
+#include "reference/transmittance.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -57,7 +57,7 @@ class Sweep {
         for (int bin = 0; bin < kSweepBins; ++bin) sources_.at(channel, bin, p.x, p.y, p.z) = in[bin];
       }
     });
-    let_through(std::get<std::vector<SweepWay>>(transport.scheme));
+    let_through(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
   Volume direction(int bin, const SweepBin& of, int part) const {
@@ -74,7 +74,7 @@ class Sweep {
         double value = sources_.value(channel, bin, p.x, p.y, p.z);
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
           const glm::ivec3 q = p - of.offset[k];
-          const double open = open_[way_of(of.offset[k])].value(0, 0, p.x, p.y, p.z);
+          const double open = open_[link_of(of.offset[k])].value(0, 0, p.x, p.y, p.z);
           const double carried = field.inside(q.x, q.y, q.z) ? field.value(channel, 0, q.x, q.y, q.z)
                                                              : inflow(channel, bin, part, d, q);
           value += d.taps[k] * open * carried;
@@ -86,18 +86,18 @@ class Sweep {
   }
 
  private:
-  static std::size_t way_of(const glm::ivec3& offset) {
+  static std::size_t link_of(const glm::ivec3& offset) {
     return static_cast<std::size_t>(offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1));
   }
 
-  void let_through(const std::vector<SweepWay>& ways) {
+  void let_through(const std::vector<SweepLink>& links) {
     open_.assign(27, Volume(n_, 1, 1));
-    for (const SweepWay& way : ways) {
-      Volume& open = open_[way_of(way.offset)];
+    for (const SweepLink& link : links) {
+      Volume& open = open_[link_of(link.offset)];
       for_each_cell(n_, [&](const glm::ivec3& p) {
-        open.at(0, 0, p.x, p.y, p.z) = cascade_.geometry == nullptr
-                                           ? 1
-                                           : transmitted(*cascade_.geometry, p, -way.offset, way.blocked_by);
+        open.at(0, 0, p.x, p.y, p.z) =
+            cascade_.geometry == nullptr ? 1
+                                         : transmitted(*cascade_.geometry, p, -link.offset, link.blocked_by);
       });
     }
   }
@@ -126,7 +126,7 @@ class Sweep {
   Beyond beyond_;
   int n_;
   Volume sources_;
-  std::vector<Volume> open_;  ///< of each offset, way_of()
+  std::vector<Volume> open_;  ///< of each offset, link_of()
 };
 
 /// Fluence of each bin's directions, as radiance times s^2.

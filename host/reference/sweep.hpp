@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `sweep` in double: the twin of kernels/sweep.cl and of the kernels round it (docs/method.md, 'The sweep').
+// Stage `sweep` in double: the CPU reference of kernels/sweep.cl and of the kernels round it (docs/method.md, 'The sweep').
 #pragma once
 
 #include <vector>

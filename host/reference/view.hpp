@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a view's pixels look, in double: the twin of kernels/surface.h.
+// Where a view's pixels look, in double: the CPU reference of kernels/surface.h.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A volume in double on the host, for the twins.
+// A volume in double on the host, for the CPU references.
 #pragma once
 
 #include <cstddef>

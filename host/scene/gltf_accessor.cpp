@@ -103,7 +103,7 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index, std::string 
   if (fits && accessor_->count == count.value_or(accessor_->count)) return;
   std::vector<std::string> names;
   for (const int type : types) names.push_back(type_name(type));
-  refuse(document.file, place_,
+  reject(document.file, place_,
          fmt::format("/accessors/{}, {} of {}, componentType {}{}", index, accessor_->count,
                      type_name(accessor_->type), accessor_->componentType,
                      accessor_->normalized ? ", normalized" : ""),
@@ -116,12 +116,12 @@ std::span<const std::uint8_t> GltfAccessor::elements(int view, std::size_t offse
                                                      std::size_t stride, std::size_t bytes) const {
   const auto all = document_->view(view);
   if (stride < bytes) {
-    refuse(document_->file, place_, fmt::format("elements of {} bytes", bytes),
+    reject(document_->file, place_, fmt::format("elements of {} bytes", bytes),
            fmt::format("at most the byteStride {} of /bufferViews/{}", stride, view));
   }
   const std::size_t end = offset + (count - 1) * stride + bytes;
   if (end > all.size()) {
-    refuse(document_->file, place_, fmt::format("{} elements up to byte {}", count, end),
+    reject(document_->file, place_, fmt::format("{} elements up to byte {}", count, end),
            fmt::format("at most the {} bytes of /bufferViews/{}", all.size(), view));
   }
   return all.subspan(offset, end - offset);
@@ -151,7 +151,7 @@ double GltfAccessor::number(std::size_t element, int component) const {
 double GltfAccessor::finite(std::size_t element, int component) const {
   const double value = number(element, component);
   if (!std::isfinite(value)) {
-    refuse(document_->file, place_,
+    reject(document_->file, place_,
            fmt::format("{} in component {} of element {}", value, component, element), "finite numbers");
   }
   return value;
@@ -168,13 +168,13 @@ void check_accessors(const GltfDocument& document) {
     const GltfAccessor accessor(document, static_cast<int>(a));
     total += accessor.sparse_count_;
     if (total > bounds::kSparseElements) {
-      refuse(document.file, accessor.place_, fmt::format("{} sparse elements so far", total),
+      reject(document.file, accessor.place_, fmt::format("{} sparse elements so far", total),
              fmt::format("at most {} in all", bounds::kSparseElements));
     }
     for (std::size_t i = 0; i < accessor.sparse_count_; ++i) {
       const std::uint32_t element = accessor.replaced(i);
       if (element >= accessor.count() || (i > 0 && element <= accessor.replaced(i - 1))) {
-        refuse(document.file, accessor.place_ + "/sparse/indices", fmt::format("index {} at {}", element, i),
+        reject(document.file, accessor.place_ + "/sparse/indices", fmt::format("index {} at {}", element, i),
                fmt::format("ascending indices below {}", accessor.count()));
       }
     }

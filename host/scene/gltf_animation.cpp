@@ -43,7 +43,7 @@ class AnimationReader {
       if (target == kAnimated.end()) continue;  // of an extension that is not read
       const int count = static_cast<int>(animation.samplers.size());
       if (channel.sampler >= count) {
-        refuse(document_.file, place + "/channels", fmt::format("sampler {}", channel.sampler),
+        reject(document_.file, place + "/channels", fmt::format("sampler {}", channel.sampler),
                fmt::format("0 to {}, the samplers of {}", count - 1, place));
       }
       const std::size_t components = components_of(*target, channel.target_node);
@@ -74,7 +74,7 @@ class AnimationReader {
 
   void assign(int node, const Target& target, const CurvePointer& curve, const std::string& place) {
     if (target.type != TINYGLTF_TYPE_SCALAR && !entry(document_.model.nodes, node).matrix.empty()) {
-      refuse(document_.file, fmt::format("/nodes/{}/matrix", node),
+      reject(document_.file, fmt::format("/nodes/{}/matrix", node),
              fmt::format("a matrix, and a {} by {}", target.path, place), "translation, rotation and scale");
     }
     CurvePointer& taken = nodes_[node].*target.curve;
@@ -105,7 +105,7 @@ class AnimationReader {
   void reserve(std::uint64_t numbers, const std::string& place) {
     numbers_ += numbers;
     if (numbers_ > bounds::kKeyNumbers) {
-      refuse(document_.file, place, fmt::format("{} times and values of all animations so far", numbers_),
+      reject(document_.file, place, fmt::format("{} times and values of all animations so far", numbers_),
              fmt::format("at most {}", bounds::kKeyNumbers));
     }
   }
@@ -115,7 +115,7 @@ class AnimationReader {
     for (std::size_t i = 0; i < input.count(); ++i) {
       const double time = input.finite(i, 0);
       if (i == 0 ? time < 0 : time <= curve.times.back()) {
-        refuse(document_.file, place, fmt::format("{} s at {}", time, i),
+        reject(document_.file, place, fmt::format("{} s at {}", time, i),
                i == 0 ? "times from 0 s on" : fmt::format("more than the {} s before", curve.times.back()));
       }
       curve.times.push_back(time);
@@ -129,7 +129,7 @@ class AnimationReader {
       double* v = &curve.values[4 * element];
       const double length = glm::length(glm::dquat(v[3], v[0], v[1], v[2]));
       if (length < 0.5) {
-        refuse(document_.file, place, fmt::format("a quaternion of length {} at {}", length, element),
+        reject(document_.file, place, fmt::format("a quaternion of length {} at {}", length, element),
                "unit quaternions");
       }
       for (int i = 0; i < 4 && parts == 1; ++i) v[i] /= length;

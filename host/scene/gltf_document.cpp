@@ -24,19 +24,19 @@ bool is_glb(const Bytes& bytes) {
 std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
   constexpr std::size_t kChunkHeader = 8, kText = 12 + kChunkHeader;
   if (bytes.size() < kText)
-    refuse(file, {}, fmt::format("a .glb of {} bytes", bytes.size()), "at least 20: it is truncated");
+    reject(file, {}, fmt::format("a .glb of {} bytes", bytes.size()), "at least 20: it is truncated");
   if (const auto version = little_endian_word(bytes, 4); version != 2)
-    refuse(file, {}, fmt::format(".glb version {}", version), "version 2");
+    reject(file, {}, fmt::format(".glb version {}", version), "version 2");
   const std::size_t length = little_endian_word(bytes, 8), size = little_endian_word(bytes, 12);
   const std::size_t end = kText + size;
   if (length > bytes.size() || end > length) {
-    refuse(
+    reject(
         file, {},
         fmt::format("a .glb of {} bytes, by its header {}, its first chunk {}", bytes.size(), length, size),
         "chunks within the file: it is truncated");
   }
   if (end + kChunkHeader <= length && end + kChunkHeader + little_endian_word(bytes, end) > length) {
-    refuse(file, {}, fmt::format("a second .glb chunk of {} bytes", little_endian_word(bytes, end)),
+    reject(file, {}, fmt::format("a second .glb chunk of {} bytes", little_endian_word(bytes, end)),
            fmt::format("at most {}, the rest of the file", length - end - kChunkHeader));
   }
   return {reinterpret_cast<const char*>(bytes.data()) + kText, size};
@@ -73,7 +73,7 @@ bool read_next_buffer(Bytes* bytes, std::string*, const std::string&, void* user
   files.bytes_left -= bytes->size();
   const std::size_t wanted = buffer["byteLength"];
   if (bytes->size() < wanted) {
-    refuse(file, place + "/byteLength", fmt::format("{}", wanted),
+    reject(file, place + "/byteLength", fmt::format("{}", wanted),
            fmt::format("at most the {} bytes there are: truncated?", bytes->size()));
   }
   bytes->resize(wanted);
@@ -93,7 +93,7 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
-/// The entry that tinygltf stopped at: of the lists in which it refuses what we do not, in its order.
+/// The entry that tinygltf stopped at: of the lists in which it rejects what we do not, in its order.
 std::string place_of_failure(const tinygltf::Model& model, const json& document) {
   const std::pair<std::string, std::size_t> read[] = {
       {"/buffers", model.buffers.size()},
@@ -120,7 +120,7 @@ void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) 
                           ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size)
                           : loader.LoadASCIIFromString(&document.model, &error, &warning,
                                                        reinterpret_cast<const char*>(bytes.data()), size, "");
-  if (!loaded) refuse(document.file, place_of_failure(document.model, parsed), shown(error), "glTF 2.0");
+  if (!loaded) reject(document.file, place_of_failure(document.model, parsed), shown(error), "glTF 2.0");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>

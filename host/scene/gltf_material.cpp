@@ -50,7 +50,7 @@ std::uint32_t wrap_of(int gltf) {
 std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set) {
   const tinygltf::Texture& source = entry(document.model.textures, texture);
   if (source.source < 0) {
-    refuse(document.file, fmt::format("/textures/{}", texture), "no source", "a source: a PNG or JPEG image");
+    reject(document.file, fmt::format("/textures/{}", texture), "no source", "a source: a PNG or JPEG image");
   }
   TextureRequest wanted{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
   if (source.sampler >= 0) {
@@ -62,7 +62,7 @@ std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& se
   const auto index = static_cast<std::uint32_t>(found - set.textures.begin());
   if (found != set.textures.end()) return index;
   if (index == bounds::kTextures) {
-    refuse(document.file, fmt::format("/textures/{}", texture), "one more texture in use",
+    reject(document.file, fmt::format("/textures/{}", texture), "one more texture in use",
            fmt::format("at most {}", bounds::kTextures));
   }
   set.textures.push_back(wanted);

@@ -17,7 +17,7 @@ std::vector<double> stored_weights(const GltfDocument& document, const TreeNode&
   const std::vector<double>& given = own ? source.weights : entry(document.model.meshes, source.mesh).weights;
   if (given.empty()) return std::vector<double>(targets, 0.0);
   if (given.size() != targets) {
-    refuse(
+    reject(
         document.file,
         own ? fmt::format("/nodes/{}/weights", node.index) : fmt::format("/meshes/{}/weights", source.mesh),
         fmt::format("{} weights", given.size()), fmt::format("one for each of {} morph targets", targets));
@@ -30,7 +30,7 @@ class Appender {
   Appender(const GltfDocument& document, Scene& scene, Motion& motion, Notes& notes)
       : document_(document), scene_(scene), motion_(motion), notes_(notes), skins_(document, motion.tree) {}
 
-  /// The primitive at all these nodes; refused before any is made where there is no room.
+  /// The primitive at all these nodes; rejected before any is made where there is no room.
   void append(const std::shared_ptr<const LocalPrimitive>& primitive, const std::vector<std::size_t>& nodes,
               PosedTree& posed) {
     reserve(*primitive, nodes.size());
@@ -48,7 +48,7 @@ class Appender {
     const std::uint64_t vertices = scene_.vertices.size() + count * primitive.vertices.size();
     const std::uint64_t triangles = scene_.triangles.size() + count * primitive.triangles.size();
     if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
-      refuse(document_.file, primitive.place,
+      reject(document_.file, primitive.place,
              fmt::format("{} vertices and {} triangles so far, this one standing at {} nodes", vertices,
                          triangles, count),
              fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
@@ -78,7 +78,7 @@ class Appender {
     for (std::size_t i = 0; i < primitive.influences.size(); ++i) {
       for (const std::uint16_t joint : primitive.influences[i].joints) {
         if (joint < joints) continue;
-        refuse(document_.file, primitive.place + "/attributes/JOINTS_0",
+        reject(document_.file, primitive.place + "/attributes/JOINTS_0",
                fmt::format("joint {} of vertex {}", joint, primitive.vertices[i].source),
                fmt::format("0 to {}, the joints of /skins/{}", joints - 1, skin));
       }
@@ -102,7 +102,7 @@ class Appender {
 void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
   const auto& primitives = entry(document.model.meshes, mesh).primitives;
   if (primitives[index].targets.size() != primitives[0].targets.size()) {
-    refuse(document.file, fmt::format("/meshes/{}/primitives/{}/targets", mesh, index),
+    reject(document.file, fmt::format("/meshes/{}/primitives/{}/targets", mesh, index),
            fmt::format("{} morph targets", primitives[index].targets.size()),
            fmt::format("as many as the mesh's first primitive has, {}", primitives[0].targets.size()));
   }

@@ -23,7 +23,7 @@ std::vector<int> find_parents(const GltfDocument& document) {
     for (const int child : document.model.nodes[i].children) {
       int& parent = parents[static_cast<std::size_t>(child)];
       if (parent != kNone) {
-        refuse(document.file, place_of(child), fmt::format("parents {} and {}", parent, i),
+        reject(document.file, place_of(child), fmt::format("parents {} and {}", parent, i),
                "one parent at most");
       }
       parent = static_cast<int>(i);
@@ -39,7 +39,7 @@ Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index)
   if (!node.rotation.empty()) {  // glTF: x, y, z, w
     const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
     if (glm::length(rotation) < 0.5) {
-      refuse(file, place_of(index) + "/rotation",
+      reject(file, place_of(index) + "/rotation",
              fmt::format("a quaternion of length {}", glm::length(rotation)), "a unit quaternion");
     }
     pose.rotation = glm::normalize(rotation);
@@ -64,7 +64,7 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
     for (std::size_t i = 0; i < parents.size(); ++i) {
       if (parents[i] == kNone) roots.push_back(static_cast<int>(i));
     }
-    if (roots.empty() && !parents.empty()) refuse(document.file, "/nodes", "a cycle", "trees");
+    if (roots.empty() && !parents.empty()) reject(document.file, "/nodes", "a cycle", "trees");
     return roots;
   }
   const int chosen = std::max(document.model.defaultScene, 0);
@@ -72,9 +72,9 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
   std::set<int> seen;
   for (const int node : entry(document.model.scenes, chosen).nodes) {
     if (const int parent = entry(parents, node); parent != kNone)
-      refuse(document.file, place, fmt::format("node {}, a child of node {}", node, parent), "root nodes");
+      reject(document.file, place, fmt::format("node {}, a child of node {}", node, parent), "root nodes");
     if (!seen.insert(node).second)
-      refuse(document.file, place, fmt::format("node {} twice", node), "each node once");
+      reject(document.file, place, fmt::format("node {} twice", node), "each node once");
     roots.push_back(node);
   }
   return roots;
@@ -85,7 +85,7 @@ std::vector<glm::dmat4> read_inverse_binds(const GltfDocument& document, int acc
   if (accessor < 0) return std::vector<glm::dmat4>(joints, glm::dmat4(1.0));
   const GltfAccessor from(document, accessor, place, {TINYGLTF_TYPE_MAT4}, kFloats);
   if (from.count() < joints) {
-    refuse(document.file, place, fmt::format("{} matrices", from.count()),
+    reject(document.file, place, fmt::format("{} matrices", from.count()),
            fmt::format("one for each of {} joints", joints));
   }
   std::vector<glm::dmat4> made(joints);
@@ -115,7 +115,7 @@ NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves
     const Pending next = pending.back();
     pending.pop_back();
     if (next.depth > bounds::kNodeDepth) {
-      refuse(document.file, place_of(next.index), fmt::format("{} levels deep", next.depth),
+      reject(document.file, place_of(next.index), fmt::format("{} levels deep", next.depth),
              fmt::format("at most {}", bounds::kNodeDepth));
     }
     TreeNode node = make_node(document, next.index, curves);
@@ -140,13 +140,13 @@ std::shared_ptr<const Skin> SkinReader::read(int index) {
   const std::string place = fmt::format("/skins/{}", index);
   joints_ += source.joints.size();
   if (joints_ > bounds::kJoints) {
-    refuse(document_.file, place + "/joints", fmt::format("{} joints so far", joints_),
+    reject(document_.file, place + "/joints", fmt::format("{} joints so far", joints_),
            fmt::format("at most {} in all skins", bounds::kJoints));
   }
   Skin skin;
   for (const int joint : source.joints) {
     const std::optional<std::size_t> node = entry(in_tree_, joint);
-    if (!node) refuse(document_.file, place + "/joints", fmt::format("node {}", joint), "nodes of the scene");
+    if (!node) reject(document_.file, place + "/joints", fmt::format("node {}", joint), "nodes of the scene");
     skin.joints.push_back(*node);
   }
   skin.inverse_binds = read_inverse_binds(document_, source.inverseBindMatrices, skin.joints.size(),

@@ -50,7 +50,7 @@ class PrimitiveReader {
       return attribute(source_.attributes, "/attributes", name, types, count);
     };
     const auto position = find("POSITION", {TINYGLTF_TYPE_VEC3}, std::nullopt);
-    if (!position) refuse_here("no attribute POSITION", "POSITION, a VEC3");
+    if (!position) reject_here("no attribute POSITION", "POSITION, a VEC3");
     const std::size_t count = position->count();
     Attributes made{*position, find("NORMAL", {TINYGLTF_TYPE_VEC3}, count), std::nullopt,
                     find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count), std::nullopt};
@@ -67,21 +67,21 @@ class PrimitiveReader {
     return made;
   }
 
-  /// Of a mode that has triangles. Refuses what the mode or the room left does not allow.
+  /// Of a mode that has triangles. Rejects what the mode or the room left does not allow.
   std::uint64_t triangle_count(const Attributes& from, int mode, const Room& room) const {
     const std::uint64_t corners = from.corners();
     const bool list = mode == TINYGLTF_MODE_TRIANGLES;
     if (corners < 3 || (list && corners % 3 != 0)) {
-      refuse_here(fmt::format("{} corners", corners), list ? "a multiple of 3, at least 3" : "at least 3");
+      reject_here(fmt::format("{} corners", corners), list ? "a multiple of 3, at least 3" : "at least 3");
     }
     const std::uint64_t triangles = list ? corners / 3 : corners - 2;
     if (triangles > room.triangles) {
-      refuse_here(fmt::format("{} more triangles", triangles),
+      reject_here(fmt::format("{} more triangles", triangles),
                   fmt::format("{} left of {} in all", room.triangles, bounds::kTriangles));
     }
     const std::uint64_t stored = from.position.count(), split = from.normal ? 0 : 3 * triangles;
     if (stored > bounds::kVertices || split > room.vertices) {
-      refuse_here(fmt::format("{} vertices", std::max(stored, split)),
+      reject_here(fmt::format("{} vertices", std::max(stored, split)),
                   fmt::format("{} left of {} in all", room.vertices, bounds::kVertices));
     }
     return triangles;
@@ -99,7 +99,7 @@ class PrimitiveReader {
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t source = from.indices ? from.indices->index(corner[k]) : corner[k];
         if (source >= stored) {
-          refuse_here(fmt::format("index {} at {}", source, corner[k]), fmt::format("0 to {}", stored - 1));
+          reject_here(fmt::format("index {} at {}", source, corner[k]), fmt::format("0 to {}", stored - 1));
         }
         if (slots[source] == kNoSlot) {
           slots[source] = static_cast<std::uint32_t>(to.vertices.size());
@@ -120,7 +120,7 @@ class PrimitiveReader {
     };
     const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kNumbers);
     if (joints.has_value() != weights.has_value()) {
-      refuse(document_.file, place_ + "/attributes",
+      reject(document_.file, place_ + "/attributes",
              joints ? "JOINTS_0 without WEIGHTS_0" : "WEIGHTS_0 without JOINTS_0", "both or none");
     }
     if (!joints) return;
@@ -131,7 +131,7 @@ class PrimitiveReader {
       for (int i = 0; i < 4; ++i) {
         const double weight = weights->number(vertex.source, i);
         if (!(weight >= 0 && weight <= kMostWeight)) {
-          refuse(document_.file, place_ + "/attributes/WEIGHTS_0",
+          reject(document_.file, place_ + "/attributes/WEIGHTS_0",
                  fmt::format("{} in component {} of vertex {}", weight, i, vertex.source),
                  fmt::format("0 to {}", kMostWeight));
         }
@@ -155,7 +155,7 @@ class PrimitiveReader {
         if (!found) return made;
         const std::uint64_t numbers = 3 * to.vertices.size();
         if (numbers > room.morph_numbers) {
-          refuse(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
+          reject(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
                  fmt::format("{} left of {} in all", room.morph_numbers, bounds::kMorphNumbers));
         }
         room.morph_numbers -= numbers;
@@ -189,7 +189,7 @@ class PrimitiveReader {
       made.uv =
           glm::vec2(mapping_.transform * glm::dvec3(from.uv->finite(index, 0), from.uv->finite(index, 1), 1));
       if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
-        refuse_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
+        reject_here(fmt::format("vertex {} at texture coordinates ({}, {})", index, made.uv.x, made.uv.y),
                     "finite numbers");
       }
     }
@@ -198,8 +198,8 @@ class PrimitiveReader {
     return made;
   }
 
-  [[noreturn]] void refuse_here(const std::string& found, const std::string& allowed) const {
-    refuse(document_.file, place_, found, allowed);
+  [[noreturn]] void reject_here(const std::string& found, const std::string& allowed) const {
+    reject(document_.file, place_, found, allowed);
   }
 
   const GltfDocument& document_;

@@ -28,7 +28,7 @@ constexpr std::size_t kTargets = 1024;  // of a primitive
 constexpr double kAboveZero = 1e-9;     // stands for "greater than 0"
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
 
-/// Extensions that are read. Whatever else a file requires is refused by name.
+/// Extensions that are read. Whatever else a file requires is rejected by name.
 constexpr std::array kExtensions = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
                                     "KHR_materials_emissive_strength"};
 
@@ -193,15 +193,15 @@ Rules animation_rules() {
 
 void check_asset(const json& document, const std::string& file) {
   const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
-  if (!version.starts_with("2.")) refuse(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
+  if (!version.starts_with("2.")) reject(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
   // What a loader must know to read the model; `version` alone promises that a reader of any 2.x does.
   const std::string least = document["asset"].value("minVersion", "2.0");
-  if (least != "2.0") refuse(file, "/asset/minVersion", "'" + least.substr(0, 60) + "'", "2.0");
+  if (least != "2.0") reject(file, "/asset/minVersion", "'" + least.substr(0, 60) + "'", "2.0");
   if (!document.contains("extensionsRequired")) return;
   for (std::size_t i = 0; i < document["extensionsRequired"].size(); ++i) {
     const std::string& name = document["extensionsRequired"][i].get_ref<const std::string&>();
     if (!reads_extension(name)) {
-      refuse(file, fmt::format("/extensionsRequired/{}", i),
+      reject(file, fmt::format("/extensionsRequired/{}", i),
              "'" + name.substr(0, 80) + "', which is not supported",
              fmt::format("{}", fmt::join(kExtensions, ", ")));
     }
@@ -221,10 +221,10 @@ void check_buffers(const json& document, const std::string& file) {
   std::uint64_t total = 0;
   for_each_in(document, "buffers", [&](const json& buffer, const std::string& place) {
     if (!buffer.contains("uri") && total > 0)
-      refuse(file, place, "no uri", "a uri, but for the first buffer of a .glb");
+      reject(file, place, "no uri", "a uri, but for the first buffer of a .glb");
     total += buffer["byteLength"].get<std::uint64_t>();
     if (total > bounds::kBufferBytes) {
-      refuse(file, place + "/byteLength", fmt::format("{} bytes of buffers so far", total),
+      reject(file, place + "/byteLength", fmt::format("{} bytes of buffers so far", total),
              fmt::format("at most {} in all", bounds::kBufferBytes));
     }
   });
@@ -237,20 +237,20 @@ void check_views(const json& document, const std::string& file) {
     const std::size_t buffer = view["buffer"];
     const std::uint64_t size = document["buffers"][buffer]["byteLength"];
     if (end > size) {
-      refuse(file, place, fmt::format("bytes up to {}", end),
+      reject(file, place, fmt::format("bytes up to {}", end),
              fmt::format("at most the {} of /buffers/{}", size, buffer));
     }
   });
 }
 
-/// tinygltf refuses indices without a view, and does not say where.
+/// tinygltf rejects indices without a view, and does not say where.
 void check_indices(const json& document, const std::string& file) {
   for_each_in(document, "meshes", [&](const json& mesh, const std::string& place) {
     for (const json& primitive : mesh["primitives"]) {
       if (!primitive.contains("indices")) continue;
       const std::size_t accessor = primitive["indices"];
       if (document["accessors"][accessor].contains("bufferView")) continue;
-      refuse(file, place + "/primitives",
+      reject(file, place + "/primitives",
              fmt::format("indices of /accessors/{}, which has no bufferView", accessor),
              "an accessor with a bufferView");
     }
@@ -263,7 +263,7 @@ void check_animations(const json& document, const std::string& file) {
     if (!animation.contains("extensions")) return;
     const std::size_t copied = animation["samplers"].size() * animation["extensions"].dump().size();
     if (copied > bounds::kJsonValues) {
-      refuse(file, place + "/extensions", fmt::format("{} bytes, for all samplers", copied),
+      reject(file, place + "/extensions", fmt::format("{} bytes, for all samplers", copied),
              fmt::format("at most {}", bounds::kJsonValues));
     }
   });

@@ -23,7 +23,7 @@ class ViewReader {
       return false;
     }
     if (scene_.cameras.size() == bounds::kCameras) {
-      refuse(document_.file, place_of(node), "one more camera", fmt::format("at most {}", bounds::kCameras));
+      reject(document_.file, place_of(node), "one more camera", fmt::format("at most {}", bounds::kCameras));
     }
     Camera made;
     made.name = unique(given.name.empty() ? source.name : given.name, "camera", camera_names_);
@@ -37,7 +37,7 @@ class ViewReader {
   void light(int node, const tinygltf::Node& source, int index, const glm::dmat4& to_world) {
     const tinygltf::Light& given = entry(document_.model.lights, index);
     if (scene_.lights.size() == bounds::kLights) {
-      refuse(document_.file, place_of(node), "one more light", fmt::format("at most {}", bounds::kLights));
+      reject(document_.file, place_of(node), "one more light", fmt::format("at most {}", bounds::kLights));
     }
     Light made;
     made.name = unique(given.name.empty() ? source.name : given.name, "light", light_names_);
@@ -52,7 +52,7 @@ class ViewReader {
     if (kind == LightKind::spot) {
       const double inner = given.spot.innerConeAngle, outer = given.spot.outerConeAngle;
       if (inner >= outer) {
-        refuse(document_.file, fmt::format("/extensions/KHR_lights_punctual/lights/{}/spot", index),
+        reject(document_.file, fmt::format("/extensions/KHR_lights_punctual/lights/{}/spot", index),
                fmt::format("innerConeAngle {} and outerConeAngle {}", inner, outer), "inner less than outer");
       }
       set_cone(data, inner, outer);

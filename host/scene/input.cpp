@@ -44,17 +44,17 @@ std::string shown(std::string_view text) {
 
 fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::string& file,
                      std::string_view place) {
-  const auto refuse_uri = [&](const char* why) {
-    refuse(file, place, fmt::format("URI '{}', {}", shown(uri), why),
+  const auto reject_uri = [&](const char* why) {
+    reject(file, place, fmt::format("URI '{}', {}", shown(uri), why),
            "a relative path to a file in the model's folder or below");
   };
   const std::optional<std::string> decoded = percent_decoded(uri);
-  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) refuse_uri("malformed");
+  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) reject_uri("malformed");
   std::error_code failure;
   const fs::path real = fs::canonical(folder / *decoded, failure);
-  if (failure) refuse_uri("no such file");
-  if (!lies_in(real, fs::canonical(folder))) refuse_uri("which leaves the model's folder");
-  if (!fs::is_regular_file(real)) refuse_uri(fs::is_directory(real) ? "a folder" : "no regular file");
+  if (failure) reject_uri("no such file");
+  if (!lies_in(real, fs::canonical(folder))) reject_uri("which leaves the model's folder");
+  if (!fs::is_regular_file(real)) reject_uri(fs::is_directory(real) ? "a folder" : "no regular file");
   return real;
 }
 

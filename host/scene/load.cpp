@@ -40,7 +40,7 @@ void check_camera_lights(const Scene& scene) {
   for (const Light& light : scene.lights) names.push_back("'" + light.name + "'");
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     if (!scene.cameras[i].light.empty() && scene.lights_for(scene.cameras[i]).empty()) {
-      refuse(scene.path, fmt::format("/cameras/{}/light", i), "'" + scene.cameras[i].light + "'",
+      reject(scene.path, fmt::format("/cameras/{}/light", i), "'" + scene.cameras[i].light + "'",
              names.empty() ? "none, since there are no lights" : fmt::format("{}", fmt::join(names, ", ")));
     }
   }
@@ -114,10 +114,10 @@ void MovingScene::load_described(const std::filesystem::path& path, const std::f
   description_ = read_scene_file(path);
   DescribedViews views = views_at(description_, 0);
   const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
-  if (model.empty()) refuse(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
+  if (model.empty()) reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
   std::error_code unknown;
   if (replacement.empty() && !std::filesystem::exists(model, unknown)) {
-    refuse(path.string(), "/model", "no file '" + model.string() + "'",
+    reject(path.string(), "/model", "no file '" + model.string() + "'",
            "an existing file; option model says where it lies");
   }
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
@@ -146,7 +146,7 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
     scene_ = load_gltf(model, 1.0, motion_, notes);
     scene_.path = model.string();
   } else {
-    refuse(path.string(), {}, "the extension '" + extension + "'", ".json (a scene file), .gltf or .glb");
+    reject(path.string(), {}, "the extension '" + extension + "'", ".json (a scene file), .gltf or .glb");
   }
   if (motion_.empty()) motion_.tree = {};  // of no use any more
   scene_.moving = parts_of(motion_.meshes);

@@ -88,7 +88,7 @@ Vertex placed(const LocalVertex& local, const glm::dmat4& to_world, const glm::d
   const glm::dvec3 p(to_world * glm::dvec4(local.position, 1));
   for (int i = 0; i < 3; ++i) {
     if (!(std::abs(p[i]) <= bounds::kCoordinate)) {
-      refuse(tree.file, instance.primitive->place,
+      reject(tree.file, instance.primitive->place,
              fmt::format("vertex {} at ({}, {}, {}) m, placed by /nodes/{}", local.source, p.x, p.y, p.z,
                          tree.nodes[instance.node].index),
              fmt::format("coordinates within +-{} m", bounds::kCoordinate));
@@ -140,7 +140,7 @@ void store(float (&to)[3], const glm::vec3& from) {
 glm::vec3 position(const NodePlace& place) {
   const glm::dvec3 p(place.to_world[3]);
   if (glm::any(glm::greaterThan(glm::abs(p), glm::dvec3(bounds::kCoordinate)))) {
-    refuse(place.file, place.node, fmt::format("({}, {}, {}) m", p.x, p.y, p.z),
+    reject(place.file, place.node, fmt::format("({}, {}, {}) m", p.x, p.y, p.z),
            fmt::format("coordinates within +-{} m", bounds::kCoordinate));
   }
   return glm::vec3(p);
@@ -150,7 +150,7 @@ glm::vec3 axis(const NodePlace& place, const glm::dvec3& local, const char* what
   const glm::dvec3 direction = glm::dmat3(place.to_world) * local;
   const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length)) {
-    refuse(place.file, place.node + what, "a transform that leaves no direction", "scales other than 0");
+    reject(place.file, place.node + what, "a transform that leaves no direction", "scales other than 0");
   }
   return glm::vec3(direction / length);
 }
@@ -191,7 +191,7 @@ void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string&
   const glm::dvec3 up(axis(place, {0, 1, 0}, "/camera")), forward(camera.forward);
   const glm::dvec3 across = up - forward * glm::dot(forward, up);  // a sheared node tilts it
   if (glm::length(across) < 1e-6)
-    refuse(file, place.node, "a camera's transform without up", "up across forward");
+    reject(file, place.node, "a camera's transform without up", "up across forward");
   camera.up = glm::vec3(glm::normalize(across));
 }
 

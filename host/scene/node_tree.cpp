@@ -29,7 +29,7 @@ glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double se
   if (node.curves.rotation) {
     pose.rotation = rotation_at(*node.curves.rotation, seconds);
     if (!(glm::length(*pose.rotation) > 0.5)) {
-      refuse(tree.file, fmt::format("/nodes/{}/rotation", node.index),
+      reject(tree.file, fmt::format("/nodes/{}/rotation", node.index),
              fmt::format("a spline through no rotation at {} s", seconds), "a way through rotations");
     }
   }
@@ -53,7 +53,7 @@ std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
     const glm::dmat4& above = node.parent ? made[*node.parent] : root;
     made.push_back(above * local_transform(*this, node, seconds));
     if (!finite(made.back())) {
-      refuse(file, fmt::format("/nodes/{}", node.index), "a transform that overflows", "finite transforms");
+      reject(file, fmt::format("/nodes/{}", node.index), "a transform that overflows", "finite transforms");
     }
   }
   return made;

@@ -108,25 +108,25 @@ glm::dvec3 vector_in(const json& object, const char* key) {
 glm::dvec3 direction_in(const json& object, const char* key, const std::string& file,
                         const std::string& place) {
   const glm::dvec3 v = vector_in(object, key);
-  if (glm::length(v) < kTiny) refuse(file, pointer_to(place, key), "a vector of no length", "a direction");
+  if (glm::length(v) < kTiny) reject(file, pointer_to(place, key), "a vector of no length", "a direction");
   return glm::normalize(v);
 }
 
 Camera read_camera(const json& given, double scale, const std::string& file, const std::string& place) {
   for (const char* key : {"eye", "target"}) {
-    if (!given.contains(key)) refuse(file, pointer_to(place, key), "nothing", "a point, here or in keys");
+    if (!given.contains(key)) reject(file, pointer_to(place, key), "nothing", "a point, here or in keys");
   }
   Camera made;
   made.name = given["name"];
   made.light = given.value("light", std::string());
   const glm::dvec3 eye = vector_in(given, "eye"), towards = vector_in(given, "target") - eye;
   if (glm::length(towards) < kTiny)
-    refuse(file, place + "/target", "the eye itself", "a point away from eye");
+    reject(file, place + "/target", "the eye itself", "a point away from eye");
   const glm::dvec3 forward = glm::normalize(towards);
   const glm::dvec3 up = given.contains("up") ? direction_in(given, "up", file, place) : glm::dvec3(0, 1, 0);
   const glm::dvec3 across = up - forward * glm::dot(forward, up);
   if (glm::length(across) < kTiny) {
-    refuse(file, place + "/up",
+    reject(file, place + "/up",
            given.contains("up") ? "a vector along the line of sight" : "nothing, and a vertical view",
            "a vector across the line of sight");
   }
@@ -162,14 +162,14 @@ void check_light_keys(const json& given, LightKind light_kind, const std::string
   const std::string kind(name_of(light_kind));
   for (const std::string& key : keys.required) {
     if (!given.contains(key))
-      refuse(file, pointer_to(place, key), "nothing", "a value: a " + kind + " light needs it");
+      reject(file, pointer_to(place, key), "nothing", "a value: a " + kind + " light needs it");
   }
   std::set<std::string> allowed = {"name", "kind", "colour"};
   allowed.insert(keys.required.begin(), keys.required.end());
   allowed.insert(keys.optional.begin(), keys.optional.end());
   for (const auto& [key, value] : given.items()) {
     if (!allowed.contains(key)) {
-      refuse(file, pointer_to(place, key), "a key that a " + kind + " light has not",
+      reject(file, pointer_to(place, key), "a key that a " + kind + " light has not",
              fmt::format("{}", fmt::join(allowed, ", ")));
     }
   }
@@ -199,7 +199,7 @@ Light read_light(const json& given, double scale, const std::string& file, const
     const double inner = given.value("inner_cone_degrees", kInnerCone);
     const double outer = given.value("outer_cone_degrees", kOuterCone);
     if (inner >= outer) {
-      refuse(file, place, fmt::format("inner_cone_degrees {} and outer_cone_degrees {}", inner, outer),
+      reject(file, place, fmt::format("inner_cone_degrees {} and outer_cone_degrees {}", inner, outer),
              "inner less than outer");
     }
     set_cone(data, inner * kRadians, outer * kRadians);
@@ -213,7 +213,7 @@ void check_names(const std::vector<Named>& list, const std::string& file, const 
   std::set<std::string> seen;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (!list[i].name.empty() && !seen.insert(list[i].name).second) {
-      refuse(file, fmt::format("{}/{}/name", place, i), "'" + list[i].name + "' again", "names that differ");
+      reject(file, fmt::format("{}/{}/name", place, i), "'" + list[i].name + "' again", "names that differ");
     }
   }
 }
@@ -246,19 +246,19 @@ json entries_at(const std::vector<KeyedEntry>& entries, double seconds) {
 /// A constant, or a map that lies beside the scene file or below.
 Sky described_sky(const json& given, const std::filesystem::path& path, const std::string& file) {
   if (given.contains("radiance") == given.contains("map")) {
-    refuse(file, "/sky", given.contains("map") ? "radiance and map" : "neither radiance nor map",
+    reject(file, "/sky", given.contains("map") ? "radiance and map" : "neither radiance nor map",
            "one of them");
   }
   if (given.contains("radiance")) {
     for (const char* key : {"scale", "rotation_degrees"}) {
       if (given.contains(key))
-        refuse(file, pointer_to("/sky", key), "a value", "none, where the sky is even");
+        reject(file, pointer_to("/sky", key), "a value", "none, where the sky is even");
     }
     const glm::vec3 above(vector_in(given, "radiance"));
     return given.contains("ground") ? parted_sky(above, glm::vec3(vector_in(given, "ground")))
                                     : even_sky(above);
   }
-  if (given.contains("ground")) refuse(file, "/sky/ground", "a value", "none, beside a map");
+  if (given.contains("ground")) reject(file, "/sky/ground", "a value", "none, beside a map");
   // Absolute first: a bare name has no folder.
   const auto folder = std::filesystem::canonical(std::filesystem::absolute(path).parent_path());
   return read_sky(resolve_uri(folder, given["map"], file, "/sky/map"), given.value("scale", 1.0),
@@ -284,7 +284,7 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
   if (parsed.contains("model")) {
     const std::string model = parsed["model"];
     if (model.empty() || model.find('\0') != std::string::npos)
-      refuse(scene.file, "/model", "no path", "a path to a model");
+      reject(scene.file, "/model", "no path", "a path to a model");
     scene.model = path.parent_path() / model;
   }
   scene.metres_per_unit = parsed.value("metres_per_unit", 1.0);

@@ -31,7 +31,7 @@ void check_key_times(const json& keys, const std::string& file, const std::strin
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const double before = keys[i - 1]["time"], time = keys[i]["time"];
     if (time <= before) {
-      refuse(file, fmt::format("{}/keys/{}/time", place, i), fmt::format("{} s", time),
+      reject(file, fmt::format("{}/keys/{}/time", place, i), fmt::format("{} s", time),
              fmt::format("more than the {} s of the key before", before));
     }
   }
@@ -44,12 +44,12 @@ void check_key_quantities(const json& given, const KeyedList& list, const std::s
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string here = fmt::format("{}/keys/{}", place, i);
     if (keys[i].size() == 1) {
-      refuse(file, here, "a time alone",
+      reject(file, here, "a time alone",
              fmt::format("a time and some of {}", fmt::join(quantities_of(list), ", ")));
     }
     for (const auto& [key, value] : keys[i].items()) {
       if (given.contains(key)) {
-        refuse(file, pointer_to(here, key), fmt::format("what {} says too", pointer_to(place, key)),
+        reject(file, pointer_to(here, key), fmt::format("what {} says too", pointer_to(place, key)),
                "one of the two");
       }
     }
@@ -79,12 +79,12 @@ std::vector<double> with_tangents(const Curve& linear) {
 
 /// Makes the value a unit vector that may follow the one before.
 void add_direction(Curve& curve, const glm::dvec3& value, const std::string& file, const std::string& place) {
-  if (glm::length(value) < kShortestDirection) refuse(file, place, "a vector of no length", "a direction");
+  if (glm::length(value) < kShortestDirection) reject(file, place, "a vector of no length", "a direction");
   const glm::dvec3 unit = glm::normalize(value);
   if (!curve.values.empty()) {
     const double* last = &curve.values[curve.values.size() - 3];
     if (glm::length(glm::dvec3(last[0], last[1], last[2]) + unit) < kShortestDirection) {
-      refuse(file, place, "the opposite of the key before", "a turn by less than half a circle");
+      reject(file, place, "the opposite of the key before", "a turn by less than half a circle");
     }
   }
   for (int i = 0; i < 3; ++i) curve.values.push_back(unit[i]);
@@ -134,7 +134,7 @@ KeyedEntry::KeyedEntry(const json& given, const KeyedList& list, const std::stri
   still_ = std::make_shared<const json>(std::move(still));
   if (!given.contains("keys")) {
     if (given.contains("interpolation"))
-      refuse(file, place + "/interpolation", "no keys beside it", "interpolation where there are keys");
+      reject(file, place + "/interpolation", "no keys beside it", "interpolation where there are keys");
     return;
   }
   check_key_times(given["keys"], file, place);

@@ -51,18 +51,18 @@ void read_encoded(const GltfDocument& document, int index, Encoded& encoded) {
 void check_encoded(const GltfDocument& document, Encoded& encoded) {
   const auto header = read_image_header(encoded.bytes);
   if (!header) {
-    refuse(document.file, encoded.place,
+    reject(document.file, encoded.place,
            fmt::format("'{}' that begins with bytes {}", encoded.name, first_bytes(encoded.bytes)),
            "a PNG or JPEG image, whatever its name");
   }
   if (header->width == 0 || header->height == 0 || header->width > bounds::kImageSide ||
       header->height > bounds::kImageSide) {
-    refuse(document.file, encoded.place,
+    reject(document.file, encoded.place,
            fmt::format("'{}' of {} x {} pixels", encoded.name, header->width, header->height),
            fmt::format("1 to {} pixels a side", bounds::kImageSide));
   }
   if (!header->complete) {
-    refuse(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name), "a whole image");
+    reject(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name), "a whole image");
   }
   encoded.header = *header;
 }
@@ -84,7 +84,7 @@ std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& pixels, int c
 
 std::vector<std::uint8_t> decode(const GltfDocument& document, const Encoded& encoded) {
   const auto fail = [&](const std::string& why) {
-    refuse(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, why),
+    reject(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, why),
            "a readable PNG or JPEG image");
   };
   const bool png = encoded.header.format == ImageFormat::png;
@@ -154,7 +154,7 @@ std::vector<Texture> load_textures(const GltfDocument& document,
     check_encoded(document, encoded[i]);
     file_bytes += encoded[i].owned.size();
     if (file_bytes > bounds::kBufferBytes) {
-      refuse(document.file, encoded[i].place, fmt::format("{} bytes of image files so far", file_bytes),
+      reject(document.file, encoded[i].place, fmt::format("{} bytes of image files so far", file_bytes),
              fmt::format("at most {} in all", bounds::kBufferBytes));
     }
   }
@@ -163,7 +163,7 @@ std::vector<Texture> load_textures(const GltfDocument& document,
     const Encoded& image = encoded[slots[request.image]];
     texel_bytes += 4ull * image.header.width * image.header.height;
     if (texel_bytes > bounds::kTexelBytes) {
-      refuse(document.file, image.place, fmt::format("{} bytes of texels so far", texel_bytes),
+      reject(document.file, image.place, fmt::format("{} bytes of texels so far", texel_bytes),
              fmt::format("at most {} in all", bounds::kTexelBytes));
     }
   }

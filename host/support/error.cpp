@@ -9,7 +9,7 @@ namespace clpv {
 Error::Error(ExitCode code, const std::string& message)
     : std::runtime_error(printable(message)), code_(code) {}
 
-void refuse(const std::string& file, std::string_view place, std::string_view found,
+void reject(const std::string& file, std::string_view place, std::string_view found,
             std::string_view allowed) {
   throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place, place.empty() ? "" : ": ",
               found, allowed);

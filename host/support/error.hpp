@@ -10,7 +10,7 @@
 namespace clpv {
 
 /// Throws Error(bad_input): "FILE: PLACE: found FOUND; allowed: ALLOWED". PLACE is a JSON pointer or empty.
-[[noreturn]] void refuse(const std::string& file, std::string_view place, std::string_view found,
+[[noreturn]] void reject(const std::string& file, std::string_view place, std::string_view found,
                          std::string_view allowed);
 
 }  // namespace clpv

@@ -25,23 +25,23 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status))
-    refuse(file, place, fmt::format("no file '{}'", path.string()), "an existing file");
+    reject(file, place, fmt::format("no file '{}'", path.string()), "an existing file");
   if (!fs::is_regular_file(status)) {
-    refuse(
+    reject(
         file, place,
         fmt::format("'{}', {}", path.string(), fs::is_directory(status) ? "a folder" : "not a regular file"),
         "a regular file");
   }
   const std::uint64_t size = fs::file_size(path, failure);
   if (failure || size > limit) {
-    refuse(file, place, fmt::format("'{}' of {} bytes", path.string(), size),
+    reject(file, place, fmt::format("'{}' of {} bytes", path.string(), size),
            fmt::format("at most {} bytes", limit));
   }
   Bytes bytes(size);
   std::ifstream stream(path, std::ios::binary);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size) {
-    refuse(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
+    reject(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
   }
   return bytes;
 }

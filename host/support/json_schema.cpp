@@ -147,12 +147,12 @@ class Checker {
       if (const auto member = value.find(segment); member != value.end()) {
         step(*member, level, {&segment, 0});
       } else if (rule_.required && level + 1 == segments_.size()) {
-        refuse(file_, pointer_to(place(), segment), "nothing", allowed_values(rule_, into_size_));
+        reject(file_, pointer_to(place(), segment), "nothing", allowed_values(rule_, into_size_));
       }
     }
   }
 
-  /// One step down: a key, or an index where there is none. Spelt out only in a refusal; documents are large.
+  /// One step down: a key, or an index where there is none. Spelt out only in a rejection; documents are large.
   struct Step {
     const std::string* key;
     std::size_t index;
@@ -179,7 +179,7 @@ class Checker {
           std::find_if_not(value.begin(), value.end(), [&](const json& v) { return in_range(rule_, v); });
       found += " with " + quoted(*wrong);
     }
-    refuse(file_, place(), found, allowed_values(rule_, into_size_));
+    reject(file_, place(), found, allowed_values(rule_, into_size_));
   }
 
   const json& document_;
@@ -206,7 +206,7 @@ void check_keys(const json& value, const std::string& pattern, const std::string
   }
   for (const auto& [key, member] : value.items()) {
     if (!allowed.contains(key)) {
-      refuse(file, pointer_to(place, key.substr(0, 60)), "an unknown key",
+      reject(file, pointer_to(place, key.substr(0, 60)), "an unknown key",
              fmt::format("{}", fmt::join(allowed, ", ")));
     }
     check_keys(member, pattern + "/" + key, pointer_to(place, key), rules, file);
@@ -228,13 +228,13 @@ void check_extent(std::string_view text, const std::string& file) {
       quoted = true;
     } else if (c == '[' || c == '{') {
       if (++depth > bounds::kJsonNesting) {
-        refuse(file, {}, fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
+        reject(file, {}, fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
                fmt::format("at most {} levels", bounds::kJsonNesting));
       }
     } else if (c == ']' || c == '}') {
       --depth;
     } else if (c == ',' && ++values > bounds::kJsonValues) {
-      refuse(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues), "at most as many");
+      reject(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues), "at most as many");
     }
   }
 }
@@ -251,7 +251,7 @@ void check_no_other_keys(const json& document, std::span<const Rule> rules, cons
 
 json parse_json(std::string_view text, const std::string& file) {
   if (text.size() > bounds::kJsonBytes) {
-    refuse(file, {}, fmt::format("{} bytes of JSON", text.size()),
+    reject(file, {}, fmt::format("{} bytes of JSON", text.size()),
            fmt::format("at most {}", bounds::kJsonBytes));
   }
   check_extent(text, file);
@@ -260,7 +260,7 @@ json parse_json(std::string_view text, const std::string& file) {
   } catch (const json::exception& error) {  // its text carries line and column
     std::string what = error.what();
     std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
-    refuse(file, {}, "no JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
+    reject(file, {}, "no JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
   }
 }
 

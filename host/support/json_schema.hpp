@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A small schema for untrusted JSON: which value stands where, of what kind and in what range.
 //
-// Checked once, before anything reads the document, so that readers need not check again; every refusal names
+// Checked once, before anything reads the document, so that readers need not check again; every rejection names
 // the file, the JSON pointer, the value found and the values allowed.
 #pragma once
 

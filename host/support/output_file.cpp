@@ -22,7 +22,7 @@ std::string reason(int code) {
   return std::generic_category().message(code);
 }
 
-[[noreturn]] void refuse_output(const fs::path& path, const std::string& why) {
+[[noreturn]] void reject_output(const fs::path& path, const std::string& why) {
   throw Error(ExitCode::run_time, "{}: cannot be written: {}", path.string(), why);
 }
 
@@ -37,7 +37,7 @@ class TemporaryFile {
               fmt::format(".{}.{}-{}.part", target.filename().string(), ::getpid(), count++);
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     }
-    if (descriptor_ < 0) refuse_output(target_, reason(errno));
+    if (descriptor_ < 0) reject_output(target_, reason(errno));
   }
   ~TemporaryFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -50,15 +50,15 @@ class TemporaryFile {
     while (!bytes.empty()) {
       const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) refuse_output(target_, reason(errno));
+      if (written < 0) reject_output(target_, reason(errno));
       bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
   }
 
   void rename_into_place() {
     const int closed = ::close(std::exchange(descriptor_, -1));
-    if (closed != 0) refuse_output(target_, reason(errno));
-    if (::rename(path_.c_str(), target_.c_str()) != 0) refuse_output(target_, reason(errno));
+    if (closed != 0) reject_output(target_, reason(errno));
+    if (::rename(path_.c_str(), target_.c_str()) != 0) reject_output(target_, reason(errno));
     renamed_ = true;
   }
 
@@ -68,28 +68,28 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-/// Where the bytes go: `path` with its symbolic links followed. Refuses what is not a place for a file.
+/// Where the bytes go: `path` with its symbolic links followed. Rejects what is not a place for a file.
 fs::path resolve(const fs::path& path) {
-  if (path.filename().empty()) refuse_output(path, "that names no file");
+  if (path.filename().empty()) reject_output(path, "that names no file");
   std::error_code error;
   // Absolute first: of a relative path that does not exist yet, weakly_canonical would leave the folder out.
   fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
-  if (error) refuse_output(path, error.message());
+  if (error) reject_output(path, error.message());
   // What is a link still leads to what is not there yet.
   for (int hops = 0; fs::is_symlink(fs::symlink_status(target, error)); ++hops) {
-    if (hops == kMostLinks) refuse_output(path, "too many links");
+    if (hops == kMostLinks) reject_output(path, "too many links");
     const fs::path next = fs::read_symlink(target, error);
     if (!error) target = fs::weakly_canonical(target.parent_path() / next, error);
-    if (error) refuse_output(path, error.message());
+    if (error) reject_output(path, error.message());
   }
   if (!fs::is_directory(target.parent_path(), error)) {
-    refuse_output(path, fmt::format("there is no folder {}", target.parent_path().string()));
+    reject_output(path, fmt::format("there is no folder {}", target.parent_path().string()));
   }
   const fs::file_status status = fs::status(target, error);
-  if (fs::is_directory(status)) refuse_output(path, "a folder of that name is in the way");
+  if (fs::is_directory(status)) reject_output(path, "a folder of that name is in the way");
   if (fs::exists(status) && !fs::is_regular_file(status))
-    refuse_output(path, "what is there is not a regular file");
-  if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) refuse_output(path, reason(errno));
+    reject_output(path, "what is there is not a regular file");
+  if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) reject_output(path, reason(errno));
   return target;
 }
 

@@ -29,13 +29,13 @@
     OFFSET(ClpvView, height) OFFSET(ClpvView, far_depth)                                           \
   SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)               \
     OFFSET(ClpvSweepBin, column_sign) OFFSET(ClpvSweepBin, plane_axis)                             \
-    OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, ways)    \
+    OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, links)    \
     OFFSET(ClpvSweepBin, injected) OFFSET(ClpvSweepBin, source) OFFSET(ClpvSweepBin, channel)      \
     OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)                                          \
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
     OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \
-  SIZE(ClpvSweepShell) OFFSET(ClpvSweepShell, first) OFFSET(ClpvSweepShell, side)                  \
-    OFFSET(ClpvSweepShell, layers)                                                                 \
+  SIZE(ClpvSweepHalo) OFFSET(ClpvSweepHalo, first) OFFSET(ClpvSweepHalo, side)                  \
+    OFFSET(ClpvSweepHalo, layers)                                                                 \
   SIZE(ClpvRegion) OFFSET(ClpvRegion, base) OFFSET(ClpvRegion, cell) OFFSET(ClpvRegion, first)     \
     OFFSET(ClpvRegion, boxes) OFFSET(ClpvRegion, moved) OFFSET(ClpvRegion, all)                    \
     OFFSET(ClpvRegion, box)

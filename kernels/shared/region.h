@@ -26,6 +26,6 @@ typedef struct {
 #define CLPV_SIZEOF_REGION 264
 
 // Triangles next to each other in the scene that are kept or left out together.
-#define CLPV_RUN 64
+#define CLPV_CLUSTER 64
 
 #endif

@@ -9,7 +9,7 @@
 typedef struct {
   int plane_sign, row_sign, column_sign;  // 1: light goes upwards
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
-  int ways[4];                            // volumes of the transmittance from the cells 0, u, v, u and v aside
+  int links[4];                            // volumes of the transmittance from the cells 0, u, v, u and v aside
   int injected;                           // 1: its sources are read where they were injected; 0: from a volume of its own
   int source, channel, plane, row;        // where the sources of its first cell are; from there to the next channel, plane, row
 } ClpvSweepBin;
@@ -31,7 +31,7 @@ typedef struct {
   int first[3];   // cell of the box that holds them
   int side;       // cells along each of its edges; 0: there is no finer cascade
   int layers[6];  // the lower one of two layers along x, y, z: with light going upwards, downwards
-} ClpvSweepShell;
+} ClpvSweepHalo;
 
 #define CLPV_SIZEOF_SWEEP_SHELL 40
 
@@ -46,9 +46,9 @@ typedef struct {
 #define CLPV_SWEEP_LIVE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
 #define CLPV_SWEEP_BORDERED_OF(n) (((n) + 2) * CLPV_SWEEP_LIVE_OF(n))
 
-// A shell has faces of two layers of side x side cells; rows are whole eights, with room for one more.
-#define CLPV_SWEEP_SHELL_SIDE_OF(n) (((n) + 1) / 2 + 3)
-#define CLPV_SWEEP_SHELL_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
-#define CLPV_SWEEP_SHELL_FACE_OF(side) (2 * (side)*CLPV_SWEEP_SHELL_PITCH_OF(side) + 8)
+// A halo has faces of two layers of side x side cells; rows are whole eights, with room for one more.
+#define CLPV_SWEEP_HALO_SIDE_OF(n) (((n) + 1) / 2 + 3)
+#define CLPV_SWEEP_HALO_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
+#define CLPV_SWEEP_HALO_FACE_OF(side) (2 * (side)*CLPV_SWEEP_HALO_PITCH_OF(side) + 8)
 
 #endif

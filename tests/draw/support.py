@@ -18,7 +18,7 @@ def row(suite, stage, **fields):
 
 def variant(options, **fields):
     """A variant of `clpv quality`."""
-    return {"options": options, "refused": 0, "nrmse": 0.45, "worst_nrmse": 0.5, "energy_ratio": 1.0,
+    return {"options": options, "rejected": 0, "nrmse": 0.45, "worst_nrmse": 0.5, "energy_ratio": 1.0,
             "frame_ms": 170.0, **fields}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report page: pictures of errors, the chart, what is escaped, what is missing, what is refused."""
+"""The report page: pictures of errors, the chart, what is escaped, what is missing, what is rejected."""
 import json
 import os
 import pathlib
@@ -105,7 +105,7 @@ class Page(unittest.TestCase):
         self.assertEqual(report.front_of([(4, 30), (2, 60), (1, 50), (5, 30)]), [(1, 50), (4, 30)])
 
     def test_refuses_a_document_of_another_shape(self):
-        self.document["quality"] = [{"file": "q.json", "document": {"variants": [{"refused": 0, "options": {}}]}}]
+        self.document["quality"] = [{"file": "q.json", "document": {"variants": [{"rejected": 0, "options": {}}]}}]
         with self.assertRaisesRegex(documents.BadDocument, "q.json: /variants/0/nrmse is null; allowed: a number"):
             self.page()
         self.assertFalse((self.folder / "index.html").exists())

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "commands/commands.hpp"
-#include "commands/options.hpp"
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "support/log.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
@@ -59,10 +59,10 @@ void parse(std::vector<std::string> arguments) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clpv;
   const std::vector<std::string> arguments = lines_of(fuzz::text_of(data, size));
-  fuzz::read_or_refuse({ExitCode::usage}, [&] { parse(arguments); });
+  fuzz::read_or_reject({ExitCode::usage}, [&] { parse(arguments); });
   for (const std::string& argument : arguments) {
-    fuzz::read_or_refuse({ExitCode::usage}, [&] { parse_dvec3(argument, "--option"); });
-    fuzz::read_or_refuse({ExitCode::usage}, [&] { parse_box(argument, "--option"); });
+    fuzz::read_or_reject({ExitCode::usage}, [&] { parse_dvec3(argument, "--option"); });
+    fuzz::read_or_reject({ExitCode::usage}, [&] { parse_box(argument, "--option"); });
   }
   return 0;
 }

@@ -2,7 +2,7 @@
 // What the fuzz targets share. A target is a file NAME_fuzz.cpp with one LLVMFuzzerTestOneInput: libFuzzer calls it with
 // inputs of its own (scripts/fuzz), replay.cpp with those of corpus/NAME and blind mutants of them (a test of every build).
 //
-// An input is read or refused. Whatever else happens is a finding: a crash, a sanitizer's report, an exception of
+// An input is read or rejected. Whatever else happens is a finding: a crash, a sanitizer's report, an exception of
 // another kind, or an error of another exit code than those a target allows.
 #pragma once
 
@@ -36,9 +36,9 @@ inline const test::TemporaryFolder& folder() {
   return made;
 }
 
-/// Runs `read`, whose input may be refused, with these exit codes alone.
+/// Runs `read`, whose input may be rejected, with these exit codes alone.
 template <typename Read>
-void read_or_refuse(std::initializer_list<ExitCode> allowed, Read&& read) {
+void read_or_reject(std::initializer_list<ExitCode> allowed, Read&& read) {
   try {
     read();
   } catch (const Error& error) {

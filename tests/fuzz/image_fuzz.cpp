@@ -36,11 +36,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes = fuzz::text_of(data, size);
   const char* const name = name_for(bytes);
   const auto path = fuzz::folder().write(name, bytes);
-  fuzz::read_or_refuse({ExitCode::bad_input}, [&] {
+  fuzz::read_or_reject({ExitCode::bad_input}, [&] {
     const Image image = read_image(path, kLimits);
     if (path.extension() == ".exr") hold_against_header(image, name, {data, size});
     for (const std::string& layer : layers(image)) {
-      fuzz::read_or_refuse({ExitCode::bad_input}, [&] {
+      fuzz::read_or_reject({ExitCode::bad_input}, [&] {
         const Image one = extract_layer(image, layer, "fuzzed");
         if (!compare(one, "a", one, "b").identical) std::abort();
         difference_image(one, one, 15);

@@ -32,7 +32,7 @@ inline std::string textured() {
 
 inline constexpr std::string_view kUnderSky = R"({"model": "textured.gltf", "sky": {"map": "sky.hdr"}})";
 
-/// The files that URIs may name. An input that names one must not end there: they are read here, and must not be refused.
+/// The files that URIs may name. An input that names one must not end there: they are read here, and must not be rejected.
 inline void write_neighbours() {
   const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   std::string bytes(reinterpret_cast<const char*>(corners), sizeof corners);
@@ -51,10 +51,10 @@ inline void load_model(const std::string& name, std::string_view bytes) {
   static const bool written = (write_neighbours(), true);
   static_cast<void>(written);
   const std::filesystem::path path = folder().write(name, bytes);
-  read_or_refuse({ExitCode::bad_input}, [&] {
+  read_or_reject({ExitCode::bad_input}, [&] {
     MovingScene moving(path);
     for (const double instant : kInstants) {
-      if (moving.moves()) read_or_refuse({ExitCode::bad_input}, [&] { moving.pose(instant); });
+      if (moving.moves()) read_or_reject({ExitCode::bad_input}, [&] { moving.pose(instant); });
     }
   });
 }

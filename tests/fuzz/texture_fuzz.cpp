@@ -30,6 +30,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   view.byteLength = size;
   document.model.bufferViews.push_back(view);
   document.model.images.emplace_back().bufferView = 0;
-  fuzz::read_or_refuse({ExitCode::bad_input}, [&] { load_textures(document, {{0, 0, 0}}); });
+  fuzz::read_or_reject({ExitCode::bad_input}, [&] { load_textures(document, {{0, 0, 0}}); });
   return 0;
 }

@@ -51,7 +51,7 @@ cl_mem counted(cl_mem made) {
   return made;
 }
 
-cl_mem refused(cl_int* error, cl_int code) {
+cl_mem rejected(cl_int* error, cl_int code) {
   if (error != nullptr) *error = code;
   return nullptr;
 }
@@ -78,13 +78,13 @@ extern "C" {
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
   CLPV_MAY_FAIL("memory", clCreateBuffer);
-  return failed ? refused(error, code) : counted(call(context, flags, size, host, error));
+  return failed ? rejected(error, code) : counted(call(context, flags, size, host, error));
 }
 
 cl_mem clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
                      const cl_image_desc* desc, void* host, cl_int* error) {
   CLPV_MAY_FAIL("memory", clCreateImage);
-  return failed ? refused(error, code) : counted(call(context, flags, format, desc, host, error));
+  return failed ? rejected(error, code) : counted(call(context, flags, format, desc, host, error));
 }
 
 cl_int clRetainMemObject(cl_mem memory) {

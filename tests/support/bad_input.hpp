@@ -10,9 +10,9 @@ namespace clpv::test {
 struct BadInputTest : GltfTest {
   BadInputTest() { model.triangle(); }
 
-  /// The refusal of the model as it stands; always names the file.
-  std::string refused() {
-    const std::string message = refusal(model.write(folder));
+  /// The rejection of the model as it stands; always names the file.
+  std::string rejected() {
+    const std::string message = rejection(model.write(folder));
     EXPECT_THAT(message, ::testing::HasSubstr("model.gltf"));
     return message;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fields of known light, surfaces that walk through them, and what the kernels and the twin gather there.
+// Fields of known light, surfaces that walk through them, and what the kernels and the CPU reference gather there.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -85,11 +85,11 @@ inline SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm
 
 /// E [W/m^2] a pixel; raw: with the fourth component.
 struct Both {
-  std::vector<glm::dvec3> device, twin;
+  std::vector<glm::dvec3> device, expected;
   std::vector<cl_float4> raw;
 };
 
-/// Gathers `image` from volumes of grid_of(0), grid_of(1), ... `hidden`: bytes as SceneSight keeps them, for what is visible.
+/// Gathers `image` from volumes of grid_of(0), grid_of(1), ... `hidden`: bytes as CellVisibility keeps them, for what is visible.
 inline Both gather(const Basis& basis, TransportKind transport, GatherOptions options,
                    const std::vector<reference::Volume>& full, const SurfaceImage& image,
                    const std::vector<std::uint8_t>& hidden = {}) {
@@ -136,8 +136,8 @@ inline void expect_all(const Both& both, const std::function<double(std::size_t)
   for (std::size_t pixel = 0; pixel < both.device.size(); ++pixel) {
     for (int channel = 0; channel < 3; ++channel) {
       const double e = expected(pixel) * (channel + 1);
-      ASSERT_NEAR(both.twin[pixel][channel], e, 1e-6 * scale)
-          << "twin, pixel " << pixel << " channel " << channel;
+      ASSERT_NEAR(both.expected[pixel][channel], e, 1e-6 * scale)
+          << "expected, pixel " << pixel << " channel " << channel;
       ASSERT_NEAR(both.device[pixel][channel], e, allowed * scale)
           << "pixel " << pixel << " channel " << channel;
     }

@@ -115,8 +115,9 @@ struct GltfBuilder {
   }
 };
 
-/// Loads what must be refused, and returns the message.
-inline std::string refusal(const std::filesystem::path& path, const std::filesystem::path& replacement = {}) {
+/// Loads what must be rejected, and returns the message.
+inline std::string rejection(const std::filesystem::path& path,
+                             const std::filesystem::path& replacement = {}) {
   try {
     load_scene(path, replacement);
   } catch (const Error& error) {

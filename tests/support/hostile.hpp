@@ -35,10 +35,10 @@ inline std::string with_folder(std::string text, const TemporaryFolder& folder) 
   return text;
 }
 
-/// Longer, and it hangs: all are refused before anything is computed.
+/// Longer, and it hangs: all are rejected before anything is computed.
 inline constexpr const char* kPatience = "timeout 60 ";
 
-inline void expect_refused(const HostileInput& input) {
+inline void expect_rejected(const HostileInput& input) {
   SCOPED_TRACE(input.name);
   const TemporaryFolder folder;
   for (const auto& [name, bytes] : input.files) folder.write(name, bytes);
@@ -62,9 +62,9 @@ inline void expect_refused(const HostileInput& input) {
 }
 
 /// `least`: how many there are, so that none is lost unseen.
-inline void expect_all_refused(const std::vector<HostileInput>& inputs, std::size_t least) {
+inline void expect_all_rejected(const std::vector<HostileInput>& inputs, std::size_t least) {
   EXPECT_GE(inputs.size(), least);
-  for (const HostileInput& input : inputs) expect_refused(input);
+  for (const HostileInput& input : inputs) expect_rejected(input);
 }
 
 }  // namespace clpv::test

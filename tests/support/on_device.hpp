@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "checks/check.hpp"
 #include "device/session.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::test {
 

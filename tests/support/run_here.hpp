@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "commands/commands.hpp"
+#include "cli/commands.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::test {

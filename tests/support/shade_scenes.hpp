@@ -162,17 +162,17 @@ inline std::vector<glm::vec4> show(Show what, const SurfaceImage& image,
   return test_session().read<glm::vec4>(shown, pixels);
 }
 
-/// E of the first channel, pixel by pixel; the kernels' and the twin's agree.
+/// E of the first channel, pixel by pixel; the kernels' and the CPU reference's agree.
 inline std::vector<double> lit(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
   const std::vector<glm::vec4> device = show(Show::direct, image, lights);
-  const std::vector<glm::dvec3> twin = reference::direct_irradiance(lights, image);
+  const std::vector<glm::dvec3> expected = reference::direct_irradiance(lights, image);
   double largest = 0;
-  for (const glm::dvec3& e : twin) largest = std::max(largest, e.x);
+  for (const glm::dvec3& e : expected) largest = std::max(largest, e.x);
   std::vector<double> e;
-  for (std::size_t pixel = 0; pixel < twin.size(); ++pixel) {
+  for (std::size_t pixel = 0; pixel < expected.size(); ++pixel) {
     e.push_back(device[pixel].x);
-    EXPECT_NEAR(device[pixel].x, twin[pixel].x, 1e-4 * largest) << "twin, pixel " << pixel;
-    EXPECT_NEAR(device[pixel].z, 3 * twin[pixel].x, 3e-4 * largest) << "blue, pixel " << pixel;
+    EXPECT_NEAR(device[pixel].x, expected[pixel].x, 1e-4 * largest) << "expected, pixel " << pixel;
+    EXPECT_NEAR(device[pixel].z, 3 * expected[pixel].x, 3e-4 * largest) << "blue, pixel " << pixel;
   }
   return e;
 }

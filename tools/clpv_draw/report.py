@@ -22,7 +22,7 @@ from clpv_draw.documents import NUMBER
 FULL_SCALE = 1.5  # of false colour, in root mean squares of the truth
 COLOURS = "inferno"  # dark to light in print, and for eyes that see no red or no green
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # Rec. 709
-VARIANT = {"options": dict, "refused": int, "nrmse": NUMBER, "worst_nrmse": NUMBER, "energy_ratio": NUMBER,
+VARIANT = {"options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER, "energy_ratio": NUMBER,
            "frame_ms": NUMBER}
 
 
@@ -89,12 +89,12 @@ def view(shown, folder):
 
 
 def variants(quality, marked):
-    """What was not refused, best first."""
+    """What was not rejected, best first."""
     rows = []
     for source in quality:
         listed = source["document"].get("variants")
-        for i, row in enumerate(documents.checked(source["document"], source["file"], "variants", {"refused": int})):
-            if row["refused"] == 0:
+        for i, row in enumerate(documents.checked(source["document"], source["file"], "variants", {"rejected": int})):
+            if row["rejected"] == 0:
                 documents.checked({"variants": listed[i:i + 1]}, source["file"], "variants", VARIANT)
                 rows.append({**row, "name": " ".join(map(str, row["options"].values())),
                              "series": str(row["options"].get("transport", "preset")),

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// clpv basis: what each basis is, how well it holds a clamped cosine, how it keeps energy.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "basis/rotated_lobe.hpp"
+#include "cli/basis_parts.hpp"
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace basis_command {
+
+struct Options {
+  std::string name, centres_file, axis = "0,0,1", figures;
+  double lambda = kDefaultLambda;
+  LobeOptions lobes;
+  bool json = false;
+  BasisSearchOptions search;
+
+  BasisView view() const;
+};
+
+glm::dvec3 unit_axis(const std::string& text) {
+  const glm::dvec3 axis = parse_dvec3(text, "--axis");
+  const double length = std::hypot(axis.x, axis.y, axis.z);
+  if (!(length > 0) || !std::isfinite(length))
+    throw Error(ExitCode::usage, "--axis: '{}' has length {}; allowed: a vector other than 0", text, length);
+  return axis / length;
+}
+
+BasisView Options::view() const {
+  return {lobes, unit_axis(axis)};
+}
+
+std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {
+  std::vector<std::unique_ptr<Basis>> bases;
+  if (!options.centres_file.empty()) {
+    bases.push_back(load_basis(options.centres_file, options.lambda));
+  } else if (!options.name.empty()) {
+    bases.push_back(make_basis(options.name, options.lambda));
+  } else {
+    for (const std::string& name : basis_names()) bases.push_back(make_basis(name, options.lambda));
+  }
+  return bases;
+}
+
+void run(const Options& options) {
+  if (!options.figures.empty()) {
+    BasisFigures figures{{}, options.lobes, options.lambda};
+    if (!options.name.empty() || !options.centres_file.empty()) figures.bases = bases_of(options);
+    for (const auto& file : write_basis_figures(std::move(figures), options.figures))
+      fmt::print("{}\n", file.string());
+    return;
+  }
+  const BasisView view = options.view();
+  if (options.search.centres) return search_and_tell(options.search, options.lambda, view, options.json);
+  nlohmann::json bases = nlohmann::json::array();
+  for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, view));
+  if (options.json) {
+    fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"bases", bases}}.dump(2));
+  } else {
+    fmt::print("{}", table_of(bases));
+  }
+}
+
+}  // namespace basis_command
+
+void add_basis(CLI::App& app, Shared&) {
+  using namespace basis_command;
+  CLI::App* command = app.add_subcommand(
+      "basis", "Tell of each basis: conditioning, error of its clamped cosine, energy after 8 and 24 steps");
+  auto options = std::make_shared<basis_command::Options>();
+  CLI::Option* name = add(*command, "name", "NAME", options->name, "one basis; all, if not given");
+  add(*command, "--centres", "FILE", options->centres_file,
+      "an SRBF set of your own: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "
+      "name and lambda (a number, or one for each centre) may be missing")
+      ->excludes(name);
+  command
+      ->add_option("--lambda", options->lambda,
+                   "bandwidth of the SRBF kernels, between 0 and 1; a file's own replaces it")
+      ->capture_default_str();
+  add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
+  add_choice(*command, "--lobe", options->lobes.kind,
+             "clamped cosine: projected exactly, or along +z and rotated through a table");
+  command->add_option("--table-size", options->lobes.table_size, "entries of the table of rotated lobes")
+      ->capture_default_str();
+  add_search_options(*command, options->search);
+  CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
+  add(*command, "--figures", "DIR", options->figures,
+      "draw the paper's figures 2, 3 and 6 into this folder instead: kernels, and lobes as spherical "
+      "plots")
+      ->excludes(json);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace clpv

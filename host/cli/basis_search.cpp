@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "cli/basis_parts.hpp"
+#include "cli/options.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr const char* kBeside[] = {"srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "sh2", "sh3"};
+
+LobeAims aims_of(const BasisSearchOptions& options) {
+  if (!options.weights.empty()) return load_aims(options.weights);
+  return options.over == SearchedCosines::axes ? propagation_axes() : all_directions();
+}
+
+std::string name_of(const BasisSearchOptions& options) {
+  return options.output.empty() ? fmt::format("searched{}", *options.centres)
+                                : std::filesystem::path(options.output).stem().string();
+}
+
+/// As load_basis reads it.
+nlohmann::json file_of(const Basis& basis) {
+  nlohmann::json file{{"name", basis.name()}, {"centres", nlohmann::json::array()}};
+  if (basis.lambda() != 0) {
+    file["lambda"] = basis.lambda();
+  } else {
+    file["lambda"] = basis.lambdas();
+  }
+  for (const glm::dvec3& xi : basis.centres()) file["centres"].push_back({xi.x, xi.y, xi.z});
+  return file;
+}
+
+nlohmann::json described(const Basis& basis, const BasisView& view, const LobeAims& aims) {
+  nlohmann::json description = describe(basis, view);
+  description["error_over"] = error_over(basis, aims);
+  return description;
+}
+
+/// The found set, and those that it has to stand beside.
+nlohmann::json beside_others(const Basis& found, double lambda, const BasisView& view, const LobeAims& aims) {
+  nlohmann::json bases = nlohmann::json::array({described(found, view, aims)});
+  for (const char* name : kBeside) bases.push_back(described(*make_basis(name, lambda), view, aims));
+  return bases;
+}
+
+}  // namespace
+
+void add_search_options(CLI::App& command, BasisSearchOptions& options) {
+  CLI::Option* search =
+      add(command, "--search", "N", options.centres,
+          "look for N centres that hold clamped cosines best, by a descent from each of many starts; the "
+          "same seed gives the same set")
+          ->excludes("name")
+          ->excludes("--centres");
+  command.add_option("--seed", options.search.seed, "of a search's random starts")
+      ->needs(search)
+      ->capture_default_str();
+  command.add_option("--starts", options.search.starts, "of a search")
+      ->needs(search)
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  CLI::Option* over =
+      add_choice(command, "--over", options.over,
+                 "cosines that a search is for: along all directions alike, or along the six axes");
+  over->needs(search);
+  add(command, "--weights", "FILE", options.weights,
+      "or along directions of their own weights, JSON as of clpv render --dump-normals")
+      ->needs(search)
+      ->excludes(over);
+  add_choice(command, "--lambdas", options.search.lambdas,
+             "what a search finds of lambda: none, one for all centres, or one for each")
+      ->needs(search);
+  command
+      .add_option("--most-condition", options.search.most_condition,
+                  "largest condition number of the Gram matrix that a search may end with")
+      ->needs(search)
+      ->capture_default_str();
+  add(command, "-o,--output", "FILE.json", options.output, "the set found, for --centres")->needs(search);
+}
+
+void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {
+  if (!options.output.empty()) check_writable(options.output);
+  CentreSearch search = options.search;
+  search.centres = *options.centres;
+  search.aims = aims_of(options);
+  search.lambda = lambda;
+  Progress progress("search", search.starts);
+  const FoundCentres found = search_centres(search, [&] { progress.advance(); });
+  const auto basis = make_basis_from_centres(name_of(options), found.set.centres, found.set.lambdas);
+  if (!options.output.empty()) write_file(options.output, file_of(*basis).dump(1) + "\n");
+  const nlohmann::json bases = beside_others(*basis, lambda, view, search.aims);
+  if (json) {
+    const nlohmann::json of_search{{"centres", search.centres},
+                                   {"over", search.aims.name},
+                                   {"lambdas", name_of(search.lambdas)},
+                                   {"most_condition", search.most_condition},
+                                   {"starts", search.starts},
+                                   {"valid", found.valid},
+                                   {"seed", search.seed},
+                                   {"error", found.error},
+                                   {"least_error_over_all", least_error_of(search.centres)}};
+    fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"search", of_search}, {"bases", bases}}.dump(2));
+    return;
+  }
+  fmt::print(
+      "{}\naimed: root of the mean squared relative L2 error over {}; {} of {} starts ended within the "
+      "bounds.\n"
+      "Over all directions no {} functions of any kind have less than {:.4f}.\n",
+      table_of(bases), search.aims.name, found.valid, search.starts, search.centres,
+      least_error_of(search.centres));
+  for (std::size_t i = 0; i < basis->centres().size(); ++i) {
+    const glm::dvec3& xi = basis->centres()[i];
+    fmt::print("{:9.6f} {:9.6f} {:9.6f}  lambda {:.6f}\n", xi.x, xi.y, xi.z, basis->lambdas()[i]);
+  }
+}
+
+}  // namespace clpv

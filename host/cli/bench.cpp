@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// clpv bench: how long stages take on this device, in all their variants.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "basis/basis.hpp"
+#include "bench/compare_runs.hpp"
+#include "bench/report.hpp"
+#include "bench/runner.hpp"
+#include "cli/commands.hpp"
+#include "cli/drawing.hpp"
+#include "cli/options.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/json_schema.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace bench_command {
+
+struct Options {
+  std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
+  bench::BenchOptions bench;
+};
+
+const bench::Suite& suite_named(const std::string& name) {
+  for (const bench::Suite& suite : bench::suites()) {
+    if (suite.name == name) return suite;
+  }
+  throw Error(ExitCode::usage, "no suite named '{}'", name);
+}
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  for (const bench::Suite& suite : bench::suites()) names.push_back(suite.name);
+  return names;
+}
+
+std::regex parse_filter(const std::string& text) {
+  try {
+    return std::regex(text);
+  } catch (const std::regex_error& error) {
+    throw Error(ExitCode::usage, "--filter '{}': {}; allowed: an ECMAScript regular expression", text,
+                error.what());
+  }
+}
+
+/// "sponza, camera curtains": what was timed.
+std::string subject_of(const bench::SuiteOptions& options) {
+  const auto scene = bench::scene_of(options);
+  return fmt::format("{}, camera {}", scene->name, scene->camera(options.camera).name);
+}
+
+nlohmann::json report_of(const Options& options, const Session& session, const bench::Results& results) {
+  nlohmann::json context = bench::context_json(session);
+  context["scene"] = subject_of(options.bench.suite);
+  return bench::report_json(context, results.ceilings, results.rows);
+}
+
+std::string as_text(const Options& options, const bench::Suite& suite, const Session& session,
+                    const bench::Results& results) {
+  if (options.format == "json") return report_of(options, session, results).dump(2) + "\n";
+  if (options.format == "github-action") return bench::report_github_action(results.rows);
+  if (options.format == "csv") return bench::report_csv(results.rows);
+  return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
+         (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
+}
+
+/// An earlier run's report, read before the work. Null where none is asked for.
+nlohmann::json earlier_run(const Options& options) {
+  if (options.compare.empty()) return nullptr;
+  if (options.format != "table" && options.out.empty()) {
+    throw Error(ExitCode::usage,
+                "--compare with --format {}: both would be on stdout; allowed: --format table, or --out",
+                options.format);
+  }
+  nlohmann::json report = read_json(options.compare);
+  bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
+  return report;
+}
+
+/// Finds out before the work whether charts can be drawn. None where none are asked for.
+std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
+  if (options.plot.empty()) return nullptr;
+  auto drawing = std::make_unique<const Drawing>("bench", "--plot");
+  create_folder("--plot", options.plot);
+  check_writable(std::filesystem::path(options.plot) / "roofline.svg");
+  return drawing;
+}
+
+/// The scene that is given, or else the suite's own.
+void take_scene(Options& options, const bench::Suite& suite) {
+  if (options.scene.empty() && !options.model.empty())
+    throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
+  if (options.scene.empty() && suite.usual_scene.empty()) return;
+  if (options.scene.empty() && !std::filesystem::exists(suite.usual_scene)) {
+    spdlog::warn("{} is not here: {} works on the hall in its place", suite.usual_scene, suite.name);
+    return;
+  }
+  const std::string file = options.scene.empty() ? suite.usual_scene : options.scene;
+  const auto scene = std::make_shared<const Scene>(load_scene(file, options.model));
+  options.bench.suite.scene = scene;
+  if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
+  if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
+}
+
+/// Tells of the rows that failed. Exit code 5 where an output was wrong.
+void judge(const std::vector<bench::Row>& rows) {
+  const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
+  if (wrong == 0) return;
+  const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
+  throw Error(ExitCode::validation, "{} of {} rows computed something wrong; {}: {:.3g} > {:.0e} at {}",
+              wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
+}
+
+void write(const Options& options, const std::string& text) {
+  if (!options.out.empty()) return write_file(options.out, text);
+  fmt::print("{}", text);
+  std::fflush(stdout);
+}
+
+void run(Options options, const Shared& shared) {
+  if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
+  for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
+  options.bench.log = options.log;
+  for (const std::string& file : {options.out, options.log}) {
+    if (!file.empty()) check_writable(file);
+  }
+  const std::unique_ptr<const Drawing> plot = prepared_plot(options);
+  const nlohmann::json before = earlier_run(options);
+  const bench::Suite& suite = suite_named(options.suite);
+  take_scene(options, suite);
+  // Of programs out of a cache no build can be told.
+  Session session(choose_device(shared.device),
+                  suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
+  spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
+               session.device().driver);
+  const bench::Results results = bench::run_suite(session, suite, options.bench);
+  write(options, as_text(options, suite, session, results));
+  if (!before.is_null()) {
+    fmt::print("{}{}", options.out.empty() ? "\n" : "",
+               bench::comparison_table(
+                   bench::compare_runs(before, report_of(options, session, results), options.compare)));
+  }
+  if (plot) {
+    plot->add("bench.json", report_of(options, session, results));
+    plot->draw(options.plot);
+  }
+  session.store_programs();
+  judge(results.rows);
+}
+
+}  // namespace bench_command
+
+void add_bench(CLI::App& app, Shared& shared) {
+  using namespace bench_command;
+  CLI::App* command =
+      app.add_subcommand("bench", "Time stages and frames on this device, and check what was timed");
+  auto options = std::make_shared<bench_command::Options>();
+  std::string suites = "what to time:";
+  for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
+  command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
+  add(*command, "--scene", "SCENE", options->scene,
+      "scene file or model; default: a hall made on the spot, and for table1 scenes/atrium.json");
+  add(*command, "--model", "PATH", options->model, "replaces the scene file's model");
+  add(*command, "--camera", "NAME", options->bench.suite.camera,
+      "camera by name; default: the scene's first");
+  add(*command, "--basis", "NAME", options->bench.suite.bases,
+      "bases, between commas; table1 adds them to its own")
+      ->delimiter(',');
+  add(*command, "--filter", "REGEX", options->filter,
+      "only rows in whose name this regular expression is found");
+  command->add_option("--repetitions", options->bench.repetitions, "how often each row is timed")
+      ->capture_default_str()
+      ->check(CLI::Range(1, bench::kMostRepetitions));
+  command
+      ->add_option("--format", options->format,
+                   "table|json|csv, or github-action: name, unit and value of each row, smaller is better")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
+  add(*command, "--log", "FILE.jsonl", options->log,
+      "rows as they begin and end, a line of JSON each: what a crash, or a kernel that hangs, leaves");
+  add(*command, "-o,--out", "FILE", options->out, "file to write in place of stdout");
+  add(*command, "--compare", "OLD.json", options->compare,
+      "JSON of an earlier run: prints what changed, and by what spread");
+  add(*command, "--plot", "DIR", options->plot, "charts of the rows as SVG and PNG, by matplotlib");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+
+#include <fmt/ranges.h>
+
+#include <CL/opencl.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <numeric>
+#include <optional>
+
+#include "cli/options.hpp"
+#include "clpv/version.hpp"
+#include "device/cl_error.hpp"
+#include "support/error.hpp"
+#include "support/interrupt.hpp"
+#include "support/log.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr std::size_t kMostEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
+
+/// Rank 0 logs as asked; the others only what goes wrong, unless asked for more.
+void set_log(const Shared& shared) {
+  set_log_level(shared.quiet, shared.verbosity);
+  const std::optional<Launched> started = launched();
+  if (!started) return;
+  if (started->rank > 0 && !shared.quiet && shared.verbosity == 0) spdlog::set_level(spdlog::level::warn);
+  set_progress_style(started->rank == 0 ? ProgressStyle::lines : ProgressStyle::none);
+}
+
+/// Commands that ranks do together; each of them would do all of any other one.
+void reject_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    const std::string name = command->get_name();
+    if (std::ranges::count(names, name) > 0) continue;
+    command->parse_complete_callback([name, names] {
+      const std::optional<Launched> started = launched();
+      if (!started) return;
+      throw Error(ExitCode::usage, "{}: not for several processes (found: rank {} of {}); allowed: {}", name,
+                  started->rank, started->size ? std::to_string(*started->size) : "some",
+                  fmt::join(names, ", "));
+    });
+  }
+}
+
+/// Levenshtein's distance: letters put in, left out or replaced.
+std::size_t edits(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+/// Throws Error(usage) with the nearest command, where there was a word for one that is none.
+void reject_misspelt_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  const auto word = std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
+  if (word == words.end()) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (*word == "reference") throw Error(ExitCode::usage, "'reference' is now 'pathtrace'");
+  const auto nearest =
+      std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
+  if (edits(*word, *nearest) <= kMostEdits)
+    throw Error(ExitCode::usage, "'{}' is no command; did you mean {}?", *word, *nearest);
+  throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));
+}
+
+/// Of a full disk, say.
+void flush_data() {
+  if (std::fflush(stdout) != 0 || !std::cout.flush())
+    throw Error(ExitCode::run_time, "stdout: cannot be written: {}", std::strerror(errno));
+}
+
+/// "rank 3 on node7: " where there are others.
+std::string who(const Shared& shared) {
+  return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
+}
+
+/// Says what failed, and ends the other ranks.
+int ended(const Shared& shared, ExitCode code, const char* words) {
+  std::cerr << "clpv: " << who(shared) << words << std::endl;
+  if (shared.started && !shared.started->alone()) shared.started->abort(code);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+Ranks& Shared::team() {
+  if (!started) started = launched() ? std::make_unique<Ranks>(start_mpi()) : std::make_unique<Ranks>();
+  return *started;
+}
+
+std::span<const Command> all_commands() {
+  static constexpr Command kCommands[] = {
+      {"devices", add_devices}, {"render", add_render},       {"sequence", add_sequence},
+      {"query", add_query},     {"propagate", add_propagate}, {"check", add_check},
+      {"compare", add_compare}, {"pathtrace", add_pathtrace}, {"quality", add_quality},
+      {"basis", add_basis},     {"bench", add_bench},         {"report", add_report},
+  };
+  return kCommands;
+}
+
+void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands) {
+  app.description("clpv: cascaded light propagation volumes in OpenCL");
+  app.name("clpv");
+  app.set_version_flag("--version", "clpv " + version());
+  app.set_help_all_flag("--help-all", "help of all commands");
+  add(app, "--device", "DEVICE", shared.device,
+      "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)");
+  app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
+  app.add_flag("-v,--verbose", shared.verbosity, "tell more; twice: still more");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.parse_complete_callback([&] { set_log(shared); });
+  for (const Command& command : commands) command.add(app, shared);
+  reject_ranks_but_to(app, {"quality", "sequence", "pathtrace"});
+  app.footer(
+      "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
+      "image file;\n"
+      "4 no device, or one that lacks what was asked; 5 validation failed. stdout is data, stderr is talk.");
+}
+
+void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::RequiredError&) {
+    if (app.get_subcommands().empty()) reject_misspelt_command(app);
+    throw;
+  }
+}
+
+int run_program(int argc, const char* const* argv) {
+  CLI::App app;
+  Shared shared;
+  add_commands(app, shared);
+  if (argc == 1) {
+    std::cout << app.help();
+    return 0;
+  }
+  try {
+    parse_command_line(app, argc, argv);
+    flush_data();
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    app.exit(error, std::cout, std::cerr);
+    return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
+  } catch (const Interrupted& interrupted) {
+    std::cerr << "clpv: " << who(shared) << "interrupted; " << interrupted.what() << std::endl;
+    end_as_interrupted();
+  } catch (const Error& error) {
+    return ended(shared, error.code(), error.what());
+  } catch (const cl::Error& error) {
+    const Error named = cl_error(error);
+    return ended(shared, named.code(), named.what());
+  } catch (const std::bad_alloc&) {
+    return ended(shared, ExitCode::run_time, "out of memory");
+  } catch (const std::exception& error) {
+    return ended(shared, ExitCode::run_time, error.what());
+  }
+}
+
+}  // namespace clpv

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// clpv compare: how far an image is from its reference.
+#include "image/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "image/image_io.hpp"
+#include "image/tone_map.hpp"
+#include "support/error.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+struct CompareOptions {
+  std::string a, b, layer, output;
+  float amplify = 15;
+};
+
+bool is_png(const std::filesystem::path& path) {
+  return path.extension() == ".png";
+}
+
+void check_output(const std::string& output) {
+  if (output.empty()) return;
+  require_extension("--output", output, {".png", ".exr"});
+  check_writable(output);
+}
+
+void write_difference(const std::string& output, const Image& difference) {
+  if (!is_png(output)) {
+    write_exr(output, difference);
+  } else if (difference.encoding == Encoding::srgb) {
+    write_png(output, difference);  // of display values: the paper's, byte for byte
+  } else {
+    write_png(output, display_image(difference, 0, ToneMap::none));
+  }
+}
+
+void run(const CompareOptions& options) {
+  check_output(options.output);
+  const Image a = extract_layer(read_image(options.a), options.layer, options.a);
+  const Image b = extract_layer(read_image(options.b), options.layer, options.b);
+  const Comparison comparison = compare(a, options.a, b, options.b);
+  if (!options.output.empty()) write_difference(options.output, difference_image(a, b, options.amplify));
+  fmt::print("{}\n", to_json(comparison).dump(2));
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Shared&) {
+  CLI::App* command =
+      app.add_subcommand("compare", "How far image A is from its reference B: JSON on stdout");
+  auto options = std::make_shared<CompareOptions>();
+  command->add_option("A", options->a, "the image: .exr, .png or .hdr")->required();
+  command->add_option("B", options->b, "its reference, of the same size")->required();
+  add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
+  command->add_option("--amplify", options->amplify, "factor of the difference image")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6));
+  add(*command, "--layer", "NAME", options->layer,
+      "compare this layer of both EXR files (default: the unnamed one)");
+  command->footer(
+      "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
+      "linear in EXR\n"
+      "and HDR, sRGB-encoded from 0 to 1 in PNG. psnr_db has its peak at 1 and is null without error; nrmse "
+      "is rmse over\n"
+      "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and "
+      "perceptual_failures (pixels,\n"
+      "Yee 1999) are over the valid pixels: alpha above 0 in both, all where there is no alpha.\n"
+      "Different sizes and values that are not finite exit with 3.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace clpv

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// clpv devices: every OpenCL device, and what it can do.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "device/device.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+nlohmann::json to_json(const DeviceList& list) {
+  nlohmann::json devices = nlohmann::json::array();
+  for (const Device& d : list.devices) {
+    devices.push_back({{"index", d.index},
+                       {"platform_index", d.platform_index},
+                       {"device_index", d.device_index},
+                       {"platform", d.platform},
+                       {"name", d.name},
+                       {"driver", d.driver},
+                       {"version", d.version},
+                       {"type", d.type},
+                       {"compute_units", d.compute_units},
+                       {"max_alloc_bytes", d.max_alloc_bytes},
+                       {"images", d.images},
+                       {"image3d_writes", d.image3d_writes},
+                       {"int64_atomics", d.int64_atomics},
+                       {"fp64", d.fp64},
+                       {"profiling_valid", d.profiling_valid},
+                       {"supported", d.supported()},
+                       {"missing", d.missing}});
+  }
+  return {{"schema", 1}, {"devices", devices}, {"platforms_without_devices", list.platforms_without_devices}};
+}
+
+const char* yes_no(bool value) {
+  return value ? "yes" : "no";
+}
+
+void print(const DeviceList& list) {
+  for (const Device& d : list.devices) {
+    fmt::print("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
+    fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}\n", d.type,
+               d.compute_units, d.max_alloc_bytes >> 20, yes_no(d.images), yes_no(d.image3d_writes));
+    fmt::print("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics), yes_no(d.fp64),
+               d.profiling_valid ? "valid" : "implausible: wall time instead");
+    if (!d.supported()) fmt::print("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));
+  }
+  for (const std::string& name : list.platforms_without_devices) fmt::print("-  {}: no device\n", name);
+}
+
+}  // namespace
+
+void add_devices(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "devices", "List every OpenCL device and what it can do; with --device, the one it chooses");
+  auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "JSON on stdout");
+  command->callback([json, &shared] {
+    DeviceList list = list_devices();
+    if (!shared.device.empty()) {
+      list = {{choose_device(list.devices, shared.device)}, {}};
+    } else if (list.devices.empty()) {
+      spdlog::warn("no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+    }
+    if (*json) {
+      fmt::print("{}\n", to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    } else {
+      print(list);
+    }
+  });
+}
+
+}  // namespace clpv

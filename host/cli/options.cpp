@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "cli/options.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "scene/bounds.hpp"
+#include "support/error.hpp"
+#include "support/text.hpp"
+
+namespace clpv {
+namespace {
+
+/// Nothing where the text is not three numbers between commas.
+template <typename T>
+std::optional<glm::vec<3, T>> parse_three(std::string_view text) {
+  glm::vec<3, T> values;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t end = i < 2 ? text.find(',') : text.size();
+    if (end == std::string_view::npos) return std::nullopt;
+    const auto value = parse_number<T>(text.substr(0, end));
+    if (!value) return std::nullopt;
+    values[i] = *value;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return values;
+}
+
+CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
+                      const std::function<void(const std::string&)>& take) {
+  return command
+      .add_option_function<std::string>("--" + info.name, take,
+                                        fmt::format("{} ({})", info.help, info.allowed))
+      ->default_str(info.value)
+      ->type_name("");
+}
+
+}  // namespace
+
+CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, const std::string& help,
+                        const NumberRange& range) {
+  const auto take = [&value, name, range](const std::string& text) {
+    const auto found = parse_number<double>(text);
+    if (!found || !(*found >= range.least && *found <= range.most))  // NaN is in no range
+      throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, text, range.allowed);
+    value = *found;
+  };
+  return command.add_option_function<std::string>(name, take, help);
+}
+
+CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,
+                         const std::string& help) {
+  const NumberRange range{-bounds::kSeconds, bounds::kSeconds,
+                          fmt::format("{}..{} seconds", -bounds::kSeconds, bounds::kSeconds)};
+  return add_number(command, name, seconds, help, range)
+      ->type_name("SECONDS")
+      ->default_str(fmt::format("{}", seconds));
+}
+
+glm::dvec3 parse_dvec3(const std::string& text, const char* option) {
+  const auto v = parse_three<double>(text);
+  if (v && std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z)) return *v;
+  throw Error(ExitCode::usage, "{}: '{}' is not three finite numbers between commas, like 0,0.5,-1", option,
+              text);
+}
+
+glm::ivec3 parse_ivec3(const std::string& text, const char* option) {
+  if (const auto v = parse_three<int>(text)) return *v;
+  throw Error(ExitCode::usage, "{}: '{}' is not three integers between commas, like 16,16,16", option, text);
+}
+
+std::pair<glm::ivec3, glm::ivec3> parse_box(const std::string& text, const char* option) {
+  const auto colon = text.find(':');
+  if (colon == std::string::npos)
+    throw Error(ExitCode::usage, "{}: '{}' is not two corners i0,j0,k0:i1,j1,k1", option, text);
+  const glm::ivec3 a = parse_ivec3(text.substr(0, colon), option),
+                   b = parse_ivec3(text.substr(colon + 1), option);
+  if (glm::any(glm::greaterThan(a, b)))
+    throw Error(ExitCode::usage, "{}: '{}': the first corner is beyond the second", option, text);
+  return {a, b};
+}
+
+void set_given(RenderOptions& options, const std::string& name, const std::string& value) {
+  try {
+    set_option(options, name, value);
+  } catch (const Error& error) {
+    throw Error(error.code(), "--{}", error.what());
+  }
+}
+
+void add_frame_options(CLI::App& command, OptionValues& given) {
+  for (const OptionDescription& info : list_options(RenderOptions{})) {
+    if (command.get_option_no_throw("--" + info.name) != nullptr) continue;
+    const auto take = [&given, name = info.name](const std::string& text) {
+      RenderOptions probe;
+      set_given(probe, name, text);  // a bad value is told before any scene is read
+      given[name] = text;
+    };
+    add_text(command, info, take)->group("Frame");
+  }
+}
+
+void add_some_frame_options(CLI::App& command, RenderOptions& options,
+                            const std::vector<std::string>& names) {
+  for (const OptionDescription& info : list_options(options)) {
+    if (std::ranges::find(names, info.name) == names.end()) continue;
+    add_text(command, info,
+             [&options, name = info.name](const std::string& text) { set_given(options, name, text); });
+  }
+}
+
+nlohmann::json to_json(const Device& device) {
+  return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
+}
+
+void require_extension(const std::string& option, const std::filesystem::path& file,
+                       const std::vector<std::string>& allowed) {
+  if (std::ranges::count(allowed, file.extension().string()) > 0) return;
+  throw Error(ExitCode::usage, "{} {}: found extension '{}', allowed: {}", option, file.string(),
+              file.extension().string(), fmt::join(allowed, ", "));
+}
+
+void create_folder(const std::string& option, const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error(ExitCode::run_time, "{} {}: {}", option, folder.string(), failed.message());
+}
+
+}  // namespace clpv

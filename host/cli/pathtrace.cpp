@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// clpv pathtrace: the path-traced truth that `render`'s images are held against.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/render_request.hpp"
+#include "cli/tracing_options.hpp"
+#include "clpv/version.hpp"
+#include "image/image_io.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "pathtracer/traced_view.hpp"
+#include "pipeline/view.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/named_enum.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace pathtrace_command {
+
+struct Options {
+  std::string scene, model, camera, output, stats;
+  std::vector<Show> views = {Show::full};
+  int width = 960, height = 540;
+  double time = 0;
+  TracingOptions tracing;
+};
+
+/// Everything that is wrong with the outputs, before any time is spent on them.
+void check_outputs(const Options& options) {
+  require_extension("--output", options.output, {".exr"});
+  check_writable(options.output);
+  if (!options.stats.empty()) check_writable(options.stats);
+}
+
+nlohmann::json resolved(const Options& options, const Camera& camera) {
+  nlohmann::json json = {{"scene", options.scene},
+                         {"camera", camera.name},
+                         {"time", options.time},
+                         {"width", options.width},
+                         {"height", options.height},
+                         {"bounces", options.tracing.bounces},
+                         {"seed", options.tracing.values.seed}};
+  if (!options.model.empty()) json["model"] = options.model;
+  if (options.tracing.values.samples > 0) {
+    json["spp"] = options.tracing.values.samples;
+  } else {
+    json["noise"] = options.tracing.values.noise;
+  }
+  return json;
+}
+
+Image compose(const reference::TracedImage& traced, const std::vector<Show>& views) {
+  if (views.size() == 1) return traced_view(traced, views[0]);
+  Image image;
+  for (const Show view : views) append_layer(image, traced_view(traced, view), std::string(name_of(view)));
+  return image;
+}
+
+void write_outputs(const Options& options, const Camera& camera, const reference::TracedImage& traced,
+                   double seconds) {
+  const nlohmann::json asked = resolved(options, camera);
+  const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
+  Image image = compose(traced, options.views);
+  std::vector<std::string_view> views;
+  for (const Show view : options.views) views.push_back(name_of(view));
+  image.metadata = metadata_of(asked);
+  image.metadata["command"] = "pathtrace";
+  image.metadata["version"] = version();
+  image.metadata["view"] = fmt::format("{}", fmt::join(views, ","));
+  image.metadata["spp_traced"] = std::to_string(traced.samples);
+  image.metadata["noise_reached"] = noise.dump();
+  write_exr(options.output, image);
+  if (options.stats.empty()) return;
+  const nlohmann::json stats = {{"schema", 1},    {"options", asked},    {"spp", traced.samples},
+                                {"noise", noise}, {"rays", traced.rays}, {"seconds", seconds}};
+  write_file(options.stats, stats.dump(2) + "\n");
+}
+
+void run(const Options& options, Shared& shared) {
+  Ranks& team = shared.team();
+  const reference::PathTracerOptions tracing = options.tracing.resolved();
+  check_outputs(options);
+  MovingScene moving(options.scene, options.model);
+  for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
+  moving.pose(options.time);
+  const Scene& scene = moving.scene();
+  const Camera& camera = scene.camera(options.camera);
+  const auto started = std::chrono::steady_clock::now();
+  Progress progress("path tracing", kTraceSteps);
+  const reference::TracedImage traced = reference::trace_paths(
+      scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
+      shown_on(progress), team);
+  if (!team.is_root()) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
+    spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
+                 traced.samples, options.tracing.values.noise);
+  }
+  write_outputs(options, camera, traced, seconds);
+  const std::string noise = std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
+  spdlog::info("{} paths a pixel, {}{:.1f} s", traced.samples, noise, seconds);
+}
+
+void add_options(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scene, "scene file (.json), or a bare .gltf or .glb")->required();
+  add(command, "-o,--output", "FILE.exr", options.output, "linear EXR; several views become its layers")
+      ->required();
+  add(command, "--model", "PATH", options.model, "replaces the scene file's model");
+  add(command, "--camera", "NAME", options.camera, "by name (default: the scene's first)");
+  add_seconds(command, "--time", options.time, "the instant shown of a scene that moves [s]");
+  add_choices(command, "--view", options.views, "what to write; several: layers")->default_str("full");
+  command.add_option("--width", options.width, "[pixels]")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  command.add_option("--height", options.height, "[pixels]")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  add_tracing_options(command, options.tracing);
+  add(command, "--stats", "FILE.json", options.stats, "paths, noise, rays and seconds as JSON");
+}
+
+}  // namespace pathtrace_command
+
+void add_pathtrace(CLI::App& app, Shared& shared) {
+  using namespace pathtrace_command;
+  CLI::App* command = app.add_subcommand("pathtrace", "Ground truth of a scene by path tracing on the CPU");
+  auto options = std::make_shared<pathtrace_command::Options>();
+  add_options(*command, *options);
+  command->footer(
+      "Diffuse surfaces, hard shadows, one ray a pixel through its centre: `clpv compare` holds a rendered "
+      "image\n"
+      "against it pixel by pixel. Emissive surfaces light what they face. A background pixel is 0 with "
+      "alpha 0.\n"
+      "Time grows with the number of pixels: 240 x 135 pixels serve to measure, more to look "
+      "at.\n"
+      "mpirun -n N clpv pathtrace ... traces by N ranks, with the same bytes (docs/scale.md).");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// clpv quality: how far the frames of many variants are from the path-traced truth, and what they cost.
+//
+//   scenes, --camera   ->  Subject: a scene, its cameras, the truth of each      quality_subjects.hpp, quality/cached_reference.hpp
+//   --vary             ->  Variant: values of the options that vary             quality/quality.hpp
+//   subject x variant  ->  Group: the options of one frame, which shows every camera of the subject
+//   group x camera     ->  QualityCell: kept by an earlier run, or rendered, compared and kept      QualityStore
+//   cells              ->  means of a variant; table, CSV and JSON               quality/quality_report.hpp
+//
+// Ranks take every N-th group, or every N-th cell where groups are fewer than ranks.
+#include "quality/quality.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/quality_subjects.hpp"
+#include "cli/tracing_options.hpp"
+#include "clpv/version.hpp"
+#include "quality/quality_report.hpp"
+#include "support/error.hpp"
+#include "support/interrupt.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace quality_command {
+
+struct Options {
+  QualitySubjects subjects;
+  std::vector<std::string> varied;
+  std::string cache, json, csv, format = "table";
+  Show view = Show::indirect;
+  int frames = 3;
+  bool fresh = false;
+  TracingOptions tracing;
+  OptionValues given;
+};
+
+/// All combinations: what --vary says; without a word about bases, transports or presets, which have both, all of them.
+std::vector<Variant> variants_of(const Options& options) {
+  std::vector<VariedOption> varied;
+  for (const std::string& text : options.varied) {
+    varied.push_back(parse_varied(text));
+    if (varied.back().name == "width" || varied.back().name == "height") {
+      throw Error(ExitCode::usage, "--vary {}: a reference has one size; fix it by --width and --height",
+                  text);
+    }
+  }
+  const auto mentioned = [&](const char* name) {
+    return options.given.contains(name) || std::ranges::count(varied, name, &VariedOption::name) > 0;
+  };
+  const bool preset = mentioned("preset");
+  if (!preset && !mentioned("transport"))
+    varied.insert(varied.begin(), {"transport", names_of<TransportKind>()});
+  if (!preset && !mentioned("basis") && !mentioned("centres"))
+    varied.insert(varied.begin(), {"basis", basis_names()});
+  return combinations(varied);
+}
+
+/// Frames have as many bounces as their truth, unless --vary says how many.
+RenderOptions with(const Options& options, const Variant& variant, const Scene& scene) {
+  OptionValues given = options.given;
+  given["bounces"] = options.tracing.bounces;
+  for (const auto& [name, value] : variant) given[name] = value;
+  return resolve_options(given, scene);
+}
+
+struct Group {
+  const Subject& subject;
+  const Variant& variant;
+  RenderOptions options;
+};
+
+/// By subject, then by variant. Throws for options that do not go together.
+std::vector<Group> groups_of(const Options& options, const std::vector<Subject>& subjects,
+                             const std::vector<Variant>& variants) {
+  std::vector<Group> groups;
+  for (const Subject& subject : subjects) {
+    for (const Variant& variant : variants)
+      groups.push_back({subject, variant, with(options, variant, subject.scene)});
+  }
+  return groups;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A cell of that group and camera; makes the group's frame where there is none yet.
+QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
+                     const Options& options) {
+  const auto started = std::chrono::steady_clock::now();
+  QualityCell cell;
+  try {
+    double made_s = 0;
+    if (!frame) {
+      frame = std::make_unique<Frame>(session, group.subject.scene, group.options);
+      made_s = seconds_since(started);
+    }
+    cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera], options.view,
+                   options.frames);
+    cell.made_s = made_s;
+  } catch (const Error& error) {
+    // A basis that a transport cannot carry, a grid that does not fit: a result like any other.
+    if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
+    cell.rejected = error.what();
+  }
+  cell.measured_s = seconds_since(started) - cell.made_s;
+  cell.scene = group.subject.scene.name;
+  cell.camera = group.subject.cameras[camera].name;
+  return cell;
+}
+
+/// All cells, by group and camera, at rank 0; elsewhere those of this rank.
+std::vector<QualityCell> measure_all(Ranks& team, Session& session, const std::vector<Group>& groups,
+                                     const QualityStore& store, const Options& options) {
+  const bool whole = groups.size() >= static_cast<std::size_t>(team.size());
+  const auto each = [&](const auto& action) {
+    std::size_t cell = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      std::unique_ptr<Frame> frame;
+      for (std::size_t camera = 0; camera < groups[g].subject.cameras.size(); ++camera, ++cell)
+        if (team.takes(whole ? g : cell)) action(frame, groups[g], camera, cell);
+    }
+  };
+  std::size_t mine = 0;
+  each([&](auto&...) { ++mine; });
+  std::map<std::size_t, nlohmann::json> cells;  // of this rank, by number
+  Progress progress("quality", mine);
+  each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
+    stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(), mine));
+    const std::string key = quality_key(group.subject.truths[camera], session.device(), group.options,
+                                        options.view, options.frames);
+    std::optional<QualityCell> cell;
+    if (!options.fresh) cell = store.find(key);
+    const bool kept = cell.has_value();
+    if (!kept) cell = rendered(session, frame, group, camera, options);
+    cell->variant = group.variant;  // the same options may have been written otherwise
+    if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be a matter of the moment
+    cells[number] = to_json(*cell);
+    progress.advance();
+  });
+  for (const std::string& told : team.gather(nlohmann::json(cells).dump()))
+    cells.merge(nlohmann::json::parse(told).get<std::map<std::size_t, nlohmann::json>>());
+  std::vector<QualityCell> all;
+  for (const auto& [number, cell] : cells) all.push_back(cell_from_json(cell));
+  return all;
+}
+
+nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector<Subject>& subjects,
+                        const Session& session, const Options& options) {
+  nlohmann::json json = {{"schema", 1},
+                         {"time", options.subjects.time},
+                         {"version", version()},
+                         {"view", name_of(options.view)},
+                         {"frames", options.frames},
+                         {"device", to_json(session.device())},
+                         {"given", options.given}};
+  for (const Subject& subject : subjects) {
+    for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
+      const reference::Reference& truth = subject.truths[view];
+      json["references"].push_back({{"scene", subject.scene.name},
+                                    {"camera", subject.cameras[view].name},
+                                    {"file", truth.file.string()},
+                                    {"spp", truth.samples},
+                                    {"noise", truth.noise}});
+    }
+  }
+  for (const QualityCell& cell : cells) json["cells"].push_back(to_json(cell));
+  for (const QualitySummary& sum : summarise(cells)) json["variants"].push_back(to_json(sum));
+  return json;
+}
+
+void run(const Options& options, Shared& shared) {
+  Ranks& team = shared.team();
+  const std::vector<Variant> variants = variants_of(options);
+  const reference::PathTracerOptions tracing = options.tracing.resolved();
+  for (const std::string& output : {options.json, options.csv}) {
+    if (!output.empty()) check_writable(output);
+  }
+  const std::filesystem::path folder = quality_cache(options.cache);
+  const QualityStore store(folder / "cells");
+  Session session(team.device(shared.device));
+  std::vector<Subject> subjects = load_subjects(options.subjects);
+  const std::vector<Group> groups = groups_of(options, subjects, variants);
+  for (Subject& subject : subjects) {
+    const RenderOptions frame = with(options, {}, subject.scene);
+    trace_truths(subject, frame.width, frame.height, tracing, folder / "references", team);
+  }
+  const std::vector<QualityCell> cells = measure_all(team, session, groups, store, options);
+  if (!team.is_root()) return;
+  const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
+  if (!options.json.empty()) write_file(options.json, json);
+  if (!options.csv.empty()) write_file(options.csv, quality_csv(cells));
+  fmt::print("{}", options.format == "json"  ? json
+                   : options.format == "csv" ? quality_csv(cells)
+                                             : quality_table(cells));
+}
+
+void add_options(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.subjects.scenes, "scene files (.json), or bare .gltf or .glb")
+      ->required();
+  add_subject_options(command, options.subjects);
+  add(command, "--vary", "OPTION=a,b,c", options.varied,
+      "a render option and its values, repeatable: every combination is a variant. Bases and "
+      "transports vary\n"
+      "over all there are, unless --preset, --basis, --centres or --transport fixes them or "
+      "--vary names them");
+  add_choice(command, "--view", options.view, "what is compared");
+  command
+      .add_option("--frames", options.frames,
+                  "timed frames a cell, after one to warm up; their median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_tracing_options(command, options.tracing);
+  add(command, "--cache", "DIR", options.cache,
+      "where references and finished cells are kept (default: the user's cache)");
+  command.add_flag("--fresh", options.fresh, "measures every cell anew; references are kept");
+  command.add_option("--format", options.format, "of stdout")
+      ->check(CLI::IsMember({"table", "json", "csv"}))
+      ->capture_default_str();
+  add(command, "--json", "FILE", options.json, "the same run as JSON");
+  add(command, "--csv", "FILE", options.csv, "the same run as CSV");
+  add_frame_options(command, options.given);
+  for (const auto& [name, size] : {std::pair{"width", "240"}, {"height", "135"}}) {
+    options.given[name] = size;  // references of a frame's usual size take hours
+    command.get_option(fmt::format("--{}", name))->default_str(size);
+  }
+}
+
+}  // namespace quality_command
+
+void add_quality(CLI::App& app, Shared& shared) {
+  using namespace quality_command;
+  CLI::App* command =
+      app.add_subcommand("quality", "Errors against path tracing, and times, of many variants");
+  auto options = std::make_shared<quality_command::Options>();
+  add_options(*command, *options);
+  command->footer(
+      "nrmse: root mean square error over the reference's root mean square, over the valid pixels; best "
+      "gain: after the\n"
+      "single factor that makes it least; energy: sum over sum; perceptual: share of pixels that fail Yee's "
+      "test (1999).\n"
+      "A run that was stopped goes on where it was. Cells of another build, device or kernel text are "
+      "measured anew.\n"
+      "mpirun -n N clpv quality ... shares the cells among N ranks (docs/scale.md).");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

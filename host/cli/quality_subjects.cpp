@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "cli/quality_subjects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/options.hpp"
+#include "cli/tracing_options.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/input_file.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+/// The path in "STEM=PATH" where STEM is that of the scene's file, else nothing.
+std::string path_in(const std::string& model, const std::string& scene) {
+  const std::string stem = std::filesystem::path(scene).stem().string() + "=";
+  return model.starts_with(stem) ? model.substr(stem.size()) : "";
+}
+
+std::filesystem::path model_for(const std::string& scene, const QualitySubjects& given) {
+  for (const std::string& model : given.models) {
+    if (const std::string path = path_in(model, scene); !path.empty()) return path;
+    if (given.scenes.size() == 1) return model;
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
+  add(command, "--model", "[STEM=]PATH", subjects.models,
+      "replaces a scene file's model; several scenes: STEM=PATH, repeatable");
+  add(command, "--camera", "NAME", subjects.cameras,
+      "by name, repeatable (default: all cameras of all scenes)");
+  add_seconds(command, "--time", subjects.time, "the instant of scenes that move [s]");
+}
+
+std::filesystem::path quality_cache(const std::string& given) {
+  if (!given.empty()) return given;
+  if (const auto folder = user_cache_folder()) return *folder / "quality";
+  throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is set");
+}
+
+std::vector<Subject> load_subjects(const QualitySubjects& given) {
+  for (const std::string& model : given.models) {
+    const auto meant = [&](const std::string& scene) { return !path_in(model, scene).empty(); };
+    if (given.scenes.size() == 1 || std::ranges::any_of(given.scenes, meant)) continue;
+    throw Error(ExitCode::usage,
+                "--model {}: allowed with several scenes: STEM=PATH, STEM that of a scene's file", model);
+  }
+  std::vector<Subject> subjects;
+  for (const std::string& path : given.scenes) {
+    Subject& subject = subjects.emplace_back();
+    MovingScene moving(path, model_for(path, given));
+    moving.pose(given.time);
+    subject.scene = std::move(moving).take();
+    for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
+    for (const Camera& camera : subject.scene.cameras) {
+      const bool chosen = given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;
+      if (chosen) subject.cameras.push_back(camera);
+    }
+  }
+  for (const std::string& name : given.cameras) {
+    const auto has = [&](const Subject& s) { return std::ranges::count(s.cameras, name, &Camera::name) > 0; };
+    if (std::ranges::none_of(subjects, has))
+      subjects[0].scene.camera(name);  // throws, with the names there are
+  }
+  return subjects;
+}
+
+void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
+                  const std::filesystem::path& folder, Ranks& team) {
+  for (const Camera& camera : subject.cameras) {
+    Progress progress(fmt::format("reference {} {}", subject.scene.name, camera.name), kTraceSteps);
+    subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
+                                                         options, shown_on(progress), team));
+    const reference::Reference& truth = subject.truths.back();
+    spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
+  }
+}
+
+}  // namespace clpv

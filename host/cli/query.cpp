@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// clpv query: the light that volumes hold at points of a file, whether the camera sees them or not.
+#include <fmt/format.h>
+
+#include <iostream>
+#include <iterator>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/render_request.hpp"
+#include "quality/light_field.hpp"
+#include "quality/points_file.hpp"
+#include "scene/load.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace query_command {
+
+struct Options {
+  RenderRequest request;
+  std::string points, output;
+  double time = 0;
+};
+
+std::string table_of(const std::vector<SurfacePoint>& points, const LightField& light) {
+  std::string text = "x,y,z,nx,ny,nz,red,green,blue\n";
+  std::size_t outside = 0;
+  for (const auto& [p, n] : points) {
+    const glm::dvec3 e = light.irradiance(p, n);
+    outside += !light.reaches(p);
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", p.x, p.y, p.z, n.x, n.y, n.z,
+                   static_cast<float>(e.x), static_cast<float>(e.y), static_cast<float>(e.z));
+  }
+  if (outside > 0)
+    spdlog::warn("{} of {} points lie outside the cascades, where there is no light", outside, points.size());
+  return text;
+}
+
+void run(const Options& options, const Shared& shared) {
+  if (!options.output.empty()) check_writable(options.output);
+  const std::vector<SurfacePoint> points = read_points(options.points);
+  const RenderRequest& request = options.request;
+  MovingScene moving(request.scene, request.model);
+  moving.pose(options.time);
+  const RenderOptions resolved = resolve_options(request.frame, moving.scene());
+  const Camera& camera = moving.scene().camera(request.camera);
+  tell_of_scene(moving.scene(), camera, resolved);
+  Session session(choose_device(shared.device), ProgramCache::of_user());
+  Frame frame(session, moving.scene(), resolved);
+  frame.render(camera);
+  const std::string table = table_of(points, LightField(session, frame));
+  if (options.output.empty()) {
+    std::cout << table;
+  } else {
+    write_file(options.output, table);
+  }
+  session.store_programs();
+}
+
+}  // namespace query_command
+
+void add_query(CLI::App& app, Shared& shared) {
+  using namespace query_command;
+  CLI::App* command =
+      app.add_subcommand("query", "Indirect light at points of a file, seen by the camera or not");
+  auto options = std::make_shared<query_command::Options>();
+  add(*command, "--points", "FILE.csv", options->points,
+      "lines of x,y,z,nx,ny,nz: where, in the scene's world [m], and the surface's normal")
+      ->required();
+  add(*command, "-o,--output", "FILE.csv", options->output, "the table; default: stdout");
+  add_seconds(*command, "--time", options->time, "the instant of a scene that moves [s]");
+  add_render_request(*command, options->request);
+  command->footer(
+      "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], as "
+      "--view\nirradiance shows it. Cascades stand round the camera; beyond them it is 0. The surface need "
+      "not be "
+      "in the\nscene: a thing that moves through it, or mist, is lit the same way.");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

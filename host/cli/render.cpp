@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// clpv render: a scene, lit by cascaded light propagation volumes, into an image.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/render_request.hpp"
+#include "image/image_io.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/frame_stats.hpp"
+#include "quality/normal_weights.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/interrupt.hpp"
+#include "support/log.hpp"
+#include "support/named_enum.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+#include "volume/volume_files.hpp"
+
+namespace clpv {
+namespace render_command {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  RenderRequest request;
+  std::string output, stats, dump, normals;
+  int frames = 5;
+  double time = 0;
+  std::vector<Show> views = {Show::full};
+};
+
+/// FILE.png, or FILE.VIEW.png where there are several.
+fs::path png_path(const fs::path& output, Show view, bool several) {
+  if (!several) return output;
+  fs::path path = output;
+  return path.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
+}
+
+/// Everything that can be known to be wrong before the device is touched.
+void check_outputs(const Options& options) {
+  require_extension("--output", options.output, {".exr", ".png"});
+  const std::string extension = fs::path(options.output).extension().string();
+  if (extension == ".exr") check_writable(options.output);
+  for (const Show view : options.views) {
+    if (extension == ".png") check_writable(png_path(options.output, view, options.views.size() > 1));
+  }
+  if (!options.stats.empty()) check_writable(options.stats);
+  if (!options.normals.empty()) check_writable(options.normals);
+  if (!options.dump.empty()) {
+    create_folder("--dump-volume", options.dump);
+    check_writable(fs::path(options.dump) / "cascade0.npy");
+  }
+}
+
+void write_images(Frame& frame, const Options& options, float exposure,
+                  const std::map<std::string, std::string>& metadata) {
+  const fs::path output = options.output;
+  const std::vector<Show>& views = options.views;
+  if (output.extension() == ".exr") {
+    Image all;
+    for (const Show view : views) {
+      append_layer(all, view_image(frame, view),
+                   views.size() == 1 ? std::string() : std::string(name_of(view)));
+    }
+    all.metadata = metadata;
+    return write_exr(output, all);
+  }
+  for (const Show view : views) {
+    Image shown = display_image(view_image(frame, view), exposure, options.request.tonemap);
+    shown.metadata = metadata;
+    write_png(png_path(output, view, views.size() > 1), shown);
+  }
+}
+
+void dump_volume(Session& session, const Options& options, const CascadeVolumes& volumes) {
+  std::vector<float> values = volumes.accumulated.read(session);
+  for (float& value : values) value /= volumes.light_scale;
+  const VolumeShape& shape = volumes.accumulated.shape();
+  const fs::path stem = fs::path(options.dump) / fmt::format("cascade{}", volumes.cascade);
+  write_volume_npy(stem.string() + ".npy", values, shape.n, shape.coefficients);
+  write_volume_vti(stem.string() + ".vti", values, volumes.grid, shape.coefficients);
+}
+
+void run(const Options& options, const Shared& shared) {
+  check_outputs(options);
+  FrameStats stats;
+  Progress progress("render", 4);
+  const RenderRequest& request = options.request;
+  MovingScene moving(request.scene, request.model);
+  const Scene& scene = moving.scene();
+  moving.pose(options.time);
+  const RenderOptions resolved = resolve_options(request.frame, scene);
+  const Camera& camera = scene.camera(request.camera);
+  tell_of_scene(scene, camera, resolved);
+  progress.advance();
+
+  stats.begin_startup();
+  Session session(choose_device(shared.device), ProgramCache::of_user());
+  Frame frame(session, scene, resolved);
+  stats.end_startup(session);
+  spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
+                session.device().driver);
+  spdlog::debug("options: {}", to_json(resolved).dump());
+  progress.advance();
+  frame.render(camera, [&](const CascadeVolumes& volumes) {
+    if (!options.stats.empty()) stats.add_energy(session, frame, volumes);
+    if (!options.dump.empty()) dump_volume(session, options, volumes);
+  });
+  stats.end_first_frame(session);
+  stop_if_interrupted();
+  progress.advance();
+  for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
+    stop_if_interrupted();
+    frame.forget_light();
+    stats.begin_frame();
+    frame.render(camera);
+    stats.end_frame(session);
+  }
+
+  const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
+  write_images(frame, options, request.exposure_of(scene), metadata_of(described));
+  if (!options.normals.empty())
+    write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
+  if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, described).dump(2) + "\n");
+  progress.advance();
+  session.store_programs();
+}
+
+}  // namespace render_command
+
+void add_render(CLI::App& app, Shared& shared) {
+  using namespace render_command;
+  CLI::App* command =
+      app.add_subcommand("render", "Render a scene with indirect light from light propagation volumes");
+  auto options = std::make_shared<render_command::Options>();
+  add_render_request(*command, options->request);
+  add_shown_options(*command, options->request);
+  add(*command, "-o,--output", "FILE", options->output,
+      "image: .exr (linear) or .png (tone-mapped, sRGB); options in its metadata")
+      ->required();
+  add_seconds(*command, "--time", options->time, "the instant shown of a scene that moves [s]");
+  add_choices(*command, "--view", options->views,
+              "what to write; several: layers of one EXR, or FILE.VIEW.png")
+      ->default_str("full");
+  add(*command, "--stats", "FILE.json", options->stats,
+      "stage times of frames whose light is made anew, options and energies, as JSON");
+  command
+      ->add_option("--frames", options->frames,
+                   "frames that --stats times, after one to warm up; their medians are told")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add(*command, "--dump-volume", "DIR", options->dump,
+      "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]");
+  add(*command, "--dump-normals", "FILE.json", options->normals,
+      "normals that the lights see, weighted by the flux they send on, for clpv basis --weights");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

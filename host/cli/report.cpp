@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// clpv report: one page with images beside the truth, errors against costs, and benchmarks; drawn by tools/clpv_draw.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/drawing.hpp"
+#include "cli/options.hpp"
+#include "cli/quality_subjects.hpp"
+#include "cli/render_request.hpp"
+#include "cli/tracing_options.hpp"
+#include "clpv/version.hpp"
+#include "image/compare.hpp"
+#include "image/image_io.hpp"
+#include "image/tone_map.hpp"
+#include "pipeline/frame.hpp"
+#include "support/array_files.hpp"
+#include "support/error.hpp"
+#include "support/json_schema.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+namespace report_command {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string folder, cache;
+  QualitySubjects subjects;
+  std::vector<std::string> quality, benchmarks;
+  std::string width = "240", height = "135";
+  TracingOptions tracing;
+};
+
+/// The ways to render that a page shows, the one that matters last: with as many bounces as the truth, which others lack.
+struct Way {
+  const char* title;
+  OptionValues given;
+};
+std::vector<Way> ways(const Options& options) {
+  return {{"published scheme (sh2)", {{"preset", "paper"}, {"basis", "sh2"}}},
+          {"the paper (srbf8v2)", {{"preset", "paper"}}},
+          {"clpv", {{"preset", "best"}, {"bounces", options.tracing.bounces}}}};
+}
+
+std::string as_arguments(const OptionValues& given) {
+  std::string text = "SCENE --view indirect";
+  for (const auto& [name, value] : given) text += fmt::format(" --{} {}", name, value);
+  return text;
+}
+
+/// Documents as the page takes them, each with the file it is from, for messages.
+nlohmann::json read_documents(const std::vector<std::string>& paths, const char* wanted,
+                              const char* command) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const std::string& path : paths) {
+    const nlohmann::json document = read_json(path);
+    if (!document.is_object() || !document.contains(wanted)) {
+      throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON", path, wanted,
+                  command);
+    }
+    all.push_back({{"file", path}, {"document", document}});
+  }
+  return all;
+}
+
+OptionValues sized(const Options& options, OptionValues given) {
+  given["width"] = options.width;
+  given["height"] = options.height;
+  return given;
+}
+
+/// Indirect light alone is dark at the exposure of a whole image: brings its mean luminance to a fifth of white [EV].
+float exposure_of(const Image& truth) {
+  double sum = 0, count = 0;
+  for (int y = 0; y < truth.height; ++y) {
+    for (int x = 0; x < truth.width; ++x) {
+      sum += luminance({truth.at(x, y, 0), truth.at(x, y, 1), truth.at(x, y, 2)});
+      count += truth.at(x, y, 3);
+    }
+  }
+  constexpr double kMean = 0.2;
+  return sum > 0 ? static_cast<float>(std::log2(kMean * count / sum)) : 0;
+}
+
+/// An image as the page takes it: as a display shows it, and its numbers.
+nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const Image& image,
+                         float exposure) {
+  write_png(drawing.folder() / (stem + ".png"), display_image(image, exposure, ToneMap::aces));
+  write_npy(drawing.folder() / (stem + ".npy"), image.pixels,
+            std::array{static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
+                       image.channels.size()});
+  return {{"image", stem + ".png"}, {"values", stem + ".npy"}};
+}
+
+Image render_indirect(Session& session, const Subject& subject, const Camera& camera, const Options& options,
+                      const Way& way) {
+  Frame frame(session, subject.scene, resolve_options(sized(options, way.given), subject.scene));
+  frame.render(camera);
+  return view_image(frame, Show::indirect);
+}
+
+/// What one camera sees: the truth, and each way's image of it with its errors.
+nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
+                    const Drawing& drawing, const std::string& stem, Progress& progress) {
+  const Camera& camera = subject.cameras[index];
+  const reference::Reference& traced = subject.truths[index];
+  const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
+  const float exposure = exposure_of(truth);
+  nlohmann::json shots = nlohmann::json::array();
+  for (const Way& way : ways(options)) {
+    const Image image = render_indirect(session, subject, camera, options, way);
+    nlohmann::json shot = to_json(compare(image, way.title, truth, "truth"));
+    shot.update(add_image(drawing, fmt::format("{}-{}", stem, shots.size()), image, exposure));
+    shot.update({{"title", way.title}, {"options", as_arguments(way.given)}});
+    shots.push_back(std::move(shot));
+    progress.advance();
+  }
+  return {{"scene", subject.scene.name},
+          {"camera", camera.name},
+          {"truth", add_image(drawing, stem + "-truth", truth, exposure)},
+          {"shots", shots}};
+}
+
+nlohmann::json views(Session& session, const Options& options, const Drawing& drawing) {
+  nlohmann::json all = nlohmann::json::array();
+  for (Subject& subject : load_subjects(options.subjects)) {
+    const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
+    trace_truths(subject, size.width, size.height, options.tracing.resolved(),
+                 quality_cache(options.cache) / "references");
+    Progress progress("report", subject.cameras.size() * ways(options).size());
+    for (std::size_t i = 0; i < subject.cameras.size(); ++i)
+      all.push_back(view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
+  }
+  return all;
+}
+
+void run(const Options& options, const Shared& shared) {
+  create_folder("DIR", options.folder);
+  const fs::path output = fs::path(options.folder) / "index.html";
+  check_writable(output);
+
+  const Drawing drawing("report", "clpv report");
+  nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
+                        {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
+  Session session(choose_device(shared.device), ProgramCache::of_user());
+  report["views"] = views(session, options, drawing);
+  session.store_programs();
+  const RenderOptions best;
+  report["marked"] = {{{"preset", "paper"}},
+                      {{"preset", "best"}},
+                      {{"basis", best.basis}, {"transport", name_of(best.transport)}}};
+  report["subtitle"] =
+      fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels", version(), session.device().name,
+                  session.device().platform, session.device().driver, options.width, options.height);
+  drawing.add("report.json", report);
+  drawing.draw(output);
+  fmt::print("{}\n", output.string());
+}
+
+}  // namespace report_command
+
+void add_report(CLI::App& app, Shared& shared) {
+  using namespace report_command;
+  CLI::App* command = app.add_subcommand(
+      "report", "One HTML page: images beside the truth, errors against costs, benchmarks");
+  auto options = std::make_shared<report_command::Options>();
+  command->add_option("DIR", options->folder, "where index.html is written")->required();
+  command->add_option("SCENE", options->subjects.scenes,
+                      "scene files whose views are shown beside path tracing");
+  add_subject_options(*command, options->subjects);
+  add(*command, "--quality", "FILE.json", options->quality,
+      "figures made by clpv quality --json, repeatable");
+  add(*command, "--bench", "FILE.json", options->benchmarks,
+      "figures made by clpv bench table1 or layouts --format json, repeatable");
+  command->add_option("--width", options->width, "of views and references [pixels]")->capture_default_str();
+  command->add_option("--height", options->height, "of views and references [pixels]")->capture_default_str();
+  add_tracing_options(*command, options->tracing);
+  add(*command, "--cache", "DIR", options->cache, "where references are kept (default: the user's cache)");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

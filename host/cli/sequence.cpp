@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: MIT
+// clpv sequence: a scene that moves, frame by frame into a folder, and into a film.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/render_request.hpp"
+#include "cli/sequence_report.hpp"
+#include "cli/video.hpp"
+#include "image/image_io.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "pipeline/view.hpp"
+#include "quality/cached_reference.hpp"
+#include "scene/bounds.hpp"
+#include "scene/load.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/interrupt.hpp"
+#include "support/log.hpp"
+#include "support/output_file.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+
+enum class FrameFormat : unsigned { exr, png };
+
+template <>
+inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
+
+namespace sequence_command {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kMostFrames = 1000000;
+constexpr double kMostFramesPerSecond = 1000;
+constexpr const char* kKey = "made_of";          // metadata: the key of a frame
+constexpr std::chrono::seconds kTimesEvery{10};  // a run that is killed loses the times of so many seconds
+
+/// Frame i shows `from` + i / `frames_per_second` [s].
+struct Options {
+  RenderRequest request;
+  std::string output, video;
+  int frames = 0;
+  double frames_per_second = 0, from = 0;
+  Show view = Show::full;
+  FrameFormat format = FrameFormat::exr;
+  bool stability = false;
+  std::uint32_t traced = 0;
+
+  double instant(int frame) const { return from + frame / frames_per_second; }
+  fs::path file(int frame) const {
+    return fs::path(output) / fmt::format("frame-{:04}.{}", frame, name_of(format));
+  }
+};
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Whether that file holds a frame of that key. What cannot be read does not, with a warning.
+bool holds_frame(const fs::path& file, const std::string& key) {
+  std::error_code unknown;
+  if (!fs::exists(file, unknown)) return false;
+  try {
+    const std::map<std::string, std::string> metadata = read_metadata(file);
+    const auto found = metadata.find(kKey);
+    return found != metadata.end() && found->second == key;
+  } catch (const Error& error) {
+    spdlog::warn("{}; it is rendered again", error.what());
+    return false;
+  }
+}
+
+/// The scene, the device and all that is made for it stay from frame to frame.
+class Sequence {
+ public:
+  Sequence(const Options& options, const Shared& shared, Ranks& team)
+      : options_(options),
+        team_(team),
+        moving_(options.request.scene, options.request.model),
+        resolved_(resolve_options(options.request.frame, moving_.scene())),
+        device_(team.device(shared.device)) {
+    tell_of_scene(moving_.scene(), camera(), resolved_);
+    if (!moving_.moves())
+      spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
+    Fingerprint print;
+    print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
+    still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
+    if (team.is_root()) times_ = read_times(times_file(), options.frames);
+  }
+
+  /// The frames of this rank that are not there yet; then, at rank 0, the times of all.
+  void render() {
+    const Clock::time_point started = Clock::now();
+    double mine = 0, counts[] = {0, 0};
+    auto& [rendered, there] = counts;
+    for (int i = 0; i < options_.frames; ++i) mine += team_.takes(static_cast<std::size_t>(i));
+    Progress progress("sequence", static_cast<std::uint64_t>(mine));
+    for (int i = 0; i < options_.frames; ++i) {
+      if (!team_.takes(static_cast<std::size_t>(i))) continue;
+      if (interrupted()) {
+        write_times();
+        throw Interrupted(fmt::format("{} of {} frames are in {}; the same command goes on", rendered + there,
+                                      mine, options_.output));
+      }
+      (render(i) ? rendered : there) += 1;
+      progress.advance();
+    }
+    team_.sum(counts);
+    if (there > 0) spdlog::info("{} of {} frames were there already", there, options_.frames);
+    if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
+    for (const std::string& told : team_.gather(nlohmann::json(times_).dump()))
+      for (auto& [number, frame] : nlohmann::json::parse(told).get<SequenceTimes>()) times_[number] = frame;
+    write_times();
+    if (renderer_) renderer_->session.store_programs();
+    renderer_.reset();
+  }
+
+  /// stability.json of all frames, rendered once more: most of them may be of an earlier run. By one rank.
+  void measure_stability() {
+    Progress progress("stability", static_cast<std::uint64_t>(options_.frames));
+    Renderer renderer(device_, moving_.scene(), resolved_);
+    Stability stability(renderer.session, renderer.frame, options_.traced);
+    for (int i = 0; i < options_.frames; ++i) {
+      stop_if_interrupted(fmt::format("the frames are in {}, their stability is not told", options_.output));
+      moving_.pose(options_.instant(i));
+      renderer.frame.scene_moved();
+      renderer.frame.render(camera());
+      stability.add(i, options_.instant(i), moving_.scene(), camera());
+      progress.advance();
+    }
+    nlohmann::json all = about();
+    all["traced_spp"] = options_.traced;
+    write_file(fs::path(options_.output) / "stability.json",
+               stability_json(all, stability.steps()).dump(1) + "\n");
+  }
+
+  /// All frames, from their files. By one rank.
+  void film(Video& video) {
+    Progress progress("film", static_cast<std::uint64_t>(options_.frames));
+    for (int i = 0; i < options_.frames; ++i) {
+      stop_if_interrupted(fmt::format("the frames are in {}, the film is not made", options_.output));
+      const Image image = read_image(options_.file(i));
+      video.add(image.encoding == Encoding::srgb
+                    ? image
+                    : display_image(image, options_.request.exposure_of(moving_.scene()),
+                                    options_.request.tonemap));
+      progress.advance();
+    }
+    video.finish();
+  }
+
+ private:
+  struct Renderer {
+    Session session;
+    Frame frame;
+    Renderer(const Device& device, const Scene& scene, const RenderOptions& options)
+        : session(device, ProgramCache::of_user()), frame(session, scene, options) {}
+  };
+
+  const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
+  fs::path times_file() const { return fs::path(options_.output) / "times.json"; }
+
+  nlohmann::json described(double seconds) const {
+    nlohmann::json all = describe(options_.request, resolved_, moving_.scene(), camera(), seconds);
+    all["view"] = name_of(options_.view);
+    return all;
+  }
+
+  /// Names everything that a frame's pixels depend on: program, device, options, the scene's contents, and where they are now.
+  std::string key(const nlohmann::json& described) const {
+    const Scene& posed = moving_.scene();
+    Fingerprint print;
+    print.add(still_).add(described.dump());
+    print.add(std::vector{camera_view(camera(), resolved_.width, resolved_.height)});
+    add_moving(print, posed);
+    for (const Light& light : posed.lights_for(camera())) print.add(std::vector{light.data});
+    return print.hex();
+  }
+
+  /// Whether it was not there yet.
+  bool render(int number) {
+    FrameTimes times;
+    times.seconds = options_.instant(number);
+    Clock::time_point started = Clock::now();
+    moving_.pose(times.seconds);
+    times.pose_ms = milliseconds_since(started);
+    const nlohmann::json description = described(times.seconds);
+    const std::string key = this->key(description);
+    if (holds_frame(options_.file(number), key)) return false;
+
+    times.first = !renderer_;
+    if (!renderer_) renderer_.emplace(device_, moving_.scene(), resolved_);
+    auto& [session, frame] = *renderer_;
+    started = Clock::now();
+    if (moving_.moves()) frame.scene_moved();
+    times.pose_ms += milliseconds_since(started);
+    started = Clock::now();
+    frame.render(camera());
+    session.queue().finish();
+    times.frame_ms = milliseconds_since(started);
+    times.stages = session.timeline().times();
+    started = Clock::now();
+    write(number, frame, description, key);
+    times.write_ms = milliseconds_since(started);
+    times_[number] = to_json(number, times);
+    spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, times.seconds, times.frame_ms);
+    if (Clock::now() - times_written_ > kTimesEvery) write_times();
+    return true;
+  }
+
+  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) const {
+    Image image = view_image(frame, options_.view);
+    image.metadata = metadata_of(description);
+    image.metadata[kKey] = key;
+    if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);
+    write_png(options_.file(number),
+              display_image(image, options_.request.exposure_of(moving_.scene()), options_.request.tonemap));
+  }
+
+  nlohmann::json about() const {
+    nlohmann::json options = described(options_.from);
+    options.erase("time");
+    return {{"device", to_json(device_)},
+            {"options", options},
+            {"fps", options_.frames_per_second},
+            {"from", options_.from}};
+  }
+
+  void write_times() {
+    if (!team_.is_root()) return;
+    write_file(times_file(), times_json(about(), times_).dump(1) + "\n");
+    times_written_ = Clock::now();
+  }
+
+  const Options& options_;
+  Ranks& team_;
+  MovingScene moving_;
+  RenderOptions resolved_;
+  Device device_;
+  std::string still_;    ///< key of all that does not move
+  SequenceTimes times_;  ///< of this rank's frames; at rank 0 those of an earlier run too
+  Clock::time_point times_written_ = Clock::now();
+  std::optional<Renderer> renderer_;  ///< none before its first frame
+};
+
+/// What can be known to be wrong before the scene is read.
+void check_outputs(const Options& options) {
+  if (const double last = options.instant(options.frames - 1); last > bounds::kSeconds) {
+    throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
+                last, bounds::kSeconds);
+  }
+  if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
+  if (options.traced > 0 && !options.stability)
+    throw Error(ExitCode::usage, "--traced {}: found no --stability, whose noise it tells of; allowed: both",
+                options.traced);
+  std::error_code failed;
+  const fs::path folder = options.output;
+  if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
+    throw Error(ExitCode::run_time, "--output {}: what is there is not a folder", options.output);
+  create_folder("--output", folder);
+  check_writable(options.file(0));
+  check_writable(folder / "times.json");
+  if (options.stability) check_writable(folder / "stability.json");
+}
+
+void run(const Options& options, Shared& shared) {
+  Ranks& team = shared.team();
+  check_outputs(options);
+  std::optional<Video> video;
+  if (!options.video.empty() && team.is_root()) video.emplace(options.video, options.frames_per_second);
+  Sequence sequence(options, shared, team);
+  sequence.render();
+  if (!team.is_root()) return;
+  if (options.stability) sequence.measure_stability();
+  if (video) sequence.film(*video);
+}
+
+}  // namespace sequence_command
+
+void add_sequence(CLI::App& app, Shared& shared) {
+  using namespace sequence_command;
+  CLI::App* command = app.add_subcommand("sequence", "Render a scene that moves, frame by frame");
+  auto options = std::make_shared<sequence_command::Options>();
+  add(*command, "-o,--output", "DIR", options->output,
+      "folder of frame-0000.exr and so on, and of times.json; made where it is not there")
+      ->required();
+  add(*command, "--frames", "N", options->frames, "how many")->check(CLI::Range(1, kMostFrames))->required();
+  add_number(*command, "--fps", options->frames_per_second, "frames a second of the scene's time",
+             {std::numeric_limits<double>::min(), kMostFramesPerSecond,
+              fmt::format("more than 0, up to {}", kMostFramesPerSecond)})
+      ->required()
+      ->type_name("RATE");
+  add_seconds(*command, "--from", options->from, "the instant of the first frame [s]");
+  add_choice(*command, "--view", options->view, "what frames show");
+  add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
+  add(*command, "--video", "FILE.mp4", options->video, "all frames as a film too, through ffmpeg");
+  command->add_flag(
+      "--stability", options->stability,
+      "stability.json: how light changes from frame to frame on surfaces that stay where they are");
+  add(*command, "--traced", "SPP", options->traced,
+      "with --stability: the same of path tracing by so many paths a pixel, its noise")
+      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples));
+  add_shown_options(*command, options->request);
+  add_render_request(*command, options->request);
+  command->footer(
+      "Frame i shows FROM + i / RATE seconds, with the pixels of `clpv render --time` of that instant. A "
+      "frame "
+      "whose\nfile is there and was made of the same is not rendered again, so that a run that was ended "
+      "goes on "
+      "where it was.\ntimes.json has the times of every frame, and of each stage the median, 95th percentile "
+      "and worst [ms].\nmpirun -n N clpv sequence ... shares the frames among N ranks (docs/scale.md).");
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+}  // namespace clpv

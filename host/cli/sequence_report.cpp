@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "cli/sequence_report.hpp"
+
+#include <algorithm>
+
+#include "bench/row.hpp"
+#include "support/input_file.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSchema = 1;
+constexpr const char* kSpans[] = {"pose", "frame", "write"};
+
+template <typename T>
+json number_or_null(const std::optional<T>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+json summary_of(std::vector<double> samples) {
+  const bench::Statistics figures = bench::statistics_of(std::move(samples));
+  return {{"median_ms", figures.median}, {"p95_ms", figures.p95}, {"worst_ms", figures.max}};
+}
+
+/// Of each stage, cascade and light, in the order they first come in.
+json summary_of_stages(const std::vector<const json*>& frames) {
+  std::vector<std::pair<json, std::vector<double>>> stages;
+  for (const json* frame : frames) {
+    for (const json& stage : frame->at("stages")) {
+      const json which = {
+          {"stage", stage.at("stage")}, {"cascade", stage.at("cascade")}, {"light", stage.at("light")}};
+      auto found = std::ranges::find(stages, which, &std::pair<json, std::vector<double>>::first);
+      if (found == stages.end()) found = stages.emplace(found, which, std::vector<double>());
+      found->second.push_back(stage.at("ms"));
+    }
+  }
+  json all = json::array();
+  for (auto& [which, samples] : stages) {
+    samples.resize(frames.size(), 0.0);
+    json summary = which;
+    summary.update(summary_of(std::move(samples)));
+    all.push_back(std::move(summary));
+  }
+  return all;
+}
+
+json summary_of(const std::vector<const json*>& frames) {
+  json summary = {{"frames", frames.size()}, {"stages", summary_of_stages(frames)}};
+  for (const std::string span : kSpans) {
+    std::vector<double> samples;
+    for (const json* frame : frames) samples.push_back(frame->at(span + "_ms"));
+    summary[span] = summary_of(std::move(samples));
+  }
+  return summary;
+}
+
+}  // namespace
+
+json to_json(int frame, const FrameTimes& times) {
+  json stages = json::array();
+  for (const StageTime& stage : times.stages) {
+    stages.push_back({{"stage", name_of(stage.mark.pass)},
+                      {"cascade", number_or_null(stage.mark.cascade)},
+                      {"light", number_or_null(stage.mark.light)},
+                      {"ms", stage.ms},
+                      {"timer", stage.from_events ? "event" : "wall"}});
+  }
+  return {{"frame", frame},
+          {"time", times.seconds},
+          {"first", times.first},
+          {"pose_ms", times.pose_ms},
+          {"frame_ms", times.frame_ms},
+          {"write_ms", times.write_ms},
+          {"stages", std::move(stages)}};
+}
+
+SequenceTimes read_times(const std::filesystem::path& file, int frames) {
+  const auto text = file_bytes(file);
+  if (!text) return {};
+  SequenceTimes times;
+  try {
+    const json before = json::parse(*text);
+    for (const json& frame : before.at("frames")) {
+      summary_of({&frame});  // throws where a field that is summed up is missing
+      frame.at("time").get<double>(), frame.at("first").get<bool>();
+      if (const int number = frame.at("frame"); number < frames) times[number] = frame;
+    }
+    return times;
+  } catch (const json::exception& error) {
+    spdlog::warn("{}: the times of frames that were there are left out: {}", file.string(), error.what());
+    return {};
+  }
+}
+
+json times_json(const json& about, const SequenceTimes& times) {
+  json all = about, frames = json::array();
+  std::vector<const json*> steady;
+  for (const auto& [number, frame] : times) {
+    frames.push_back(frame);
+    if (!frame.at("first").get<bool>()) steady.push_back(&frame);
+  }
+  all.update({{"schema", kSchema}, {"frames", std::move(frames)}, {"summary", summary_of(steady)}});
+  return all;
+}
+
+json stability_json(const json& about, std::span<const StabilityStep> steps) {
+  json all = about, frames = json::array();
+  std::vector<double> inside, across;
+  for (const StabilityStep& step : steps) {
+    frames.push_back({{"frame", step.frame},
+                      {"time", step.seconds},
+                      {"still", step.still},
+                      {"cascades_moved", step.cascades_moved},
+                      {"seen", step.seen},
+                      {"change", number_or_null(step.change.mean)},
+                      {"change_p95", number_or_null(step.change.p95)},
+                      {"traced", number_or_null(step.noise)}});
+    if (step.still && step.change.mean)
+      (step.cascades_moved.empty() ? inside : across).push_back(*step.change.mean);
+  }
+  all.update({{"schema", kSchema}, {"frames", std::move(frames)}});
+  for (const auto& [name, samples] : {std::pair("inside_cells", inside), std::pair("across_cells", across)}) {
+    const bench::Statistics figures = bench::statistics_of(samples);
+    all["summary"][name] = {
+        {"frames", samples.size()}, {"median", figures.median}, {"p95", figures.p95}, {"worst", figures.max}};
+  }
+  return all;
+}
+
+}  // namespace clpv

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/blockers.hpp"
+
+#include "codegen/linear_code.hpp"
+#include "kernels/shared/blockers.h"
+
+namespace clpv {
+namespace {
+
+constexpr unsigned kMostTriangles = 1u << 20;  // a launch
+
+VoxelMaskShape shape_of(int grid, int cascades) {
+  return {grid + 1, grid + 1, CLPV_BLOCK_WORDS, static_cast<std::size_t>(cascades)};
+}
+
+ProgramSource triangles_program(const SceneBuffers& scene, int grid) {
+  ProgramSource source{"blockers.cl", {}, {}};
+  source.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
+  return source;
+}
+
+ProgramSource shares_program(int grid, const VolumeFormat& format) {
+  ProgramSource source{"blocked_areas.cl", {}, coefficient_macros(3)};
+  source.literals.integer("CLPV_GRID", grid);
+  add_format_literals(source.literals, format);
+  return source;
+}
+
+}  // namespace
+
+std::size_t BlockerVoxelizer::bytes(int grid, int cascades) {
+  return voxel_mask_bytes(shape_of(grid, cascades));
+}
+
+BlockerVoxelizer::BlockerVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
+                                   const VolumeFormat& format)
+    : scene_(scene),
+      grid_(grid),
+      masks_(session, scene, shape_of(grid, cascades), kMostTriangles, "masks of triangles that block"),
+      triangles_(session, triangles_program(scene, grid), "voxelize_blockers"),
+      shares_(session, shares_program(grid, format), "blocked_areas") {}
+
+void BlockerVoxelizer::block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry) {
+  masks_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, masks_.buffer(),
+               masks_.slot(cascade));
+  shares_.set(masks_.buffer(), masks_.slot(cascade), geometry.memory());
+  const auto corners = static_cast<std::size_t>(grid_) + 1;
+  shares_.launch(cl::NDRange(corners, corners, corners), cl::NDRange(kMarkGroup, 1, 1));
+}
+
+}  // namespace clpv

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/reflectors.hpp"
+
+#include "basis/bounce.hpp"
+#include "codegen/linear_code.hpp"
+#include "kernels/shared/reflectors.h"
+
+namespace clpv {
+namespace {
+
+static_assert(kReflectingSides == CLPV_SIDES);
+
+constexpr unsigned kMostReflectors = 1u << 18;  // a launch
+
+VoxelMaskShape shape_of(int grid) {
+  return {grid, grid, CLPV_SIDES * CLPV_SIDE_WORDS, 1};
+}
+
+ProgramSource reflect_program(const SceneBuffers& scene, int grid) {
+  ProgramSource source{"reflectors.cl", {}, {}};
+  source.literals.integer("CLPV_GRID", grid)
+      .flag("CLPV_MASKED", scene.masked)
+      .flag("CLPV_TEXTURED", scene.textured)
+      .flag("CLPV_COLOURED", scene.coloured);
+  return source;
+}
+
+ProgramSource reflect_shares_program(int grid, const VolumeFormat& format) {
+  ProgramSource source{"face_albedo.cl", {}, coefficient_macros(kReflectingSides)};
+  source.literals.integer("CLPV_GRID", grid).real("CLPV_EDGE_LOSS", edge_loss());
+  add_format_literals(source.literals, format);
+  return source;
+}
+
+}  // namespace
+
+std::size_t ReflectorVoxelizer::bytes(int grid) {
+  return voxel_mask_bytes(shape_of(grid));
+}
+
+ReflectorVoxelizer::ReflectorVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
+                                       const VolumeFormat& format)
+    : scene_(scene),
+      grid_(grid),
+      sides_(session, scene, shape_of(grid), kMostReflectors, "sides of triangles that reflect"),
+      triangles_(session, reflect_program(scene, grid), "voxelize_reflectors"),
+      shares_(session, reflect_shares_program(grid, format), "face_albedo") {
+  for (int c = 0; c < cascades; ++c) {
+    reflectors_.push_back(
+        std::make_unique<Volume>(session, VolumeShape{grid, kReflectingSides, 3}, "reflectors", format));
+  }
+}
+
+void ReflectorVoxelizer::reflect(std::size_t cascade, const ClpvGrid& grid) {
+  sides_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, sides_.buffer());
+  shares_.set(sides_.buffer(), reflectors_[cascade]->memory());
+  const std::size_t cells = grid_;
+  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMarkGroup, 1, 1));
+}
+
+}  // namespace clpv

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/voxel_masks.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace clpv {
+namespace {
+
+// Cells by which triangles outside a box of cells may still leave something in it: a surface lights and is lit half a cell
+// off itself, corners' cells and cubes between centres are off by as much; and a margin for rounding.
+constexpr double kReach = 0.51;
+// Bases are as many grids apart, and stay while a cascade moves that far.
+constexpr int kGridsApart = 4;
+
+/// Where a grid stands. Its first cell is at least two grids from the base along each axis, so that no number of a cell near
+/// it is negative.
+ClpvRegion place_of(const ClpvGrid& grid) {
+  ClpvRegion place{};
+  place.cell = grid.cell;
+  const double n = grid.n, apart = kGridsApart * n, cell = grid.cell;
+  for (int a = 0; a < 3; ++a) {
+    const double first = std::round(grid.origin[a] / cell);
+    const double base = apart * std::floor((first - 2 * n) / apart);
+    place.base[a] = static_cast<float>(base * cell);
+    place.first[a] = static_cast<int>(first - base);
+  }
+  return place;
+}
+
+bool same_base(const ClpvRegion& a, const ClpvRegion& b) {
+  return a.cell == b.cell && std::equal(a.base, a.base + 3, b.base);
+}
+
+/// What a triangle within `box` and a little more round it lies in [m].
+Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
+  Bounds reach;
+  for (int a = 0; a < 3; ++a) {
+    const double low = region.first[a] + box.low[a] - kReach,
+                 high = region.first[a] + box.high[a] + 1 + kReach;
+    reach.lower[a] = static_cast<float>(region.base[a] + region.cell * low);
+    reach.upper[a] = static_cast<float>(region.base[a] + region.cell * high);
+  }
+  return reach;
+}
+
+/// The part of a box within cells [0, valid) along each axis; none: nothing of it is.
+std::optional<ClpvBox> within(ClpvBox box, int valid) {
+  for (int a = 0; a < 3; ++a) {
+    box.low[a] = std::max(box.low[a], 0);
+    box.high[a] = std::min(box.high[a], valid - 1);
+    if (box.low[a] > box.high[a]) return std::nullopt;
+  }
+  return box;
+}
+
+ProgramSource program(const VoxelMaskShape& shape) {
+  ProgramSource source{"voxel_masks.cl", {}, {}};
+  source.literals.integer("CLPV_MARK_CELLS", shape.cells)
+      .integer("CLPV_MARK_VALID", shape.valid)
+      .integer("CLPV_MARK_WORDS", static_cast<int>(shape.words));
+  return source;
+}
+
+bool meet(const Bounds& a, const Bounds& b) {
+  return glm::all(glm::lessThanEqual(a.lower, b.upper)) && glm::all(glm::lessThanEqual(b.lower, a.upper));
+}
+
+}  // namespace
+
+std::size_t VoxelMaskShape::words_a_cascade() const {
+  const std::size_t along = cells;
+  return along * along * along * words;
+}
+
+std::size_t voxel_mask_bytes(const VoxelMaskShape& shape) {
+  return shape.bytes() + (shape.cascades > 1 ? shape.words_a_cascade() * sizeof(cl_uint) : 0);
+}
+
+VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape,
+                       unsigned most, const std::string& what)
+    : session_(session),
+      scene_(scene),
+      shape_(shape),
+      most_(most),
+      states_(shape.cascades),
+      masks_(session.buffer(shape.bytes(), what)),
+      clusters_(session.buffer(std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
+                               what + ": clusters")),
+      move_(session, program(shape), "move_masks"),
+      clear_(session, program(shape), "clear_masks") {
+  if (shape.valid == 0) session_.fill_zero(masks_, shape.bytes());  // nothing else ever will
+  if (shape.cascades > 1)
+    spare_ = session.buffer(shape.words_a_cascade() * sizeof(cl_uint), what + ": moved");
+}
+
+cl_uint VoxelMasks::slot(std::size_t cascade) const {
+  return static_cast<cl_uint>(std::min(cascade, states_.size() - 1));
+}
+
+/// Makes room for what is to be marked: none where all is as it was.
+std::optional<ClpvRegion> VoxelMasks::prepare(std::size_t cascade, const ClpvGrid& grid) {
+  std::optional<State>& state = states_[slot(cascade)];
+  const ClpvRegion place = place_of(grid);
+  const ClpvRegion region = state ? stale(*state, place) : whole(place);
+  state.reset();  // should anything below throw
+  if (region.boxes > 0) {
+    clear(cascade, region);
+    list_runs(region);
+  }
+  state = State{place, scene_.clusters->instant()};
+  return region.boxes > 0 ? std::optional(region) : std::nullopt;
+}
+
+ClpvRegion VoxelMasks::whole(ClpvRegion place) const {
+  const int last = shape_.cells - 1;
+  add_box(place, {{0, 0, 0}, {last, last, last}});
+  return place;
+}
+
+/// What of a cascade is not as it was. All of it, where it has nothing in common with what it was, masks of one cascade alone
+/// are kept, or more than one instant went by.
+ClpvRegion VoxelMasks::stale(const State& state, ClpvRegion place) const {
+  if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
+  for (int a = 0; a < 3; ++a) {
+    place.moved[a] = place.first[a] - state.place.first[a];
+    const bool movable = spare_.exists() && std::abs(place.moved[a]) < shape_.valid;
+    if (place.moved[a] != 0 && !movable) return whole(place);
+  }
+  add_new_cells(place);
+  if (scene_.clusters->instant() != state.instant) add_moved(place);
+  return place;
+}
+
+void VoxelMasks::add_new_cells(ClpvRegion& region) const {
+  const int last = shape_.valid - 1;
+  for (int a = 0; a < 3; ++a) {
+    const int moved = region.moved[a];
+    ClpvBox slab{{0, 0, 0}, {last, last, last}};
+    (moved > 0 ? slab.low : slab.high)[a] = moved > 0 ? last + 1 - moved : -moved - 1;
+    if (moved != 0) add_box(region, slab);
+  }
+}
+
+void VoxelMasks::add_moved(ClpvRegion& region) const {
+  for (const Bounds& moved : scene_.clusters->moved()) {
+    ClpvBox box;
+    const double most = 2.0 * shape_.cells;
+    for (int a = 0; a < 3; ++a) {
+      const auto cell = [&](float at, double reach) {
+        const double from_first = (double{at} - region.base[a]) / region.cell - region.first[a];
+        return static_cast<int>(std::clamp(std::floor(from_first + reach), -most, most));
+      };
+      box.low[a] = cell(moved.lower[a], -kReach);
+      box.high[a] = cell(moved.upper[a], kReach);
+    }
+    add_box(region, box);
+  }
+}
+
+/// Boxes beyond those there is room for become one with all others.
+void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
+  const std::optional<ClpvBox> inside = within(box, shape_.valid);
+  if (!inside) return;
+  ClpvBox& all = region.all;
+  if (region.boxes == 0) all = *inside;
+  for (int a = 0; a < 3; ++a) {
+    all.low[a] = std::min(all.low[a], inside->low[a]);
+    all.high[a] = std::max(all.high[a], inside->high[a]);
+  }
+  if (region.boxes < CLPV_REGION_BOXES) {
+    region.box[region.boxes++] = *inside;
+  } else {
+    region.box[0] = all, region.boxes = 1;
+  }
+}
+
+/// Moves what stays, and clears what is made anew.
+void VoxelMasks::clear(std::size_t cascade, const ClpvRegion& region) {
+  const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
+  const std::size_t along = shape_.cells;
+  const cl::NDRange cells(along, along, along), group(kMarkGroup, 1, 1);
+  if (is_whole(region)) return session_.fill_zero(masks_, bytes, from);
+  if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
+    move_.set(region, masks_, slot(cascade), spare_).launch(cells, group);
+    session_.copy(spare_, masks_, bytes, from);
+  }
+  clear_.set(region, masks_, slot(cascade)).launch(cells, group);
+}
+
+bool VoxelMasks::is_whole(const ClpvRegion& region) const {
+  return region.boxes == 1 &&
+         std::all_of(region.all.low, region.all.low + 3, [](int low) { return low == 0; }) &&
+         std::all_of(region.all.high, region.all.high + 3,
+                     [&](int high) { return high == shape_.valid - 1; });
+}
+
+/// Of triangles that may lie in the region or beside it.
+void VoxelMasks::list_runs(const ClpvRegion& region) {
+  std::vector<Bounds> reaches;
+  for (unsigned b = 0; b < region.boxes; ++b) reaches.push_back(reach_of(region, region.box[b]));
+  const std::vector<cl_uint> near = scene_.clusters->which([&](const Bounds& run) {
+    return std::any_of(reaches.begin(), reaches.end(), [&](const Bounds& reach) { return meet(run, reach); });
+  });
+  near_ = static_cast<unsigned>(near.size());
+  session_.write(clusters_, near);
+}
+
+}  // namespace clpv

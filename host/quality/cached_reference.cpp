@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "quality/cached_reference.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cctype>
+#include <optional>
+
+#include "clpv/version.hpp"
+#include "image/image_io.hpp"
+#include "pathtracer/traced_view.hpp"
+#include "pipeline/view.hpp"
+#include "scene/emission.hpp"
+#include "scene/sky.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/named_enum.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv::reference {
+namespace {
+
+// To be raised when the tracer's results change, so that kept references are traced anew.
+constexpr int kTracerRevision = 1;
+
+std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
+                const PathTracerOptions& options) {
+  Fingerprint print;
+  print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
+  for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
+  print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
+  return print.hex();
+}
+
+/// A name as a part of a file's: whatever else a scene's author wrote becomes '_'.
+std::string in_file_name(std::string name) {
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+  }
+  return name;
+}
+
+Image all_views(const TracedImage& traced) {
+  Image image;
+  for (const Show show : values_of<Show>())
+    append_layer(image, traced_view(traced, show), std::string(name_of(show)));
+  return image;
+}
+
+void describe(Image& image, const Scene& scene, const Camera& camera, const TracedImage& traced,
+              const PathTracerOptions& options) {
+  image.metadata["command"] = "pathtrace";
+  image.metadata["version"] = version();
+  image.metadata["scene"] = scene.name;
+  image.metadata["camera"] = camera.name;
+  image.metadata["bounces"] =
+      options.bounces == PathTracerOptions::kAllBounces ? "all" : std::to_string(options.bounces);
+  image.metadata["seed"] = std::to_string(options.seed);
+  image.metadata["spp_traced"] = std::to_string(traced.samples);
+  image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
+}
+
+Reference read_reference(const std::filesystem::path& file) {
+  Reference reference;
+  reference.image = read_image(file);
+  reference.file = file;
+  for (const std::string& name : names_of<Show>())
+    extract_layer(reference.image, name, file.string());  // throws
+  reference.samples = static_cast<std::uint32_t>(std::stoul(reference.image.metadata.at("spp_traced")));
+  reference.noise = std::stod(reference.image.metadata.at("noise_reached"));
+  return reference;
+}
+
+}  // namespace
+
+std::string scene_fingerprint(const Scene& scene) {
+  Fingerprint print;
+  print.add(scene.vertices).add(scene.triangles).add(scene.materials);
+  for (const Texture& texture : scene.textures) {
+    print.add(texture.width).add(texture.height).add(texture.wrap_u).add(texture.wrap_v).add(texture.rgba);
+  }
+  if (scene.sky) add_sky(print, *scene.sky);
+  return print.hex();
+}
+
+namespace {
+
+/// What is kept there, if it can be read.
+std::optional<Reference> kept_reference(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    return read_reference(file);
+  } catch (const std::exception& error) {
+    spdlog::warn("{}; traced anew", error.what());
+    return std::nullopt;
+  }
+}
+
+void check_place(const std::filesystem::path& file) {
+  std::error_code failure;  // what is wrong with the folder, check_writable tells
+  std::filesystem::create_directories(file.parent_path(), failure);
+  check_writable(file);
+}
+
+}  // namespace
+
+Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
+                           int width, int height, const PathTracerOptions& options,
+                           const TraceProgress& progress, Ranks& team) {
+  const ClpvView view = camera_view(camera, width, height);
+  const std::filesystem::path file =
+      folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
+                           key(scene, camera, view, options));
+  std::optional<Reference> kept;
+  const std::string found = team.from_root([&] {
+    kept = kept_reference(file);
+    if (!kept) check_place(file);
+    return kept ? "there" : "";
+  });
+  if (!found.empty()) return kept ? *std::move(kept) : read_reference(file);
+  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, team);
+  Reference reference{all_views(traced), file, true, traced.samples, traced.noise};
+  describe(reference.image, scene, camera, traced, options);
+  if (team.is_root()) write_exr(file, reference.image);
+  return reference;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "quality/light_field.hpp"
+
+#include <algorithm>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+reference::Volume read_light(Session& session, const Volume& volume, double scale) {
+  const std::vector<float> values = volume.read(session);
+  reference::Volume made;
+  made.n = volume.shape().n;
+  made.coefficients = volume.shape().coefficients;
+  made.values.reserve(values.size());
+  for (const float value : values) made.values.push_back(value / scale);
+  return made;
+}
+
+}  // namespace
+
+LightField::LightField(Session& session, const Frame& frame)
+    : basis_(frame.gathered()),
+      transport_(frame.options().transport),
+      options_(gather_options(frame.options())) {
+  const GatheredLight light = frame.light();
+  if (light.grids.empty())
+    throw Error(ExitCode::usage, "irradiance: no frame was rendered; allowed: after a render");
+  volumes_.reserve(light.grids.size());
+  for (std::size_t c = 0; c < light.grids.size(); ++c) {
+    volumes_.push_back(read_light(session, *light.accumulated[c], light.scale));
+    cascades_.push_back({light.grids[c], &volumes_.back()});
+  }
+  if (light.hidden == nullptr) return;
+  const std::size_t bytes = CellVisibility::bytes(options_.grid);
+  hidden_ = session.read<std::uint8_t>(*light.hidden, bytes * cascades_.size());
+  for (std::size_t c = 0; c < cascades_.size(); ++c) cascades_[c].hidden = hidden_.data() + c * bytes;
+}
+
+glm::dvec3 LightField::irradiance(const glm::dvec3& position, const glm::dvec3& normal) const {
+  return reference::gather(basis_, transport_, options_, cascades_, position, normal);
+}
+
+bool LightField::reaches(const glm::dvec3& position) const {
+  const ClpvGrid& grid = cascades_.back().grid;
+  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
+  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(options_.grid) * double{grid.cell})));
+}
+
+}  // namespace clpv

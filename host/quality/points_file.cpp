@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "quality/points_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "scene/bounds.hpp"
+#include "scene/input.hpp"
+#include "support/text.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
+constexpr double kShortest = 1e-6;  // a shorter normal is none
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// The part up to the separator, which is taken off `text` with it.
+std::string_view cut(std::string_view& text, char separator) {
+  const std::size_t end = std::min(text.find(separator), text.size());
+  const std::string_view part = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return part;
+}
+
+/// Six finite numbers between commas, or nothing.
+std::optional<std::array<double, 6>> parse_six(std::string_view line) {
+  std::array<double, 6> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0 && line.empty()) return std::nullopt;
+    const auto value = parse_number<double>(trimmed(cut(line, ',')));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    values[i] = *value;
+  }
+  return trimmed(line).empty() ? std::optional(values) : std::nullopt;
+}
+
+/// Whether it names columns: it begins with a letter, as no finite number does.
+bool is_header(std::string_view line) {
+  const char c = line.front();
+  return ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) && !line.starts_with("nan") &&
+         !line.starts_with("inf");
+}
+
+SurfacePoint point_of(std::string_view line, const std::string& file, const std::string& place) {
+  constexpr std::size_t kShown = 60;
+  const auto six = parse_six(line);
+  if (!six) {
+    reject(file, place, "'" + std::string(line.substr(0, kShown)) + "'",
+           "six finite numbers between commas: x,y,z,nx,ny,nz");
+  }
+  const auto& v = *six;
+  const glm::dvec3 position(v[0], v[1], v[2]), normal(v[3], v[4], v[5]);
+  if (glm::any(glm::greaterThan(glm::abs(position), glm::dvec3(bounds::kCoordinate)))) {
+    reject(file, place, fmt::format("({}, {}, {}) m", v[0], v[1], v[2]),
+           fmt::format("coordinates within +-{} m", bounds::kCoordinate));
+  }
+  const double length = glm::length(normal);
+  if (!(length >= kShortest) || !std::isfinite(length))
+    reject(file, place, fmt::format("a normal of length {}", length), "a direction");
+  return {position, normal / length};
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> read_points(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const Bytes bytes = read_file(path, kMostBytes, file);
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::vector<SurfacePoint> points;
+  bool first = true;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string_view line = trimmed(cut(text, '\n'));
+    if (line.empty() || line.front() == '#') continue;
+    const bool header = std::exchange(first, false) && is_header(line);
+    if (header) continue;
+    const std::string place = fmt::format("line {}", number);
+    if (points.size() == kMostPoints)
+      reject(file, place, "one more point", fmt::format("at most {}", kMostPoints));
+    points.push_back(point_of(line, file, place));
+  }
+  return points;
+}
+
+}  // namespace clpv

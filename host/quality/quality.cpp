@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "quality/quality.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "device/kernel_files.hpp"
+#include "image/compare.hpp"
+#include "quality/quality_report.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/input_file.hpp"
+#include "support/median.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+void fill_errors(QualityCell& cell, const Image& image, const reference::Reference& truth, Show show) {
+  const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
+  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
+  cell.nrmse = c.nrmse_valid;
+  cell.best_gain = c.best_gain;
+  cell.nrmse_best_gain = c.nrmse_best_gain;
+  cell.energy_ratio = c.energy_ratio;
+  if (c.valid_pixels > 0) {
+    cell.perceptual = static_cast<double>(c.perceptual_failures) / static_cast<double>(c.valid_pixels);
+  }
+}
+
+/// Sums of the stages of one frame.
+std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bool& from_events) {
+  std::map<std::string, double> sums;
+  for (const StageTime& time : times) {
+    sums[std::string(name_of(time.mark.pass))] += time.ms;
+    from_events = from_events && time.from_events;
+  }
+  return sums;
+}
+
+}  // namespace
+
+VariedOption parse_varied(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos) throw Error(ExitCode::usage, "vary {}: allowed: OPTION=a,b,c", text);
+  VariedOption varied{text.substr(0, equals), {}};
+  for (const std::string& value : split(text.substr(equals + 1), ',')) {
+    RenderOptions probe;
+    set_option(probe, varied.name, value);  // throws for an unknown option or a bad value
+    if (std::ranges::count(varied.values, value) > 0) {
+      throw Error(ExitCode::usage, "vary {}: {} comes twice", text, value);
+    }
+    varied.values.push_back(value);
+  }
+  return varied;
+}
+
+std::vector<Variant> combinations(const std::vector<VariedOption>& varied) {
+  std::vector<Variant> all(1);
+  for (const VariedOption& option : varied) {
+    const auto same = [&](const VariedOption& other) { return other.name == option.name; };
+    if (std::ranges::count_if(varied, same) > 1) {
+      throw Error(ExitCode::usage, "vary {}: the option comes twice", option.name);
+    }
+    std::vector<Variant> longer;
+    for (const Variant& variant : all) {
+      for (const std::string& value : option.values) {
+        longer.push_back(variant);
+        longer.back().emplace_back(option.name, value);
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::string describe(const Variant& variant) {
+  std::string text;
+  for (const auto& [name, value] : variant)
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
+  return text;
+}
+
+QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
+                    Show show, int frames) {
+  QualityCell cell;
+  cell.compute_units = session.device().compute_units;
+  std::map<std::string, std::vector<double>> samples;
+  std::vector<double> totals;
+  for (int i = 0; i <= frames; ++i) {
+    frame.forget_light();
+    frame.render(camera);
+    const Image image = view_image(frame, show);
+    if (i == 0) continue;  // a first launch compiles
+    double total = 0;
+    for (const auto& [stage, ms] : stage_sums(session.timeline().times(), cell.from_events)) {
+      samples[stage].push_back(ms);
+      total += ms;
+    }
+    totals.push_back(total);
+    if (i == frames) fill_errors(cell, image, truth, show);
+  }
+  for (const auto& [stage, values] : samples) cell.stage_ms[stage] = median(values);
+  cell.frame_ms = median(totals);
+  return cell;
+}
+
+std::string quality_key(const reference::Reference& truth, const Device& device, const RenderOptions& options,
+                        Show show, int frames) {
+  static const std::string program = program_fingerprint();
+  Fingerprint print;
+  print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
+  print.add(to_json(options).dump()).add(name_of(show)).add(frames);
+  if (!options.centres.empty()) {
+    const auto basis = make_basis(options);
+    for (const glm::dvec3& centre : basis->centres()) print.add(centre.x).add(centre.y).add(centre.z);
+    for (const double lambda : basis->lambdas()) print.add(lambda);
+  }
+  for (const auto& [name, embedded] : detail::embedded_kernel_files()) print.add(kernel_file(name));
+  return print.hex();
+}
+
+QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);  // what is wrong with it, check_writable tells
+  check_writable(file("probe"));
+}
+
+std::filesystem::path QualityStore::file(const std::string& key) const {
+  return folder_ / (key + ".json");
+}
+
+std::optional<QualityCell> QualityStore::find(const std::string& key) const {
+  const auto kept = file_bytes(file(key));
+  if (!kept) return std::nullopt;
+  try {
+    return cell_from_json(nlohmann::json::parse(*kept));
+  } catch (const nlohmann::json::exception& error) {
+    spdlog::warn("{}: {}; measured anew", file(key).string(), error.what());
+    return std::nullopt;
+  }
+}
+
+void QualityStore::keep(const std::string& key, const QualityCell& cell) const {
+  write_file(file(key), to_json(cell).dump(2) + "\n");
+}
+
+namespace {
+
+void add(QualitySummary& sum, const QualityCell& cell) {
+  ++sum.views;
+  if (!cell.rejected.empty()) {
+    ++sum.rejected;
+    return;
+  }
+  const double nrmse = cell.nrmse.value_or(0);
+  sum.nrmse += nrmse;
+  sum.worst_nrmse = std::max(sum.worst_nrmse, nrmse);
+  sum.nrmse_best_gain += cell.nrmse_best_gain.value_or(0);
+  sum.energy_ratio += cell.energy_ratio.value_or(0);
+  sum.perceptual += cell.perceptual.value_or(0);
+  sum.frame_ms += cell.frame_ms;
+  for (const auto& [stage, ms] : cell.stage_ms) sum.stage_ms[stage] += ms;
+}
+
+void divide(QualitySummary& sum) {
+  const int rendered = sum.views - sum.rejected;
+  if (rendered == 0) return;
+  for (double* value :
+       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.perceptual, &sum.frame_ms}) {
+    *value /= rendered;
+  }
+  for (auto& [stage, ms] : sum.stage_ms) ms /= rendered;
+}
+
+}  // namespace
+
+std::vector<QualitySummary> summarise(const std::vector<QualityCell>& cells) {
+  std::vector<QualitySummary> sums;
+  for (const QualityCell& cell : cells) {
+    auto sum = std::ranges::find(sums, cell.variant, &QualitySummary::variant);
+    if (sum == sums.end()) {
+      sum = sums.insert(sums.end(), QualitySummary{});
+      sum->variant = cell.variant;
+    }
+    add(*sum, cell);
+  }
+  for (QualitySummary& sum : sums) divide(sum);
+  std::ranges::stable_sort(sums, [](const QualitySummary& a, const QualitySummary& b) {
+    return (a.rejected > 0) != (b.rejected > 0) ? b.rejected > 0 : a.nrmse < b.nrmse;
+  });
+  return sums;
+}
+
+}  // namespace clpv

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "quality/quality_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+
+#include "options/stages.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv {
+namespace {
+
+nlohmann::json json_of(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+std::optional<double> optional_of(const nlohmann::json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+
+nlohmann::json json_of(const Variant& variant) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [name, value] : variant) json[name] = value;
+  return json;
+}
+
+std::string text_of(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "";
+}
+
+/// A field of a CSV file (RFC 4180).
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
+  return result + '"';
+}
+
+std::set<std::string> stage_names(const std::vector<QualityCell>& cells) {
+  std::set<std::string> names;
+  for (const QualityCell& cell : cells) {
+    for (const auto& [name, ms] : cell.stage_ms) names.insert(name);
+  }
+  return names;
+}
+
+/// Lines of equal width: the first column to the left, the others to the right.
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows[0].size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    text += fmt::format("{:<{}}", row[0], widths[0]);
+    for (std::size_t c = 1; c < row.size(); ++c) text += fmt::format("  {:>{}}", row[c], widths[c]);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string percent(const std::optional<double>& share) {
+  return share ? fmt::format("{:.1f}", 100 * *share) : "-";
+}
+
+/// Stages that a frame is timed in: those that a pass is named after.
+std::vector<std::string_view> timed_stages() {
+  std::vector<std::string_view> timed;
+  for (const Stage stage : values_of<Stage>()) {
+    const auto is_part = [&](Pass pass) { return name_of(pass).starts_with(name_of(stage)); };
+    if (std::ranges::any_of(values_of<Pass>(), is_part)) timed.push_back(name_of(stage));
+  }
+  return timed;
+}
+
+/// Milliseconds of the passes of that stage: "rasterize" is rasterize-rsm, rasterize-camera and rasterize-shadow.
+double kind_ms(const QualitySummary& sum, std::string_view kind) {
+  double ms = 0;
+  for (const auto& [stage, value] : sum.stage_ms) ms += stage.starts_with(kind) ? value : 0;
+  return ms;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const QualityCell& cell) {
+  nlohmann::json varied = nlohmann::json::array();  // an array: objects forget the order
+  for (const auto& [name, value] : cell.variant) varied.push_back({name, value});
+  return {{"scene", cell.scene},
+          {"camera", cell.camera},
+          {"options", json_of(cell.variant)},
+          {"varied", varied},
+          {"rejected", cell.rejected},
+          {"nrmse", json_of(cell.nrmse)},
+          {"best_gain", json_of(cell.best_gain)},
+          {"nrmse_best_gain", json_of(cell.nrmse_best_gain)},
+          {"energy_ratio", json_of(cell.energy_ratio)},
+          {"perceptual", json_of(cell.perceptual)},
+          {"frame_ms", cell.frame_ms},
+          {"stage_ms", cell.stage_ms},
+          {"timer", cell.from_events ? "event" : "wall"},
+          {"compute_units", cell.compute_units},
+          {"made_s", cell.made_s},
+          {"measured_s", cell.measured_s}};
+}
+
+QualityCell cell_from_json(const nlohmann::json& json) {
+  QualityCell cell;
+  cell.scene = json.at("scene");
+  cell.camera = json.at("camera");
+  for (const auto& pair : json.at("varied")) cell.variant.emplace_back(pair.at(0), pair.at(1));
+  cell.rejected = json.at("rejected");
+  cell.nrmse = optional_of(json.at("nrmse"));
+  cell.best_gain = optional_of(json.at("best_gain"));
+  cell.nrmse_best_gain = optional_of(json.at("nrmse_best_gain"));
+  cell.energy_ratio = optional_of(json.at("energy_ratio"));
+  cell.perceptual = optional_of(json.at("perceptual"));
+  cell.frame_ms = json.at("frame_ms");
+  cell.stage_ms = json.at("stage_ms").get<std::map<std::string, double>>();
+  cell.from_events = json.at("timer") == "event";
+  cell.compute_units = json.at("compute_units");
+  cell.made_s = json.at("made_s");
+  cell.measured_s = json.at("measured_s");
+  return cell;
+}
+
+nlohmann::json to_json(const QualitySummary& sum) {
+  return {{"options", json_of(sum.variant)},  {"views", sum.views},
+          {"rejected", sum.rejected},         {"nrmse", sum.nrmse},
+          {"worst_nrmse", sum.worst_nrmse},   {"nrmse_best_gain", sum.nrmse_best_gain},
+          {"energy_ratio", sum.energy_ratio}, {"perceptual", sum.perceptual},
+          {"frame_ms", sum.frame_ms},         {"stage_ms", sum.stage_ms}};
+}
+
+std::string quality_csv(const std::vector<QualityCell>& cells) {
+  if (cells.empty()) return "";
+  const std::set<std::string> stages = stage_names(cells);
+  std::string text = "scene,camera";
+  for (const auto& [name, value] : cells[0].variant) text += ',' + quoted(name);
+  text += ",rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms";
+  for (const std::string& stage : stages) text += ',' + quoted(stage + "_ms");
+  text += '\n';
+  for (const QualityCell& cell : cells) {
+    text += quoted(cell.scene) + ',' + quoted(cell.camera);
+    for (const auto& [name, value] : cell.variant) text += ',' + quoted(value);
+    text += ',' + quoted(cell.rejected);
+    for (const auto& value :
+         {cell.nrmse, cell.best_gain, cell.nrmse_best_gain, cell.energy_ratio, cell.perceptual}) {
+      text += ',' + text_of(value);
+    }
+    text += ',' + (cell.rejected.empty() ? fmt::format("{:.4g}", cell.frame_ms) : "");
+    for (const std::string& stage : stages) {
+      const auto found = cell.stage_ms.find(stage);
+      text += ',' + (found == cell.stage_ms.end() ? "" : fmt::format("{:.4g}", found->second));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string quality_table(const std::vector<QualityCell>& cells) {
+  const std::vector<std::string_view> kinds = timed_stages();
+  std::vector<std::pair<std::string, std::string>> views;  // scene, camera
+  for (const QualityCell& cell : cells) {
+    if (std::pair view{cell.scene, cell.camera}; std::ranges::count(views, view) == 0) views.push_back(view);
+  }
+  std::vector<std::vector<std::string>> rows(1);
+  rows[0] = {"NRMSE %"};
+  for (const auto& [scene, camera] : views) rows[0].push_back(scene + ":" + camera);
+  for (const char* name : {"mean", "worst", "best gain", "energy", "percept. %", "frame ms"})
+    rows[0].push_back(name);
+  for (const std::string_view kind : kinds) rows[0].emplace_back(kind);
+  for (const QualitySummary& sum : summarise(cells)) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row.push_back(describe(sum.variant));
+    for (const auto& [scene, camera] : views) {
+      const auto here = [&, s = scene, c = camera](const QualityCell& cell) {
+        return cell.scene == s && cell.camera == c && cell.variant == sum.variant;
+      };
+      const auto cell = std::ranges::find_if(cells, here);
+      row.push_back(cell == cells.end() ? "-" : cell->rejected.empty() ? percent(cell->nrmse) : "rejected");
+    }
+    row.resize(rows[0].size(), "-");
+    if (sum.rejected == sum.views) continue;
+    std::size_t c = 1 + views.size();
+    row[c++] = percent(sum.nrmse);
+    row[c++] = percent(sum.worst_nrmse);
+    row[c++] = percent(sum.nrmse_best_gain);
+    row[c++] = fmt::format("{:.2f}", sum.energy_ratio);
+    row[c++] = percent(sum.perceptual);
+    row[c++] = fmt::format("{:.1f}", sum.frame_ms);
+    for (const std::string_view kind : kinds) row[c++] = fmt::format("{:.1f}", kind_ms(sum, kind));
+  }
+  return aligned(rows);
+}
+
+}  // namespace clpv

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// What triangles block, reflect and hide: kernels against the CPU references on a soup of triangles, of all sizes, textured and with
+// holes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "basis/bounce.hpp"
+#include "pipeline/blockers.hpp"
+#include "pipeline/reflectors.hpp"
+#include "pipeline/visibility.hpp"
+#include "reference/blockers.hpp"
+#include "reference/reflectors.hpp"
+#include "reference/visibility.hpp"
+#include "verify/check.hpp"
+#include "verify/inputs.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kGrid = 9;  // no multiple of anything
+const ClpvGrid kCells = {{-2.5f, 0.5f, 1.0f}, 0.5f, kGrid, {}};
+
+/// "x,y,z" of the sample that a number belongs to, of n samples along each axis.
+std::string sample_of(std::size_t number, std::size_t n) {
+  return fmt::format("{},{},{}", number % n, number / n % n, number / n / n % n);
+}
+
+/// The default format and the others that the device has.
+std::vector<VolumeFormat> formats_of(Session& session, const VolumeShape& shape, const CheckScope& scope) {
+  std::vector<VolumeFormat> formats = other_formats(session.device(), shape, scope.formats);
+  formats.insert(formats.begin(), VolumeFormat{});
+  return formats;
+}
+
+}  // namespace
+
+CheckResults check_blockers(Session& session, const CheckScope& scope) {
+  const Scene scene = triangle_soup();
+  const SceneBuffers buffers = upload_scene(session, scene);
+  const Blocked expected = block(scene, kCells);
+  const VolumeShape shape{kGrid + 1, 3, 1};
+  CheckResults results;
+  for (const VolumeFormat& format : formats_of(session, shape, scope)) {
+    clpv::Volume geometry(session, shape, "check: blockers", format);
+    BlockerVoxelizer(session, buffers, kGrid, 1, format).block(0, kCells, geometry);
+    const std::vector<float> found = geometry.read(session);
+    CheckResult result{"blockers", format_name(format), 0, tolerance("blockers", format.storage), {}};
+    for (std::size_t at = 0; at < found.size(); ++at) {
+      const double share = found[at], least = expected.least.values[at], most = expected.most.values[at];
+      result.take(std::max(least - share, share - most), [&] {
+        return fmt::format("corner {} axis {}: {}, expected {} to {}", sample_of(at, shape.n),
+                           at / (found.size() / 3), share, least, most);
+      });
+    }
+    results.push_back(result);
+  }
+  return results;
+}
+
+CheckResults check_reflectors(Session& session, const CheckScope& scope) {
+  const Scene scene = triangle_soup();
+  const SceneBuffers buffers = upload_scene(session, scene);
+  const Reflected expected = reflect(scene, kCells);
+  CheckResults results;
+  for (const VolumeFormat& format : formats_of(session, {kGrid, kReflectingSides, 3}, scope)) {
+    ReflectorVoxelizer reflector(session, buffers, kGrid, 1, format);
+    reflector.reflect(0, kCells);
+    const std::vector<float> found = reflector.reflectors(0).read(session);
+    CheckResult result{"reflectors", format_name(format), 0, tolerance("reflectors", format.storage), {}};
+    for (std::size_t at = 0; at < found.size(); ++at) {
+      const double wanted = expected.areas.values[at], doubt = expected.doubt.values[at];
+      result.take(std::abs(found[at] - wanted) - doubt, [&] {
+        const std::size_t plane = at / (kGrid * kGrid * kGrid);
+        return fmt::format("cell {} side {} channel {}: {:.6g}, expected {:.6g}", sample_of(at, kGrid),
+                           plane % kReflectingSides, plane / kReflectingSides, found[at], wanted);
+      });
+    }
+    results.push_back(result);
+  }
+  return results;
+}
+
+CheckResults check_visibility(Session& session, const CheckScope&) {
+  constexpr std::size_t kCascade = 1;  // not the first
+  const Scene scene = triangle_soup();
+  const SceneBuffers buffers = upload_scene(session, scene);
+  const Hidden expected = see(scene, kCells);
+  CellVisibility sight(session, buffers, kGrid, kCascade + 1);
+  sight.see(0, kCells);
+  sight.see(kCascade, kCells);
+  const std::size_t bytes = CellVisibility::bytes(kGrid);
+  const auto found = session.read<std::uint8_t>(sight.hidden(), bytes * (kCascade + 1));
+  CheckResult result{"visibility", "triangles", 0, tolerance("visibility"), {}};
+  for (std::size_t point = 0; point < bytes; ++point) {
+    const std::uint8_t bits = found[kCascade * bytes + point], least = expected.least[point],
+                       most = expected.most[point];
+    const unsigned wrong = (least & ~bits) | (bits & ~most);
+    result.take(std::popcount(wrong), [&] {
+      return fmt::format("cube {} point {}: {:08b}, expected {:08b} to {:08b}", sample_of(point / 64, kGrid),
+                         point % 64, bits, least, most);
+    });
+  }
+  return {result};
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Points of emissive triangles: the kernel against the CPU reference on a soup of triangles, of all sizes, textured and with holes.
+#include "pipeline/emit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/emit.hpp"
+#include "verify/check.hpp"
+#include "verify/inputs.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr unsigned kGrid = 4;
+constexpr float kScale = 0.25f;
+
+/// What the soup glows by: a texture, the same with holes, and a colour on both sides.
+Scene glowing_soup() {
+  Scene scene = triangle_soup();
+  for (Material& material : scene.materials) {
+    material.emissive[0] = 3, material.emissive[1] = 2, material.emissive[2] = 0.5f;
+    material.emissive_texture = 0;
+  }
+  Material plain = scene.materials[0];
+  plain.texture = plain.emissive_texture = CLPV_NO_TEXTURE;
+  plain.flags = CLPV_MATERIAL_DOUBLE_SIDED;
+  scene.materials.push_back(plain);
+  for (std::size_t i = 0; i < scene.triangles.size(); i += 4) scene.triangles[i].material = 2;
+  return scene;
+}
+
+CheckResult check_scene(Session& session, const Scene& scene, const std::string& variant) {
+  const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kGrid, {}}, {{-2, 1, 1.5f}, 1, kGrid, {}}};
+  const EmissionPlan plan = plan_emission(scene, emissive_triangles(scene), grids);
+  const SceneBuffers buffers = upload_scene(session, scene);
+  Emitter emitter(session, buffers);
+  emitter.emit(plan, kScale);
+  const SurfaceImage found = read_surface(session, emitter.points());
+  const std::vector<EmittedPoint> expected = emit(scene, plan);
+  double largest = 0;
+  for (const EmittedPoint& point : expected)
+    largest = std::max({largest, point.flux.x, point.flux.y, point.flux.z});
+  CheckResult result{"emit", variant, 0, tolerance("emit"), {}};
+  for (std::size_t i = 0; i < found.normal.size(); ++i) {
+    const EmittedPoint wanted = i < expected.size() ? expected[i] : EmittedPoint{};
+    const glm::dvec3 flux = glm::dvec3(found.colour[i]) / double{kScale};
+    const double off = glm::length(flux - wanted.flux) - 2 * wanted.doubt;
+    const double places = glm::length(glm::dvec3(found.position[i]) - wanted.position) / 10 +
+                          glm::length(glm::dvec3(found.normal[i]) - wanted.normal);
+    const auto where = [&] {
+      return fmt::format(
+          "point {} of {}: flux {:.6g} {:.6g} {:.6g}, expected {:.6g} {:.6g} {:.6g}; off by {:.2g}", i,
+          expected.size(), flux.x, flux.y, flux.z, wanted.flux.x, wanted.flux.y, wanted.flux.z, places);
+    };
+    result.take(off / largest, where);
+    result.take(places, where);
+  }
+  return result;
+}
+
+}  // namespace
+
+CheckResults check_emit(Session& session, const CheckScope&) {
+  Scene plain = glowing_soup();
+  for (Material& material : plain.materials) {
+    material.flags = 0;
+    material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
+  }
+  return {check_scene(session, glowing_soup(), "textures and holes"), check_scene(session, plain, "plain")};
+}
+
+}  // namespace clpv::reference

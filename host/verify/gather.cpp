@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Gathering: kernels against the CPU reference, on random light in three nested cascades seen by surfaces in and round
+// them.
+#include "pipeline/gather.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <random>
+
+#include "basis/sweep.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/visibility.hpp"
+#include "reference/gather.hpp"
+#include "verify/check.hpp"
+#include "verify/inputs.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kGrid = 9;  // odd, so that no pitch is a power of two
+constexpr int kCascades = 3;
+constexpr double kFinestEdge = 4;  // [m]; the coarsest is 16 m across
+
+struct Variant {
+  std::string name;
+  LobeOptions lobes = {};
+  TableStorage table = TableStorage::buffer;
+  VolumeFormat format = {};
+  bool filtered = true;  ///< images alone
+  Gathering gather = Gathering::all;
+};
+
+/// A byte for each point between cells of all cascades: each cell hidden from half of them.
+std::vector<std::uint8_t> random_hidden(std::mt19937& random) {
+  std::vector<std::uint8_t> hidden(kCascades * CellVisibility::bytes(kGrid));
+  for (std::uint8_t& bits : hidden) bits = static_cast<std::uint8_t>(random() % 256);
+  return hidden;
+}
+
+std::string_view compared_as(const Variant& variant) {
+  if (variant.gather == Gathering::visible) return "gather-visible";
+  return sampled_by_device(variant.format) && variant.filtered ? "gather-filter" : "gather";
+}
+
+CheckResult check_one(Session& session, const Basis& basis, TransportKind transport, const Variant& variant) {
+  std::mt19937 random(11);
+  SurfaceImage image = random_surfaces(random);
+  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
+    if (rounding_decides(basis, variant.lobes, glm::dvec3(image.normal[pixel]))) image.depth[pixel] = 0;
+  }
+  const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
+  const GatherOptions options{.grid = kGrid,
+                              .gather = variant.gather,
+                              .lobes = variant.lobes,
+                              .table = variant.table,
+                              .format = variant.format,
+                              .filtered = variant.filtered};
+  const bool visible = variant.gather == Gathering::visible;
+  const std::vector<std::uint8_t> hidden = random_hidden(random);
+  const Buffer hidden_on_device = session.upload(hidden, "check: hidden cells");
+  std::vector<Volume> light;
+  std::vector<clpv::Volume> lit;
+  for (int c = 0; c < kCascades; ++c) {
+    light.push_back(random_light(basis, kGrid, random));
+    lit.push_back(on_device(session, light.back(), variant.format));
+  }
+  std::vector<const clpv::Volume*> volumes;
+  std::vector<Cascade> cascades;
+  for (int c = 0; c < kCascades; ++c) {
+    volumes.push_back(&lit[c]);
+    cascades.push_back({grids[c], &light[c], hidden.data() + c * CellVisibility::bytes(kGrid)});
+  }
+  const Surface camera = upload_surface(session, image);
+  Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
+  Gatherer(session, basis, transport, options)
+      .gather(camera, grids, volumes, irradiance, 1, visible ? &hidden_on_device : nullptr);
+  std::vector<glm::dvec4> expected;
+  for (const glm::dvec3& e : gather(basis, transport, options, cascades, image))
+    expected.emplace_back(e, 0.0);
+  CheckResult result =
+      compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), expected, image.view.width,
+                     "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport), variant.name));
+  result.allowed = tolerance(compared_as(variant), variant.format.storage);
+  return result;
+}
+
+/// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
+void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  constexpr TransportKind transport = TransportKind::sweep;
+  for (const VolumeFormat& format :
+       other_formats(session.device(), {kGrid, basis->size(), 3}, scope.formats)) {
+    Variant variant{.name = format_name(format), .format = format};
+    if (sampled_by_device(format)) {
+      variant.name += " filter";
+      results.push_back(check_one(session, *basis, transport, variant));
+      variant.name = format_name(format) + " texels";
+      variant.filtered = false;
+    }
+    results.push_back(check_one(session, *basis, transport, variant));
+    variant.gather = Gathering::visible;
+    variant.name += " visible";
+    results.push_back(check_one(session, *basis, transport, variant));
+  }
+}
+
+}  // namespace
+
+CheckResults check_gather(Session& session, const CheckScope& scope) {
+  CheckResults results;
+  for (const std::string& name : scope.bases) {
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    results.push_back(check_one(session, *basis, TransportKind::sampled, {"plain"}));
+    if (scope.thorough || name == "bins24") {
+      results.push_back(check_one(session, *basis, TransportKind::sampled,
+                                  {.name = "visible", .gather = Gathering::visible}));
+    }
+    if (basis->centres().empty()) continue;  // no table
+    const LobeOptions functions{.table_functions = true};
+    results.push_back(check_one(session, *basis, TransportKind::sampled, {"table", functions}));
+    if (!session.device().images || (!scope.thorough && basis->size() > 4)) continue;
+    results.push_back(
+        check_one(session, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image}));
+  }
+  const std::unique_ptr<Basis> swept = swept_basis();  // all that a sweep leaves to gather
+  results.push_back(check_one(session, *swept, TransportKind::sweep, {"plain"}));
+  results.push_back(
+      check_one(session, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible}));
+  check_formats(session, scope, results);
+  return results;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// Injection: kernels against the CPU reference on small random surfaces.
+#include "pipeline/inject.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+
+#include "pipeline/view.hpp"
+#include "reference/inject.hpp"
+#include "reference/view.hpp"
+#include "verify/check.hpp"
+#include "verify/comparison.hpp"
+#include "verify/inputs.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kGrid = 5;                       // odd, small: many texels a cell, several segments in some
+constexpr unsigned kWidth = 37, kHeight = 23;  // no multiple of anything
+// [cells]; points nearer to where the cell changes are left out, since there rounding decides. More than what
+// 8-bit normals can move a point.
+constexpr double kMargin = 0.01;
+
+const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
+
+/// A view from above or from a corner that sees the grid and some space beside it.
+ClpvView view_of_grid(bool orthographic, float distance) {
+  const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kGrid;
+  Camera camera;
+  camera.forward = glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
+  camera.up = {0, 0, 1};
+  camera.eye = centre - distance * camera.forward;
+  ClpvView view = camera_view(camera, kWidth, kHeight);
+  view.orthographic = orthographic ? 1.0f : 0.0f;
+  view.half_width = orthographic ? 1.6f : 0.4f;
+  view.half_height = orthographic ? 1.5f : 0.35f;
+  return view;
+}
+
+bool near_border(const glm::dvec3& point) {
+  const glm::dvec3 within = point - glm::floor(point), off = glm::min(within, 1.0 - within);
+  return std::min({off.x, off.y, off.z}) < kMargin;
+}
+
+/// Random depths, normals towards the viewer and colours; holes and values that are not finite among them. No normal
+/// whose lobe rounding decides.
+SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool orthographic, bool light,
+                            RsmFormat format, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  constexpr float kDistance = 5, kSpread = 1.4f;
+  SurfaceImage surface;
+  surface.view = view_of_grid(orthographic, kDistance);
+  const glm::vec3 forward(vector(surface.view.forward));
+  const std::size_t count = std::size_t{kWidth} * kHeight;
+  surface.normal.resize(count), surface.colour.resize(count), surface.depth.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 around(uniform(random), uniform(random), uniform(random));
+    surface.depth[i] = uniform(random) > 0.8f ? 0 : kDistance + kSpread * uniform(random);
+    surface.normal[i] = glm::vec4(glm::normalize(1.2f * around - forward), 0);
+    surface.colour[i] = 0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);
+    const glm::dvec3 point = grid_point(surface, i, kCells, light);
+    const bool unsure =
+        lobes.kind == LobeKind::rotate && rounding_decides(basis, lobes, glm::dvec3(surface.normal[i]));
+    if (unsure || near_border(light ? point : point + 0.5)) surface.depth[i] = 0;
+  }
+  surface.depth[3] = std::numeric_limits<float>::infinity();
+  if (format == RsmFormat::paper) return surface;  // 8 bits hold no NaN
+  surface.normal[5].y = std::numeric_limits<float>::quiet_NaN();
+  if (light) surface.colour[7].x = std::numeric_limits<float>::quiet_NaN();
+  return surface;
+}
+
+/// The same as points that no view sees.
+SurfaceImage as_points(SurfaceImage surface) {
+  for (std::size_t i = 0; i < surface.depth.size(); ++i) {
+    const glm::dvec3 at = surface_position(surface.view, static_cast<double>(i % kWidth),
+                                           static_cast<double>(i / kWidth), surface.depth[i]);
+    surface.position.emplace_back(glm::vec3(at), 1);
+    if (surface.depth[i] == 0) surface.normal[i] = glm::vec4(0);
+  }
+  surface.depth.clear();
+  return surface;
+}
+
+/// 26 directions: towards the neighbours of a cell in a cube.
+std::vector<glm::dvec3> directions() {
+  std::vector<glm::dvec3> found;
+  for (int i = 0; i < 27; ++i) {
+    if (i != 13) found.push_back(glm::normalize(glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+  }
+  return found;
+}
+
+/// The functions, not their coefficients, are compared: where the Gram matrix is ill-conditioned coefficients
+/// differ in directions in which functions hardly do.
+CheckResult compare(const Basis& basis, const InjectOptions& options, const std::vector<float>& device,
+                    const Volume& expected, const std::string& variant) {
+  const bool rotated = options.lobes.kind == LobeKind::rotate;
+  const double allowed = rotated ? tolerance("inject-rotated") : tolerance("inject", options.format.storage);
+  CheckResult result{"inject", variant, 0, allowed, {}};
+  const auto cells = static_cast<std::size_t>(expected.n) * expected.n * expected.n;
+  const std::size_t size = expected.coefficients;
+  const bool areas = expected.channels == 1 && !blocks_by_lobes(options.blocking);
+  double largest = 0;
+  WorstError worst;
+  for (const glm::dvec3& w : directions()) {
+    const std::vector<double> b =
+        areas ? blocking_weights(options.blocking, basis, options.lobes, w) : basis.evaluate(w);
+    for (std::size_t at = 0; at < cells * static_cast<std::size_t>(expected.channels); ++at) {
+      const std::size_t channel = at / cells, cell = at % cells;
+      double found = 0, wanted = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        found += b[i] * static_cast<double>(device[(channel * size + i) * cells + cell]);
+        wanted += b[i] * expected.values[(channel * size + i) * cells + cell];
+      }
+      largest = std::max(largest, std::abs(wanted));
+      if (!worst.take(std::abs(found - wanted), cell)) continue;
+      const std::size_t n = expected.n;
+      result.place =
+          fmt::format("cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, expected {:.7g}",
+                      cell % n, cell / n % n, cell / n / n, channel, w.x, w.y, w.z, found, wanted);
+    }
+  }
+  result.worst = worst.value / largest;
+  return result;
+}
+
+/// One comparison: light, or geometry with blockers.
+struct InjectCase {
+  InjectOptions options = {};
+  bool light = true, orthographic = true, points = false;
+  RsmFormat format = RsmFormat::float32;
+  int stride = 1;
+
+  std::string name(const Basis& basis) const {
+    std::string name = fmt::format("{}/{}/{}", basis.name(),
+                                   points  ? "points"
+                                   : light ? "light"
+                                           : "geometry",
+                                   orthographic ? "orthographic" : "perspective");
+    if (format == RsmFormat::paper) name += "/paper";
+    if (options.blocking == Blocking::areas) name += "/areas";
+    if (options.unit_flux_lobes) name += "/unit-flux";
+    if (options.lobes.kind == LobeKind::rotate) name += "/rotate";
+    if (options.table == TableStorage::image) name += "/image";
+    if (options.format != VolumeFormat{}) name += fmt::format("/{}", format_name(options.format));
+    return stride == 1 ? name : name + fmt::format("/stride {}", stride);
+  }
+};
+
+/// Blockers are those of two surfaces, so that they are merged.
+CheckResult check_one(Session& session, const Basis& basis, InjectCase c) {
+  c.options.grid = kGrid;
+  const InjectOptions& options = c.options;
+  const int samples = kGrid + (c.light ? 0 : 1),
+            numbers = c.light ? basis.size() : blocking_size(options.blocking, basis),
+            channels = c.light ? 3 : 1;
+  clpv::Volume volume(session, {samples, numbers, channels}, "check: injection", options.format);
+  Volume expected(samples, numbers, channels);
+  Injector injector(session, basis, options);
+  if (c.light) {
+    SurfaceImage image = random_surface(basis, options.lobes, c.orthographic, true, c.format, 11);
+    if (c.points) image = as_points(std::move(image));
+    const Surface surface = upload_surface(session, image, c.format);
+    injector.inject_light(surface, kCells, volume);
+    inject_light(read_surface(session, surface), kCells, basis, options, expected);
+  }
+  for (unsigned seed = 12; seed < 14 && !c.light; ++seed) {
+    const bool from_above = c.orthographic == (seed == 12);
+    const SurfaceImage image = random_surface(basis, options.lobes, from_above, false, c.format, seed);
+    const Surface surface = upload_surface(session, image, c.format);
+    injector.inject_geometry(surface, kCells, volume, c.stride);
+    inject_geometry(read_surface(session, surface), kCells, basis, options, expected, c.stride);
+  }
+  return compare(basis, options, volume.read(session), expected, c.name(basis));
+}
+
+/// What is compared of a basis.
+std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool thorough) {
+  std::vector<InjectCase> cases = {{}, {.light = false}};
+  if (!basis.centres().empty()) {  // of others rotated lobes are the exact ones
+    const InjectOptions rotated{.lobes = {.kind = LobeKind::rotate}};
+    cases.push_back({.options = rotated});
+    cases.push_back({.options = rotated, .light = false});
+    if (device.images && (thorough || basis.size() == 4)) {  // reading an image hardly depends on the basis
+      cases.push_back({.options = rotated, .orthographic = false});
+      cases.back().options.table = TableStorage::image;
+    }
+    if (thorough) {
+      cases.push_back({.options = rotated, .orthographic = false});
+      cases.back().options.unit_flux_lobes = true;
+    }
+  }
+  // What hardly depends on the basis, for the small ones: compiling takes most of the time.
+  if (basis.size() > 4) return cases;
+  cases.push_back({.options = {.unit_flux_lobes = true}, .orthographic = false});
+  cases.push_back({.orthographic = false, .format = RsmFormat::paper});
+  cases.push_back({.light = false, .orthographic = false, .format = RsmFormat::paper});
+  return cases;
+}
+
+}  // namespace
+
+CheckResults check_inject(Session& session, const CheckScope& scope) {
+  CheckResults results;
+  for (const std::string& name : scope.bases) {
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    for (const InjectCase& c : cases_of(session.device(), *basis, scope.thorough))
+      results.push_back(check_one(session, *basis, c));
+  }
+  // Whatever the basis: areas, points that no view sees, and every other way for volumes to lie in memory.
+  const InjectOptions areas{.blocking = Blocking::areas};
+  std::vector<InjectCase> cases = {{.options = areas, .light = false},
+                                   {.orthographic = false, .points = true}};
+  for (const int stride : {1, 2, 3})
+    cases.push_back({.options = areas, .light = false, .orthographic = false, .stride = stride});
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  for (const VolumeFormat& format :
+       other_formats(session.device(), {kGrid + 1, basis->size(), 3}, scope.formats)) {
+    cases.push_back({.options = {.format = format}, .orthographic = false});
+    cases.push_back({.options = {.format = format}, .light = false});
+  }
+  for (const InjectCase& c : cases) results.push_back(check_one(session, *basis, c));
+  return results;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "verify/inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "verify/comparison.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr unsigned kWidth = 45, kHeight = 31;  // no multiple of any work-group
+constexpr float kFarthest = 12;                // [m]
+constexpr double kHeightError = 1e-6;  // of a turned centre's height in single precision; measured 3e-7
+
+void add_materials(Scene& scene, std::mt19937& random) {
+  Texture texture{.width = 5, .height = 4, .wrap_u = CLPV_WRAP_MIRROR, .rgba = {}, .name = "holes"};
+  for (int i = 0; i < 5 * 4 * 4; ++i) texture.rgba.push_back(static_cast<std::uint8_t>(random() % 256));
+  scene.textures.push_back(texture);
+  for (const unsigned flags : {0u, CLPV_MATERIAL_MASKED}) {
+    Material material{{0.9f, 0.6f, 0.3f, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
+    scene.materials.push_back(material);
+  }
+}
+
+}  // namespace
+
+SurfaceImage random_surfaces(std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(0, 1);
+  SurfaceImage image;
+  ClpvView& view = image.view;
+  view.eye[0] = 0.3f, view.eye[1] = -0.2f, view.eye[2] = 0.6f;
+  view.right[2] = view.up[1] = view.forward[0] = 1;
+  view.half_width = 1.2f, view.half_height = 0.8f;
+  view.near_depth = 0.01f, view.far_depth = 100;
+  view.width = kWidth, view.height = kHeight;
+  for (unsigned pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+    const float depth = 1.1f * uniform(random) - 0.1f;
+    const glm::vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.4995f);
+    image.depth.push_back(depth > 0 ? kFarthest * depth * depth : 0.0f);
+    image.normal.emplace_back(glm::normalize(n), 0.0f);
+    image.colour.emplace_back(uniform(random), uniform(random), uniform(random), 1.0f);
+    image.emissive.emplace_back(uniform(random), uniform(random), uniform(random), 0.0f);
+  }
+  return image;
+}
+
+bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm::dvec3& direction) {
+  if (basis.centres().empty()) return false;
+  const ZonalTable table(options.table_size, [](double) { return 0.0; });
+  const double near = kHeightError * options.table_size / 2;
+  const auto unsure = [&](const glm::dvec3& a, const glm::dvec3& b) {
+    return table.to_step(glm::dot(a, b)) < near;
+  };
+  const glm::dmat3 there = rotation_to(direction), back = rotation_to(-direction);
+  for (const glm::dvec3& a : basis.centres()) {
+    if (options.table_functions && (unsure(a, direction) || unsure(a, -direction))) return true;
+    if (options.kind != LobeKind::rotate) continue;
+    for (const glm::dvec3& b : basis.centres()) {
+      if (unsure(a, there * b) || unsure(a, back * b)) return true;
+    }
+  }
+  return false;
+}
+
+CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& expected,
+                           unsigned width, std::string_view stage, const std::string& variant) {
+  const auto found = [&](std::size_t i) { return static_cast<double>(device[i / 4].s[i % 4]); };
+  const auto wanted = [&](std::size_t i) { return expected[i / 4][static_cast<int>(i % 4)]; };
+  const WorstError worst = worst_difference(4 * expected.size(), found, wanted);
+  CheckResult result{std::string(stage), variant, worst.value, tolerance(stage), {}};
+  if (worst.value == 0) return result;
+  const std::size_t pixel = worst.at / 4;
+  result.place = fmt::format("pixel {},{} channel {}: {:.7g}, expected {:.7g}", pixel % width, pixel / width,
+                             worst.at % 4, found(worst.at), wanted(worst.at));
+  return result;
+}
+
+Scene triangle_soup() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  const auto direction = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
+  Scene scene;
+  add_materials(scene, random);
+  const glm::vec3 middle(-0.25f, 2.75f, 3.25f);
+  for (int i = 0; i < 150; ++i) {
+    const float size = std::exp(6 * uniform(random) - 3);  // 0.0025 to 20 m
+    const glm::vec3 at = middle + (i % 10 == 9 ? 6.0f : 2.5f) * direction();
+    Triangle triangle{{}, static_cast<unsigned>(i % 3 == 0)};
+    for (unsigned& vertex : triangle.vertex) {
+      glm::vec3 p = at + size * direction();
+      if (i % 7 == 3) p[i % 3] = at[i % 3];
+      if (i == 20) p = at;
+      vertex = static_cast<unsigned>(scene.vertices.size());
+      scene.vertices.push_back({{p.x, p.y, p.z},
+                                {0, 0, 1},
+                                {2 * uniform(random), 2 * uniform(random)},
+                                {0.8f, uniform(random) > 0 ? 0.6f : 1.0f, 1, 0.95f}});
+    }
+    scene.triangles.push_back(triangle);
+  }
+  return scene;
+}
+
+Volume random_light(const Basis& basis, int n, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-0.3f, 1);
+  Volume volume(n, basis.size());
+  for (double& value : volume.values) value = uniform(random) > 0.5f ? uniform(random) : 0;
+  return volume;
+}
+
+Volume random_blockers(int numbers, int n, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-0.5f, 1);
+  Volume volume(n + 1, numbers, 1);
+  for (double& value : volume.values) value = std::max(0.0f, uniform(random));
+  return volume;
+}
+
+clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format) {
+  clpv::Volume volume(session, {from.n, from.coefficients, from.channels}, "check: volume", format);
+  volume.write(session, {from.values.begin(), from.values.end()});
+  return volume;
+}
+
+}  // namespace clpv::reference

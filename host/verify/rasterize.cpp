@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+// The rasteriser against its CPU reference: random and awkward triangles, every kind of view.
+#include "pipeline/rasterize.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "pipeline/view.hpp"
+#include "reference/rasterize.hpp"
+#include "verify/check.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr int kWidth = 41, kHeight = 27;  // no multiples of a tile
+constexpr int kLightSize = 37;
+
+class SceneMaker {
+ public:
+  explicit SceneMaker(unsigned seed) : random_(seed) {}
+
+  /// Triangles from specks to some that reach through the eye, of every kind of material.
+  Scene soup() {
+    Scene scene = with_materials();
+    for (int i = 0; i < 120; ++i) {
+      const glm::vec3 middle = 4.0f * direction() + glm::vec3(0, 0, -4);
+      const float size = std::exp(4 * uniform() - 2);  // 0.02 to 7 m
+      add(scene, {middle + size * direction(), middle + size * direction(), middle + size * direction()});
+    }
+    return scene;
+  }
+
+  /// A curved sheet of triangles that share all their vertices, and a floor through the eye, under it.
+  Scene sheet() {
+    Scene scene = with_materials();
+    constexpr unsigned kCells = 8;
+    for (unsigned j = 0; j <= kCells; ++j) {
+      for (unsigned i = 0; i <= kCells; ++i) {
+        const glm::vec2 at = glm::vec2(i, j) + 0.3f * glm::vec2(uniform(), uniform());
+        vertex(scene, {at.x - 4, at.y - 3, -4 + 0.5f * std::sin(at.x) * std::sin(at.y)}, {0, 0, 1});
+      }
+    }
+    for (unsigned j = 0; j < kCells; ++j) {
+      for (unsigned i = 0; i < kCells; ++i) {
+        const unsigned a = j * (kCells + 1) + i, c = a + kCells + 2;
+        scene.triangles.push_back({{a, a + 1, c}, (i + j) % 4});
+        scene.triangles.push_back({{a, c, c - 1}, (i + j) % 4});
+      }
+    }
+    add(scene, {glm::vec3(-9, -0.9f, 7), glm::vec3(9, -1, 6), glm::vec3(1, -1.1f, -30)});
+    return scene;
+  }
+
+  /// Corners on pixel centres and borders of an orthographic view of 1/8 m a pixel, surfaces at the same depth, and
+  /// triangles without area.
+  Scene lattice() {
+    Scene scene = with_materials();
+    for (int i = 0; i < 60; ++i) {
+      const auto at = [&] { return glm::vec3(step(), step(), -2 - static_cast<float>(i % 3)); };
+      add(scene, {at(), at(), at()});
+    }
+    add(scene, {glm::vec3(0, 0, -1), glm::vec3(1, 1, -1), glm::vec3(2, 2, -1)});
+    add(scene, {glm::vec3(1, 0, -1), glm::vec3(1, 0, -1), glm::vec3(1, 0, -1)});
+    return scene;
+  }
+
+ private:
+  float uniform() { return std::uniform_real_distribution<float>(-1, 1)(random_); }
+  glm::vec3 direction() { return {uniform(), uniform(), uniform()}; }
+  float step() { return std::round(32 * uniform()) / 16; }
+
+  unsigned vertex(Scene& scene, const glm::vec3& p, const glm::vec3& normal) {
+    const glm::vec3 n = glm::normalize(normal + 0.3f * direction());
+    Vertex v{{p.x, p.y, p.z}, {n.x, n.y, n.z}, {3 * uniform(), 3 * uniform()}, {}};
+    for (int c = 0; c < 4; ++c) v.colour[c] = 0.9f + 0.1f * uniform();
+    scene.vertices.push_back(v);
+    return static_cast<unsigned>(scene.vertices.size() - 1);
+  }
+
+  void add(Scene& scene, const std::array<glm::vec3, 3>& p) {
+    const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::vec3(0, 0, 1);
+    Triangle triangle{};
+    for (std::size_t i = 0; i < 3; ++i) triangle.vertex[i] = vertex(scene, p[i], normal);
+    triangle.material = static_cast<unsigned>(scene.triangles.size() % scene.materials.size());
+    scene.triangles.push_back(triangle);
+  }
+
+  /// Plain, textured, double-sided, masked, emissive; textures of odd sizes and every wrap mode.
+  Scene with_materials() {
+    Scene scene;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      Texture texture{.width = 5 + 4 * i,
+                      .height = 8 - 2 * i,
+                      .wrap_u = i,
+                      .wrap_v = (i + 1) % 3,
+                      .rgba = {},
+                      .name = {}};
+      for (std::uint32_t k = 0; k < texture.width * texture.height; ++k) {
+        for (int c = 0; c < 3; ++c) texture.rgba.push_back(static_cast<std::uint8_t>(random_() % 256));
+        texture.rgba.push_back(random_() % 4 == 0 ? 0 : 255);
+      }
+      scene.textures.push_back(texture);
+    }
+    for (unsigned i = 0; i < 6; ++i) {
+      Material m{{0.9f, 0.6f, 0.3f, 1}, {0, 0, 0}, 0.5f, i % 4 == 0 ? CLPV_NO_TEXTURE : i % 3,
+                 CLPV_NO_TEXTURE,       0,         0};
+      if (i % 2 == 1) m.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+      if (i == 2 || i == 3) m.flags |= CLPV_MATERIAL_MASKED;
+      if (i == 5) m.emissive[1] = 2, m.emissive_texture = 1;
+      scene.materials.push_back(m);
+    }
+    return scene;
+  }
+
+  std::mt19937 random_;
+};
+
+double largest(const std::vector<glm::vec4>& field) {
+  float most = 0;
+  for (const glm::vec4& v : field) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return most > 0 ? most : 1.0;
+}
+
+/// The largest difference of a pixel's three numbers over the field's largest value; 0 for fields that are not there.
+double apart(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>& expected, std::size_t at) {
+  if (device.empty() || expected.empty()) return 0;
+  const glm::dvec3 off = glm::abs(glm::dvec3(device[at]) - glm::dvec3(expected[at]));
+  return glm::any(glm::isnan(off)) ? NAN : std::max({off.x, off.y, off.z}) / largest(expected);
+}
+
+/// Holds a device's surface against the CPU reference's, pixel by pixel: values where they are sure, and how many of the others
+/// differ.
+void append(CheckResults& results, const SurfaceImage& device, const Rasterized& expected,
+            const std::string& variant) {
+  CheckResult values{"rasterize", variant, 0, tolerance("rasterize"), {}};
+  const SurfaceImage& image = expected.image;
+  const double deepest = std::max(1.0f, std::ranges::max(image.depth));
+  std::size_t differing = 0;
+  for (std::size_t at = 0; at < expected.doubtful.size(); ++at) {
+    CheckResult pixel{{}, {}, 0, values.allowed, {}};
+    const double errors[] = {std::abs(double{device.depth[at]} - image.depth[at]) / deepest,
+                             apart(device.normal, image.normal, at), apart(device.colour, image.colour, at),
+                             apart(device.emissive, image.emissive, at)};
+    for (const double error : errors) {
+      (expected.doubtful[at] ? pixel : values).take(error, [&] {
+        return fmt::format(
+            "pixel {},{}: depth {:.7g}, expected {:.7g}; errors of depth, normal, colour and emission {:.1e}",
+            at % image.view.width, at / image.view.width, device.depth[at], image.depth[at],
+            fmt::join(errors, ", "));
+      });
+    }
+    if (!pixel.passed()) ++differing;
+  }
+  const auto pixels = static_cast<double>(expected.doubtful.size());
+  results.push_back(values);
+  results.push_back({"rasterize-edges", variant, differing / pixels, tolerance("rasterize-edges"),
+                     fmt::format("{} of {} pixels, {} of them doubtful", differing, pixels,
+                                 std::ranges::count(expected.doubtful, true))});
+}
+
+void check_camera(Session& session, const Scene& scene, const std::string& name, CheckResults& results) {
+  Camera camera;
+  camera.near_depth = 0.3f;
+  const ClpvView view = camera_view(camera, kWidth, kHeight);
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, true);
+  rasterizer.rasterize_camera(surface);
+  append(results, read_surface(session, surface), rasterize_camera(scene, view), "camera/" + name);
+}
+
+void check_light(Session& session, const Scene& scene, const ClpvLight& light, const ClpvView& view,
+                 const std::string& name, CheckResults& results) {
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, false);
+  rasterizer.rasterize_rsm(light, surface);
+  const SurfaceImage device = read_surface(session, surface);
+  const Rasterized expected = rasterize_rsm(scene, light, view);
+  append(results, device, expected, "rsm/" + name);
+  Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
+  rasterizer.rasterize_shadow(view, depth);
+  SurfaceImage shadow = expected.image;
+  shadow.depth = session.read<float>(depth, device.depth.size());
+  append(results, shadow, expected, "shadow/" + name);
+}
+
+ClpvLight sun() {
+  ClpvLight light{};
+  light.kind = CLPV_LIGHT_DIRECTIONAL;
+  light.direction[2] = -1;
+  for (int c = 0; c < 3; ++c) light.intensity[c] = 1.0f + static_cast<float>(c);
+  return light;
+}
+
+/// Looks down the z axis, 1/8 m a pixel: the lattice's corners fall on pixel centres and borders.
+ClpvView lattice_view() {
+  ClpvView view = camera_view(Camera{}, 2 * kLightSize - 10, kLightSize - 5);
+  view.orthographic = 1;
+  view.half_width = static_cast<float>(view.width) / 16;
+  view.half_height = static_cast<float>(view.height) / 16;
+  view.near_depth = 2.5f;  // between the lattice's layers
+  view.far_depth = 3.5f;
+  return view;
+}
+
+ClpvLight spot() {
+  ClpvLight light{};
+  light.kind = CLPV_LIGHT_SPOT;
+  light.position[0] = 1, light.position[1] = 3;
+  light.direction[1] = -0.6f, light.direction[2] = -0.8f;
+  light.range = 9;
+  light.cone_scale = 4, light.cone_offset = -2.8f;
+  for (int c = 0; c < 3; ++c) light.intensity[c] = 10.0f * static_cast<float>(c + 1);
+  return light;
+}
+
+}  // namespace
+
+CheckResults check_rasterize(Session& session, const CheckScope&) {
+  CheckResults results;
+  SceneMaker maker(3);
+  const Scene soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();
+  const Bounds bounds{glm::vec3(-12, -12, -12), glm::vec3(12, 12, 8)};
+  check_camera(session, soup, "soup", results);
+  check_camera(session, sheet, "sheet", results);
+  check_light(session, lattice, sun(), lattice_view(), "lattice", results);
+  const ClpvGrid cascade{{-2, -2, -6}, 0.5f, 8, {}};
+  check_light(session, soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize), "directional",
+              results);
+  check_light(session, sheet, spot(), spot_view(spot(), kLightSize, bounds), "spot", results);
+  return results;
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Holds the device's layout of the shared structs against the host's: a difference would garble every stage's
+// input.
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+
+#include "device/kernel.hpp"
+#include "kernels/shared/emit.h"
+#include "kernels/shared/fields.h"
+#include "kernels/shared/grid.h"
+#include "kernels/shared/light.h"
+#include "kernels/shared/mesh.h"
+#include "kernels/shared/region.h"
+#include "kernels/shared/sweep.h"
+#include "kernels/shared/view.h"
+#include "verify/check.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
+static_assert(sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
+static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX);
+static_assert(sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE);
+static_assert(sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL);
+static_assert(sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE);
+static_assert(sizeof(ClpvEmitter) == CLPV_SIZEOF_EMITTER);
+static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
+static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
+
+struct Place {
+  const char* name;
+  std::uint32_t bytes;
+};
+
+constexpr Place kHost[] = {
+#define CLPV_SIZE(type) {"size of " #type, sizeof(type)},
+#define CLPV_OFFSET(type, field) {#type "." #field, offsetof(type, field)},
+    CLPV_EACH_SHARED(CLPV_SIZE, CLPV_OFFSET)
+#undef CLPV_SIZE
+#undef CLPV_OFFSET
+};
+
+}  // namespace
+
+CheckResults check_sizes(Session& session, const CheckScope&) {
+  const std::size_t count = std::size(kHost);
+  Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
+  Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
+  const auto device = session.read<std::uint32_t>(bytes, count);
+
+  CheckResult result{"sizes", "shared structs", 0, tolerance("sizes"), {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double error = device[i] > kHost[i].bytes ? device[i] - kHost[i].bytes : kHost[i].bytes - device[i];
+    result.take(error, [&] {
+      return fmt::format("{}: {} bytes, host {}", kHost[i].name, device[i], kHost[i].bytes);
+    });
+  }
+  return {result};
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// The sweep and its bounces: kernels against the CPU references, on small cascades of random light, random blockers and random
+// reflectors.
+#include "basis/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "basis/bounce.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/sweep.hpp"
+#include "reference/bounce.hpp"
+#include "verify/check.hpp"
+#include "verify/inputs.hpp"
+#include "verify/tolerances.hpp"
+
+namespace clpv::reference {
+namespace {
+
+constexpr double kEdge = 4;  // of the finest grid [m]
+constexpr float kSkyScale = 0.5f;
+
+struct SweepCase {
+  std::string basis;
+  int grid;
+  std::vector<int> parts;  ///< a cascade
+  Bounces bounces = Bounces::one;
+  bool blocking = true;
+  Blocking blocked_by = Blocking::areas;
+  VolumeFormat format = {};
+  SweepForm form = SweepForm::bins;
+  bool sky = false;
+
+  std::string name() const {
+    std::string directions;
+    for (const int p : parts)
+      directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
+    return fmt::format("{}/{}^3/{}{}{}{}{}{}/{}", basis, grid, directions,
+                       bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
+                       blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
+                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", format_name(format));
+  }
+};
+
+/// Dark below, of all colours above.
+Sky uneven_sky(float scale) {
+  Sky sky;
+  sky.width = 5, sky.height = 4, sky.rotation = 0.7;
+  sky.texels.assign(20, glm::vec3(0));
+  for (int i = 0; i < 12; ++i) sky.texels[i] = scale * glm::vec3(i % 4, i % 3, 0.3f * i);
+  return sky;
+}
+
+/// A third of the sides reflect.
+Volume random_reflectors(int n, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-2, 1);
+  Volume volume(n, kReflectingSides);
+  for (double& value : volume.values) value = std::max(0.0f, uniform(random));
+  return volume;
+}
+
+CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
+  std::mt19937 random(3);
+  const std::unique_ptr<Basis> basis = make_basis(c.basis);
+  const Transport transport = make_transport(TransportKind::sweep, *basis, {}, c.blocked_by);
+  const int count = static_cast<int>(c.parts.size());
+  const float cell = static_cast<float>(kEdge / c.grid);
+  const std::vector<ClpvGrid> grids = cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), count, kEdge, c.grid);
+  Sweeper sweeper(session, *basis, transport,
+                  {.grid = c.grid,
+                   .parts = c.parts,
+                   .blocking = c.blocking,
+                   .bounces = c.bounces,
+                   .format = c.format,
+                   .form = c.form});
+  if (c.sky) {
+    sweeper.let_in(uneven_sky(1));
+    sweeper.scale_sky(kSkyScale);
+  }
+  std::vector<Volume> lights, blockers, reflectors;
+  std::vector<SweptCascade> cascades;
+  std::vector<const Volume*> reflecting;
+  for (int i = 0; i < count; ++i) {
+    lights.push_back(random_light(*basis, c.grid, random));
+    blockers.push_back(random_blockers(blocking_size(c.blocked_by, *basis), c.grid, random));
+    reflectors.push_back(random_reflectors(c.grid, random));
+  }
+  for (int i = 0; i < count; ++i) {
+    cascades.push_back({grids[i], &lights[i], c.blocking ? &blockers[i] : nullptr, c.parts[i]});
+    reflecting.push_back(&reflectors[i]);
+  }
+  std::vector<std::vector<float>> found(count);
+  for (int i = count; i-- > 0;) {
+    const clpv::Volume light = on_device(session, lights[i], c.format),
+                       geometry = on_device(session, blockers[i], c.format),
+                       sides = on_device(session, reflectors[i], c.format);
+    clpv::Volume swept(session, {c.grid, swept_basis()->size(), 3}, "check: swept", c.format);
+    if (c.blocking) sweeper.block(i, geometry);
+    if (c.bounces != Bounces::one) sweeper.reflect(i, sides);
+    sweeper.sweep(i, grids, light, swept);
+    found[i] = swept.read(session);
+  }
+  const Sky sky = uneven_sky(kSkyScale);
+  const std::vector<Volume> expected =
+      c.bounces == Bounces::one ? sweep(*basis, transport, cascades, c.sky ? &sky : nullptr)
+                                : sweep_bounced(*basis, transport, cascades, reflecting, c.bounces);
+  CheckResult result{stage, c.name(), 0, tolerance(stage, c.format.storage), {}};
+  for (int i = 0; i < count; ++i) {
+    const Comparison apart = compare_volumes(found[i], kept_of(expected[i]).values, c.grid);
+    result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
+  }
+  return result;
+}
+
+CheckResults check_all(Session& session, const std::vector<SweepCase>& cases, const char* stage) {
+  CheckResults results;
+  for (const SweepCase& c : cases) results.push_back(check_one(session, c, stage));
+  return results;
+}
+
+}  // namespace
+
+CheckResults check_sweep(Session& session, const CheckScope& scope) {
+  std::vector<SweepCase> cases = {
+      {.basis = "bins24", .grid = 9, .parts = {2, 1, 1}},
+      {.basis = "bins24", .grid = 8, .parts = {2, 2}, .form = SweepForm::planes},
+      {.basis = "bins24", .grid = 7, .parts = {1, 1, 2}, .form = SweepForm::planes},
+      {.basis = "bins24", .grid = 9, .parts = {2, 1, 2}, .sky = true},
+      {.basis = "bins24", .grid = 7, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
+      {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::one_sided},
+      {.basis = "bins96", .grid = 5, .parts = {3, 2}, .blocking = false},
+      {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},
+  };
+  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
+    cases.push_back({.basis = "bins24", .grid = 9, .parts = {1, 1}, .format = format});
+  if (scope.thorough) {
+    for (const std::string& name : basis_names()) {
+      for (const int parts : {1, 2, 3, 4}) cases.push_back({.basis = name, .grid = 6, .parts = {parts, 1}});
+    }
+  }
+  return check_all(session, cases, "sweep");
+}
+
+CheckResults check_bounce(Session& session, const CheckScope& scope) {
+  const Bounces all = Bounces::all;
+  std::vector<SweepCase> cases = {
+      {.basis = "bins24", .grid = 9, .parts = {2, 1}, .bounces = all},
+      {.basis = "bins24", .grid = 8, .parts = {2, 2}, .bounces = Bounces::two, .form = SweepForm::planes},
+      {.basis = "sh2", .grid = 7, .parts = {1, 2, 1}, .bounces = all, .form = SweepForm::planes},
+      {.basis = "srbf8v2", .grid = 1, .parts = {1}, .bounces = all},
+  };
+  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
+    cases.push_back({.basis = "bins24", .grid = 9, .parts = {1, 1}, .bounces = all, .format = format});
+  if (scope.thorough) {
+    for (const std::string& name : basis_names())
+      cases.push_back({.basis = name, .grid = 6, .parts = {2, 1}, .bounces = all});
+  }
+  return check_all(session, cases, "bounce");
+}
+
+}  // namespace clpv::reference

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// What blockers let through on each link into a cell: 1 - B, B the blocking potential in [0, 1].
+//
+// In: geometry volume, samples at the cells' corners. Out: transmittance volume, a number a cell and link.
+// B is the mean over the corners of the face a link leads to, looked up against the light (docs/method.md, 'Propagation');
+// host/codegen/transmittance_source.cpp generates CLPV_TRANSMITTANCE. A work-item is a cell, or CLPV_LANES cells side by side.
+#include "coefficients.h"
+#include "volume/geometry.h"
+#include "volume/transmittance.h"
+#include "volume/whole_groups.h"
+
+#define CLPV_LOAD_CORNER(i) \
+  const Coefficients g##i = geometry_load(blockers, 0, x + (i & 1), y + ((i >> 1) & 1), z + (i >> 2));
+
+__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void transmit(
+    CLPV_VOLUME_IN blockers, CLPV_VOLUME_OUT transmittance) {
+  const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
+  CLPV_RETURN_OUTSIDE(x, y);
+  CLPV_LOAD_CORNER(0) CLPV_LOAD_CORNER(1) CLPV_LOAD_CORNER(2) CLPV_LOAD_CORNER(3)
+  CLPV_LOAD_CORNER(4) CLPV_LOAD_CORNER(5) CLPV_LOAD_CORNER(6) CLPV_LOAD_CORNER(7)
+  CLPV_TRANSMITTANCE
+  transmittance_store(transmittance, 0, x, y, z, links);
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Blockers from a scene's triangles, held against shares that are known.
+#include "pipeline/blockers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "reference/blockers.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+#include "verify/check.hpp"
+
+namespace clpv::blockers_test {
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 4;
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // corners at 0..4, their cells half a metre round them
+
+/// Shares [axis][z][y][x], by the kernels; the CPU reference must agree.
+struct Shares {
+  std::vector<float> values;
+  float at(int axis, int x, int y, int z) const {
+    return values[static_cast<std::size_t>(((axis * 5 + z) * 5 + y) * 5 + x)];
+  }
+};
+
+Shares blocked(const Scene& scene) {
+  Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  BlockerVoxelizer(test_session(), buffers, kGrid, 1, {}).block(0, kCells, geometry);
+  Shares shares{geometry.read(test_session())};
+  const reference::Blocked expected = reference::block(scene, kCells);
+  for (std::size_t i = 0; i < shares.values.size(); ++i) {
+    EXPECT_GE(shares.values[i], expected.least.values[i]) << i;
+    EXPECT_LE(shares.values[i], expected.most.values[i]) << i;
+  }
+  return shares;
+}
+
+float sum(const Shares& shares, int axis) {
+  float total = 0;
+  for (int i = 0; i < 125; ++i) total += shares.values[static_cast<std::size_t>(axis * 125 + i)];
+  return total;
+}
+
+TEST(Block, AWallFillsTheSquaresItStandsAcrossAndNoOthers) {
+  Scene scene;
+  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  const Shares shares = blocked(scene);
+  for (int y = 0; y <= kGrid; ++y) {
+    for (int z = 0; z <= kGrid; ++z) EXPECT_EQ(shares.at(0, 2, y, z), 1) << y << ' ' << z;
+  }
+  EXPECT_EQ(sum(shares, 0), 25) << "one layer of corners alone";
+  EXPECT_EQ(sum(shares, 1), 0);
+  EXPECT_EQ(sum(shares, 2), 0);
+}
+
+TEST(Block, WallsBehindEachOtherAreOneWall) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  for (const float x : {1.6f, 1.9f, 2.3f}) add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
+  EXPECT_EQ(sum(blocked(scene), 0), 25);
+}
+
+TEST(Block, PartOfASquareCountsByItsArea) {
+  Scene scene;
+  add_quad(scene, {1.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, -0.25f},
+           add_material(scene));  // beyond the corner's cell
+  add_quad(scene, {2.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, 0.25f}, 0);
+  const Shares shares = blocked(scene);
+  EXPECT_EQ(shares.at(1, 3, 2, 2), 0.125f);
+  EXPECT_EQ(shares.at(1, 2, 2, 2), 0);
+  EXPECT_EQ(shares.at(1, 2, 2, 1), 0.125f);
+  EXPECT_EQ(sum(shares, 1), 0.25f);
+}
+
+TEST(Block, ASlantedWallBlocksAlongEachAxisItCrosses) {
+  Scene scene;
+  add_quad(scene, {-5, -5, -5}, {20, 20, 0}, {0, 0, 20}, add_material(scene));  // x = y
+  const Shares shares = blocked(scene);
+  for (int i = 0; i <= kGrid; ++i) {
+    EXPECT_EQ(shares.at(0, i, i, 2), 1) << i;
+    EXPECT_EQ(shares.at(1, i, i, 2), 1) << i;
+  }
+  EXPECT_EQ(sum(shares, 2), 0) << "seen edge-on";
+}
+
+TEST(Block, HolesOfMaskedMaterialsLetLightPass) {
+  Scene scene;
+  Texture stripes{.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
+  scene.textures.push_back(stripes);
+  const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
+  scene.materials[material].texture = 0;
+  scene.materials[material].alpha_cutoff = 0.5f;
+  add_quad(scene, {1.5f, 2, 1.5f}, {1, 0, 0}, {0, 0, 1},
+           material);  // opaque from u 0 to 1/2, repeated beyond
+  EXPECT_EQ(sum(blocked(scene), 1), 0.5f);
+  scene.materials[material].flags = 0;
+  EXPECT_EQ(sum(blocked(scene), 1), 1) << "alpha is nothing to what is not masked";
+}
+
+TEST(Block, ATriangleBeyondTheHorizonIsAWall) {
+  Scene scene;
+  add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, add_material(scene));
+  Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
+  BlockerVoxelizer(test_session(), upload_scene(test_session(), scene), kGrid, 1, {})
+      .block(0, kCells, geometry);
+  EXPECT_EQ(sum({geometry.read(test_session())}, 1), 25);
+}
+
+TEST(Block, KernelsAgreeWithTheReference) {
+  expect_passed(reference::check(Stage::blockers, test_session()), 2);
+}
+
+}  // namespace
+}  // namespace clpv::blockers_test

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// What stood still is not computed again, and a frame is the same whatever was rendered before it.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "options/presets.hpp"
+#include "pipeline/cached.hpp"
+#include "pipeline/frame.hpp"
+#include "scene/load.hpp"
+#include "support/named_enum.hpp"
+#include "tests/support/moving_scene.hpp"
+
+namespace clpv::frame_cache_test {
+namespace {
+
+TEST(Cached, IsComputedForAnotherKey) {
+  Cached cached;
+  int computed = 0;
+  for (const CacheKey key : {0, 0, 7, 7, 0}) cached.update(key, [&] { ++computed; });
+  EXPECT_EQ(computed, 3) << "it holds what was computed last";
+}
+
+TEST(Cached, HoldsNothingAfterAFailure) {
+  Cached cached;
+  cached.update(1, [] {});
+  EXPECT_THROW(cached.update(2, [] { throw std::runtime_error("no memory"); }), std::runtime_error);
+  int computed = 0;
+  cached.update(1, [&] { ++computed; });
+  EXPECT_EQ(computed, 1);
+}
+
+using Passes = std::set<Pass>;
+
+constexpr int kGrid = 8, kCascades = 2;
+constexpr float kSize = 3;  // [m], of the finest cascade
+constexpr float kCell = kSize / kGrid;
+const Passes kOfEveryFrame{Pass::rasterize_camera, Pass::gather, Pass::shade};
+
+/// A scene of which each thing has an instant of its own.
+struct Instants {
+  glm::vec3 eye{0.1f * kCell, 1.6f, 3.1f};
+  double wall = 0, sun = 0;
+};
+
+class CachedFrame : public ::testing::Test {
+ protected:
+  explicit CachedFrame(const std::function<void(RenderOptions&)>& change = {})
+      : options_(options(change)), scene_(moving_.scene()), frame_(session_, scene_, options_) {}
+
+  static RenderOptions options(const std::function<void(RenderOptions&)>& change) {
+    RenderOptions options;
+    options.directions = options.coarser_directions = Directions::of24;
+    options.bounces = Bounces::all;
+    if (change) change(options);
+    options.width = 32, options.height = 18, options.grid = kGrid, options.rsm_size = 64,
+    options.shadow_size = 64;
+    options.cascades = kCascades, options.cascade_size = double{kSize};
+    return options;
+  }
+
+  Camera show(const Instants& at) {
+    moving_.pose(at.sun);
+    scene_.lights = moving_.scene().lights;
+    moving_.pose(at.wall);
+    scene_.vertices = moving_.scene().vertices;
+    frame_.scene_moved();
+    Camera camera = moving_.scene().camera("");
+    camera.eye = at.eye;
+    return camera;
+  }
+
+  /// What a frame shows and holds.
+  using Found = std::vector<std::vector<float>>;
+  static Found rendered(Session& session, Frame& frame, const Camera& camera) {
+    frame.render(camera);
+    Found found{frame.read(Show::full), frame.read(Show::irradiance)};
+    for (const Volume* volume : frame.light().accumulated) found.push_back(volume->read(session));
+    return found;
+  }
+
+  /// The passes of the frame at those instants, which is held against the same frame rendered alone.
+  Passes passes(const Instants& at) {
+    const Camera camera = show(at);
+    const Found kept = rendered(session_, frame_, camera);
+    Passes passes;
+    for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
+    Frame alone(session_, scene_, options_);
+    const Found anew = rendered(session_, alone, camera);
+    EXPECT_EQ(kept.size(), anew.size());
+    for (std::size_t i = 0; i < anew.size(); ++i) EXPECT_TRUE(kept[i] == anew[i]) << i;
+    return passes;
+  }
+
+  test::TemporaryFolder folder_;
+  MovingScene moving_{test::write_moving_scene(folder_)};
+  RenderOptions options_;
+  Session session_{choose_device()};
+  Scene scene_;
+  Frame frame_;
+};
+
+Passes with(Passes passes, const Passes& more) {
+  passes.insert(more.begin(), more.end());
+  return passes;
+}
+
+const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light, Pass::propagate};
+const Passes kOfCells{Pass::blockers, Pass::visibility, Pass::reflectors};
+
+TEST_F(CachedFrame, MakesWhatChanged) {
+  Instants at;
+  const Passes all = with(with(kOfEveryFrame, kOfLight), kOfCells);
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), kOfEveryFrame) << "nothing changed";
+  at.eye.x += 0.5f * kCell;
+  EXPECT_EQ(passes(at), kOfEveryFrame) << "a camera that moves inside a cell";
+  at.sun = 0.3;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
+  at.wall = 0.6;
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), kOfEveryFrame);
+  at.eye.x += kCell;
+  EXPECT_EQ(passes(at),
+            with(with(kOfEveryFrame, kOfCells), {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}))
+      << "the shadow map stands";
+  at.wall = at.sun = 2;  // after the last key
+  EXPECT_EQ(passes(at), all);
+  at.wall = at.sun = 5;
+  EXPECT_EQ(passes(at), kOfEveryFrame) << "what moved has come to rest";
+  EXPECT_EQ(passes(Instants{}), all);
+}
+
+TEST_F(CachedFrame, ForgetsTheEventsOfTheFrameBefore) {
+  const Camera camera = show({});
+  Passes passes;
+  for (int i = 0; i < 2; ++i) frame_.render(camera);
+  for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
+  EXPECT_EQ(passes, kOfEveryFrame);
+}
+
+TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
+  Instants at;
+  // Cells of the finest cascade, alone and with the coarser one; inside them; things that move meanwhile, and not.
+  for (int i = 0; i < 16; ++i) {
+    at.eye[i % 2 == 0 ? 0 : 2] += (i % 2 == 0 ? 0.7f : -0.7f) * kCell;
+    if (i % 6 == 1) at.sun += 0.1;
+    if (i % 7 == 5) at.wall += 0.1;
+    passes(at);
+  }
+}
+
+TEST_F(CachedFrame, MakesAnewWhatItIsToldToForget) {
+  const Instants at;
+  passes(at);
+  frame_.forget_light();
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
+  frame_.invalidate();
+  EXPECT_EQ(passes(at), with(with(kOfEveryFrame, kOfLight), kOfCells));
+}
+
+TEST_F(CachedFrame, AnObserverSeesWhatCascadesShare) {
+  const Instants at;
+  using Seen = std::vector<std::vector<float>>;
+  const auto observed = [&] {
+    Seen seen;
+    frame_.render(show(at), [&](const CascadeVolumes& volumes) {
+      seen.push_back(volumes.injected.read(session_));
+      seen.push_back(volumes.geometry->read(session_));
+    });
+    return seen;
+  };
+  const Seen anew = observed();
+  ASSERT_EQ(anew.size(), 4u);
+  EXPECT_FALSE(anew[0] == anew[2]) << "a cascade's own";
+  EXPECT_TRUE(observed() == anew);
+}
+
+/// What the camera sees blocks: what follows from it changes with the view.
+class CachedPublishedFrame : public CachedFrame {
+ protected:
+  CachedPublishedFrame()
+      : CachedFrame([](RenderOptions& options) {
+          apply_preset(options, PresetName::paper);
+          options.bounces = Bounces::one;
+          options.basis = "sh2", options.layout = Layout::soa, options.lobe_time = LobeTime::host;
+          options.iterations = 3;
+        }) {}
+};
+
+TEST_F(CachedPublishedFrame, MakesWhatChanged) {
+  const Passes of_view{Pass::inject_geometry, Pass::propagate};
+  Instants at;
+  const Passes all = with(with(kOfEveryFrame, kOfLight), of_view);
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), kOfEveryFrame);
+  at.eye.x += 0.5f * kCell;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, of_view)) << "maps of lights and their injected light stand";
+  at.sun = 0.3;
+  EXPECT_EQ(passes(at), all);
+  at.wall = 0.6;
+  EXPECT_EQ(passes(at), all);
+  frame_.forget_light();
+  EXPECT_EQ(passes(at), all);
+  for (int i = 0; i < 5; ++i) {
+    at.eye += glm::vec3(0.6f, 0.0f, -0.55f) * kCell;
+    if (i % 3 == 1) at.sun += 0.1;
+    passes(at);
+  }
+}
+
+}  // namespace
+}  // namespace clpv::frame_cache_test

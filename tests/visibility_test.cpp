@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// What a scene's triangles hide, held against what is known: walls hide what is behind them, from every point, and no more.
+#include "pipeline/visibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "reference/visibility.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+#include "verify/check.hpp"
+
+namespace clpv::visibility_test {
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 4;
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
+
+/// Bytes of all points, by the kernel; the CPU reference must agree.
+std::vector<std::uint8_t> hidden(const Scene& scene, const ClpvGrid& grid = kCells) {
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  CellVisibility sight(test_session(), buffers, static_cast<int>(grid.n), 1);
+  sight.see(0, grid);
+  auto found =
+      test_session().read<std::uint8_t>(sight.hidden(), CellVisibility::bytes(static_cast<int>(grid.n)));
+  const reference::Hidden expected = reference::see(scene, grid);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(expected.least[i] & ~unsigned{found[i]}, 0u) << i;
+    EXPECT_EQ(found[i] & ~unsigned{expected.most[i]}, 0u) << i;
+  }
+  return found;
+}
+
+/// Cube and point of a byte.
+glm::ivec3 cube_of(std::size_t at) {
+  const int cube = static_cast<int>(at / 64);
+  return {cube % kGrid, cube / kGrid % kGrid, cube / kGrid / kGrid};
+}
+glm::ivec3 point_of(std::size_t at) {
+  const int point = static_cast<int>(at % 64);
+  return {point % 4, point / 4 % 4, point / 16};
+}
+bool between_centres(std::size_t at) {
+  const glm::ivec3 cube = cube_of(at);
+  return std::max({cube.x, cube.y, cube.z}) < kGrid - 1;
+}
+
+constexpr unsigned kCornersWithX = 0b10101010;
+
+TEST(See, AWallHidesTheCellsBehindItFromEveryPointAndNoOthers) {
+  Scene scene;
+  add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
+           add_material(scene));  // between centres at 1.5 and 2.5
+  const std::vector<std::uint8_t> found = hidden(scene);
+  for (std::size_t at = 0; at < found.size(); ++at) {
+    unsigned expected = 0;
+    if (between_centres(at) && cube_of(at).x == 1)
+      expected = point_of(at).x < 2 ? kCornersWithX : 0xff & ~kCornersWithX;
+    ASSERT_EQ(found[at], expected) << at;
+  }
+}
+
+TEST(See, AWallThroughCentresHidesNothing) {
+  Scene scene;
+  add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+}
+
+TEST(See, ASpeckHidesWhatLiesBehindItAlone) {
+  Scene scene;
+  // On the way from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along each axis.
+  add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
+  std::vector<std::uint8_t> found = hidden(scene);
+  EXPECT_EQ(found[0] & 1, 1) << "the first point of the first cube does not see its first corner";
+  EXPECT_EQ(found[0] & ~1, 0);
+  for (std::size_t at = 64; at < found.size(); ++at) ASSERT_EQ(found[at], 0) << at;
+}
+
+TEST(See, TrianglesOfOneSurfaceLeaveNoGap) {
+  Scene scene;
+  const unsigned material = add_material(scene);
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j)
+      add_quad(scene, {2.0f, 0.1f * i, 0.1f * j}, {0, 0.1f, 0}, {0, 0, 0.1f}, material);
+  }
+  Scene whole;
+  add_quad(whole, {2.0f, 0, 0}, {0, 4, 0}, {0, 0, 4}, add_material(whole));
+  EXPECT_EQ(hidden(scene), hidden(whole));
+}
+
+TEST(See, MaskedMaterialsHideNothing) {
+  Scene scene;
+  add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
+           add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
+  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+}
+
+TEST(See, NothingIsHiddenInAGridOfOneCell) {
+  Scene scene;
+  add_quad(scene, {0.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  for (const std::uint8_t bits : hidden(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
+}
+
+TEST(See, TheKernelAgreesWithTheReference) {
+  expect_passed(reference::check(Stage::visibility, test_session()), 1);
+}
+
+}  // namespace
+}  // namespace clpv::visibility_test

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// What triangles leave in cells is the same whether it was made from nothing or brought along with a cascade and with what
+// moved.
+#include "pipeline/voxel_masks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "basis/bounce.hpp"
+#include "pipeline/blockers.hpp"
+#include "pipeline/reflectors.hpp"
+#include "pipeline/visibility.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv::voxel_masks_test {
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 8;
+constexpr float kCell = 0.4f;
+
+/// A grid whose first cell is `first` cells from the world's origin along each axis.
+ClpvGrid grid_at(const glm::ivec3& first) {
+  ClpvGrid grid{{}, kCell, kGrid, {}};
+  for (int a = 0; a < 3; ++a) grid.origin[a] = kCell * static_cast<float>(first[a]);
+  return grid;
+}
+
+/// Triangles from specks to walls, in and round a space of some 20 cells; the last 40 move.
+Scene soup() {
+  Scene scene;
+  const unsigned materials[] = {add_material(scene, {0.8f, 0.5f, 0.3f}),
+                                add_material(scene, {0.2f, 0.7f, 0.9f})};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto anywhere = [&](float reach) {
+    return reach * glm::vec3(unit(random), unit(random), unit(random));
+  };
+  for (int i = 0; i < 700; ++i) {
+    const glm::vec3 at = anywhere(i < 660 ? 4.0f : 1.5f);
+    const float size = i % 50 == 0 ? 9.0f : i % 5 == 0 ? 1.0f : 0.2f;
+    add_triangle(scene, at, at + anywhere(size), at + anywhere(size), materials[i % 2]);
+  }
+  scene.moving = {{3 * 660, 3 * 20, 660, 20}, {3 * 680, 3 * 20, 680, 20}};
+  return scene;
+}
+
+void shift(Scene& scene, const Part& part, const glm::vec3& by) {
+  for (unsigned v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
+    for (int a = 0; a < 3; ++a) scene.vertices[v].position[a] += by[a];
+  }
+}
+
+/// All that triangles leave in a cascade.
+struct Left {
+  std::vector<std::uint8_t> hidden;
+  std::vector<float> blocked, reflected;
+  bool operator==(const Left&) const = default;
+};
+
+/// The three stages that mark cells, of two cascades: the first stays where it was put first.
+class Stages {
+ public:
+  explicit Stages(const SceneBuffers& buffers)
+      : sight_(test_session(), buffers, kGrid, 2),
+        blocker_(test_session(), buffers, kGrid, 2, {}),
+        reflector_(test_session(), buffers, kGrid, 1, {}) {}
+
+  Left bring(const ClpvGrid& grid) {
+    sight_.see(1, grid);
+    blocker_.block(1, grid, geometry_);
+    reflector_.reflect(0, grid);
+    const std::size_t bytes = CellVisibility::bytes(kGrid);
+    const auto hidden = test_session().read<std::uint8_t>(sight_.hidden(), 2 * bytes);
+    return {{hidden.begin() + static_cast<std::ptrdiff_t>(bytes), hidden.end()},
+            geometry_.read(test_session()),
+            reflector_.reflectors(0).read(test_session())};
+  }
+
+ private:
+  CellVisibility sight_;
+  BlockerVoxelizer blocker_;
+  ReflectorVoxelizer reflector_;
+  Volume geometry_{test_session(), {kGrid + 1, 3, 1}, "test: geometry"};
+};
+
+Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
+  return Stages(upload_scene(test_session(), scene)).bring(grid);
+}
+
+TEST(VoxelMasks, WalkWithACascade) {
+  const Scene scene = soup();
+  Stages kept(upload_scene(test_session(), scene));
+  // A cell, several along two and three axes, back, farther than the grid is wide, past a base (32 cells apart), and nowhere.
+  const glm::ivec3 places[] = {{-4, -4, -4}, {-3, -4, -4}, {-3, -6, -1}, {-1, -5, -2},
+                               {-4, -4, -4}, {5, -4, -4},  {11, -4, 2},  {17, -4, 2},
+                               {15, -4, 2},  {16, -3, 2},  {16, -3, 2}};
+  for (const glm::ivec3& place : places) {
+    EXPECT_TRUE(kept.bring(grid_at(place)) == from_nothing(scene, grid_at(place)))
+        << place.x << " " << place.y << " " << place.z;
+  }
+}
+
+TEST(VoxelMasks, DoNotDependOnTheOrderOfTriangles) {
+  Scene scene = soup();
+  scene.moving.clear();
+  const Left before = from_nothing(scene, grid_at({-4, -4, -4}));
+  std::ranges::reverse(scene.triangles);
+  EXPECT_TRUE(from_nothing(scene, grid_at({-4, -4, -4})) == before);
+}
+
+TEST(VoxelMasks, OfNoTrianglesOrAwkwardOnesThereAreNone) {
+  Scene scene;
+  const auto expect_none = [&] {
+    const Left left = from_nothing(scene, grid_at({0, 0, 0}));
+    EXPECT_EQ(std::ranges::count(left.hidden, 0), std::ssize(left.hidden));
+    EXPECT_EQ(std::ranges::count(left.blocked, 0.0f), std::ssize(left.blocked));
+    EXPECT_EQ(std::ranges::count(left.reflected, 0.0f), std::ssize(left.reflected));
+  };
+  expect_none();
+  const unsigned material = add_material(scene);
+  add_triangle(scene, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, material);  // no area
+  add_triangle(scene, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, material);
+  add_triangle(scene, {50, 1, 1}, {60, 1, 1}, {50, 9, 9}, material);  // beside the grid
+  expect_none();
+}
+
+TEST(VoxelMasks, FollowWhatMoves) {
+  Scene scene = soup();
+  SceneBuffers buffers = upload_scene(test_session(), scene);
+  Stages kept(buffers);
+  glm::ivec3 place(-4, -4, -4);
+  Left before = kept.bring(grid_at(place));
+  for (int step = 0; step < 4; ++step) {
+    shift(scene, scene.moving[static_cast<std::size_t>(step % 2)], {0.3f, -0.2f, 0.25f});
+    upload_moving(test_session(), scene, buffers);
+    if (step >= 2) ++place[step - 2];
+    if (step == 3) {  // an instant that was not looked at
+      shift(scene, scene.moving[0], {-1, 0.5f, 0});
+      upload_moving(test_session(), scene, buffers);
+    }
+    const Left now = kept.bring(grid_at(place));
+    EXPECT_TRUE(now == from_nothing(scene, grid_at(place))) << step;
+    EXPECT_FALSE(now == before) << step;
+    before = now;
+  }
+}
+
+TEST(TriangleClusters, BoundTheirTrianglesAndTellWhatMoved) {
+  Scene scene = soup();
+  TriangleClusters runs(scene);
+  ASSERT_EQ(runs.bounds().size(), (700u + CLPV_CLUSTER - 1) / CLPV_CLUSTER);
+  EXPECT_EQ(runs.instant(), 0u);
+  EXPECT_TRUE(runs.move(scene).empty()) << "nothing did";
+  shift(scene, scene.moving[1], {3, 0, 0});
+  ASSERT_EQ(runs.move(scene).size(), 1u);
+  EXPECT_EQ(runs.instant(), 1u);
+  ASSERT_EQ(runs.moved().size(), 1u);
+  for (unsigned t = 0; t < 700; ++t) {
+    const Bounds run = runs.bounds()[t / CLPV_CLUSTER];
+    for (const unsigned vertex : scene.triangles[t].vertex) {
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_LE(run.lower[a], scene.vertices[vertex].position[a]);
+        EXPECT_GE(run.upper[a], scene.vertices[vertex].position[a]);
+        if (t < 680) continue;
+        EXPECT_GE(runs.moved()[0].upper[a], scene.vertices[vertex].position[a]);
+        EXPECT_LE(runs.moved()[0].lower[0], scene.vertices[vertex].position[0] - 3);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clpv::voxel_masks_test
