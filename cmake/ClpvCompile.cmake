@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# How every target is compiled.
+# Compiler settings of all targets.
 
-# Headers of others that many units include and that take long to parse, precompiled. Not json.hpp: what including it
-# instantiates is instantiated in every unit all the same, which takes longer than parsing it where it is needed.
+# Precompiles library headers that many units include. Excludes json.hpp: every unit that includes it also instantiates its
+# templates, which takes longer than parsing it where it is used.
 option(CLPV_PRECOMPILE "Precompile the headers that most units share" ON)
 
 function(clpv_precompile target)
@@ -14,7 +14,7 @@ function(clpv_precompile target)
   endif()
 endfunction()
 
-# Warnings; a switch over an enumeration that leaves a value out is an error everywhere.
+# Warnings. A switch that misses a value of an enumeration is always an error.
 option(CLPV_WERROR "Treat warnings as errors" OFF)
 
 function(clpv_warn target)
@@ -26,11 +26,11 @@ function(clpv_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Files of a folder compile as one unit, which takes a third of the time. Names in a folder must then differ, those in
-# anonymous namespaces too.
+# Compiles the files of a folder as one unit, which is 3x faster. Names within a folder must differ, including those in anonymous
+# namespaces.
 option(CLPV_UNITY "Compile files of a folder together" ON)
 
-# clpv_group(target folder...): each of these folders becomes a unit.
+# clpv_group(target folder...): compiles each folder as one unit.
 function(clpv_group target)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)

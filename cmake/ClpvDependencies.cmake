@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-# The libraries clpv stands on, all of them packages of Debian 12.
+# Libraries, all from packages of Debian 12.
 find_package(OpenCL REQUIRED)
 find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(OpenImageIO REQUIRED)
-# Debian's package names OpenCV's headers, which it does not need and may not be there.
+# Debian's package lists include folders of OpenCV, which are not needed and may not exist.
 get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
 set(oiio_present)
 foreach(directory IN LISTS oiio_includes)
@@ -19,8 +19,8 @@ if(CLPV_BUILD_PROGRAM)
   find_package(CLI11 REQUIRED)
 endif()
 find_package(Threads REQUIRED)
-# Embree 3 (Debian 12) or 4 (Debian 13); host/pathtracer/embree.hpp tells them apart.
-set(CLPV_EMBREE "" CACHE STRING "Version of Embree, 3 or 4; empty: what is there, 3 first")
+# Embree 3 (Debian 12) or 4 (Debian 13); host/pathtracer/embree.hpp handles both.
+set(CLPV_EMBREE "" CACHE STRING "Version of Embree, 3 or 4; empty: the installed one, preferably 3")
 if(NOT CLPV_EMBREE STREQUAL "4")
   find_package(embree 3 QUIET)
 endif()
@@ -28,7 +28,7 @@ if(NOT embree_FOUND AND NOT CLPV_EMBREE STREQUAL "3")
   find_package(embree 4 QUIET)
 endif()
 if(NOT embree_FOUND)
-  message(FATAL_ERROR "Embree ${CLPV_EMBREE} is not here; on Debian: apt install libembree-dev")
+  message(FATAL_ERROR "Embree ${CLPV_EMBREE} not found; on Debian: apt install libembree-dev")
 endif()
 set(CLPV_EMBREE_MAJOR ${embree_VERSION_MAJOR})
 if(NOT CLPV_EMBREE_MAJOR)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Turns every file of kernels/ into bytes of one C++ file, so that the program needs no files beside it.
+# Embeds all files of kernels/ into one C++ file, so that the program needs no kernel files at run time.
 function(clpv_embed_kernels out_variable)
   file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/kernels/*.cl
        ${CMAKE_CURRENT_SOURCE_DIR}/kernels/*.h)

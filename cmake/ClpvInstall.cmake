@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# bin/clpv and the Python package that draws for it, the library, its headers and a CMake package: find_package(clpv),
-# link clpv::clpv.
+# Installs bin/clpv, the Python package that it draws with, the library, its headers, and a CMake package (find_package(clpv), link
+# clpv::clpv).
 include(CMakePackageConfigHelpers)
 if(CLPV_BUILD_PROGRAM)
   install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

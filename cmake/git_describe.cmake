@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # cmake -DGIT=git -DSOURCE=folder -DOUTPUT=file.h -P git_describe.cmake
-# Writes CLPV_GIT_DESCRIBE: "unknown" outside a repository.
+# Writes a header that defines CLPV_GIT_DESCRIBE; "unknown" outside a repository.
 cmake_minimum_required(VERSION 3.22)
 set(described unknown)
 if(GIT)

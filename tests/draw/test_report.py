@@ -67,8 +67,8 @@ class Page(unittest.TestCase):
             row("table1", "propagate", cascade=0, occlusion=True), row("layouts", "gather", layout=NASTY),
             row("layouts", "gather", status="unsupported", reason="no images"))}]
         html = self.page()
-        self.assertIn("ours: NRMSE 10.0 %, after the best gain 0.0 %, energy 1.10 of the truth", html)
-        self.assertIn("other: the truth is black", html)
+        self.assertIn("ours: NRMSE 10.0 %, after the best gain 0.0 %, energy 1.10 of the ground truth", html)
+        self.assertIn("other: the ground truth is black", html)
         self.assertIn('<tr class="marked"><td>best</td><td>45.0 %', html)
         self.assertIn("<td>4.25</td>", html)
         self.assertIn("no images", html)

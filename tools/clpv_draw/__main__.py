@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """python3 -m clpv_draw bench|basis|report [IN OUT]
 
-    bench  IN OUT   charts of IN/bench.json into the folder OUT
-    basis  IN OUT   figures 2, 3 and 6 of IN/figures.json and IN/surfaces.npy into the folder OUT
-    report IN OUT   the page of IN/report.json and its images into the file OUT
+    bench  IN OUT   draws charts of IN/bench.json into the folder OUT
+    basis  IN OUT   draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the folder OUT
+    report IN OUT   writes the page of IN/report.json and its images into the file OUT
 
-Without IN and OUT it tells whether the modules are there that it takes. Exit codes are clpv's: 1 a module is missing, 2 usage,
-3 a document that is not of the shape clpv writes.
+Without IN and OUT: checks that the required modules are installed. Exit codes are clpv's: 1 missing module, 2 usage, 3 invalid
+document.
 """
 import importlib
 import pathlib

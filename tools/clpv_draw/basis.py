@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: MIT
 """The paper's figures of bases and lobes (2, 3 and 6), as sheets of spherical plots.
 
-figures.json: "lambda" of all bases; "lobe", exact or rotate; "kernels", each with "lambda" and "centre": first the one
-that stands alone, then those of srbf8v2; "lobes", each with "basis", "axis", "relative_l2" and "minimum". surfaces.npy:
-their values on sphere.py's grid, kernels first, in the same order.
+figures.json: "lambda" of all bases; "lobe": exact or rotate; "kernels": "lambda" and "centre" of a single kernel, then of those
+of srbf8v2; "lobes": "basis", "axis", "relative_l2" and "minimum" of each. surfaces.npy: their values on the grid of sphere.py,
+kernels first, in the same order.
 """
 import numpy
 
 from clpv_draw import documents, sphere, style
 
-ROOM = 1.13  # of a plot over the largest value in it: the axes stick out
+ROOM = 1.13  # extent of a plot over its largest value; axes extend beyond the surface
 TILE, DPI = (2.0, 2.0), 120
 COLUMNS = 5
 MAIN_AXES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "+z": (0, 0, 1), "-z": (0, 0, -1)}
 SLANTED = {"+z": (0, 0, 1), "(-2, 1, -3)": (-2, 1, -3)}
-# Linear colours, neighbours far apart.
+# Linear colours; neighbours differ strongly.
 PALETTE = [(0.80, 0.08, 0.06), (0.06, 0.30, 0.70), (0.90, 0.45, 0.02), (0.05, 0.45, 0.20), (0.55, 0.10, 0.45),
            (0.04, 0.50, 0.55), (0.75, 0.62, 0.05), (0.30, 0.14, 0.06)]
 
 
 def sheet(title, columns, tiles):
-    """Tiles (caption, arguments of sphere.plot); None: an empty place."""
+    """A sheet of tiles (caption, arguments of sphere.plot); None leaves a tile empty."""
     made = style.Sheet(title, columns, len(tiles), TILE, caption_lines=2)
     for i, tile in enumerate(tiles):
         if tile:
@@ -37,7 +37,7 @@ def figure2(document, kernels):
     alone, eight = kernels[0], kernels[1:]
     peak, eight_peak = alone.max(), eight.max() * ROOM
     values, colours = sphere.joint(eight, PALETTE)
-    tiles = [(f"lambda {document['kernels'][0]['lambda']:g}\n{peak:.2f} at its peak",
+    tiles = [(f"lambda {document['kernels'][0]['lambda']:g}\npeak {peak:.2f}",
               {"values": alone, "extent": peak * ROOM}),
              (f"all eight, lambda {document['lambda']:g}\njoint",
               {"values": values, "colours": colours, "extent": eight_peak})]
@@ -50,15 +50,15 @@ def figure2(document, kernels):
 
 
 class Lobes:
-    """Lobes by basis and axis, and the clamped cosine they stand for."""
+    """Lobes by basis and axis, and the clamped cosine that they approximate."""
 
     def __init__(self, document, surfaces):
         self.rows = document["lobes"]
         self.surfaces = surfaces
         self.bases = list(dict.fromkeys(row["basis"] for row in self.rows))
-        way = {"exact": "each projected exactly",
-               "rotate": "SRBF: projected along +z, then rotated (the paper's way)"}[document["lobe"]]
-        self.about = [f"; lambda {document['lambda']:g}; {way}",
+        method = {"exact": "each projected exactly",
+               "rotate": "SRBF: projected along +z, then rotated, as in the paper"}[document["lobe"]]
+        self.about = [f"; lambda {document['lambda']:g}; {method}",
                       "blue: f > 0; red: f < 0; dashed: the clamped cosine; error: relative L2"]
 
     def cosine(self, name, axis):
@@ -77,7 +77,7 @@ class Lobes:
 
 
 def figure3(lobes):
-    """All bases for one axis after the other, each beginning a row."""
+    """All bases for each axis; an axis starts a new row."""
     columns = min(COLUMNS, 1 + len(lobes.bases))
     tiles = []
     for name, axis in SLANTED.items():
@@ -87,7 +87,7 @@ def figure3(lobes):
 
 
 def figure6(lobes):
-    """A column an axis, a row a basis."""
+    """One column per axis, one row per basis."""
     tiles = [lobes.cosine(name, axis) for name, axis in MAIN_AXES.items()]
     tiles += [lobes.lobe(basis, name, axis) for basis in lobes.bases for name, axis in MAIN_AXES.items()]
     return sheet(lobes.title("Figure 6: the clamped cosine along the six main axes"), len(MAIN_AXES), tiles)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Charts of what `clpv bench` measured: what the rows allow of layouts, roofline, scaling, bases and frame.
+"""Charts of `clpv bench`: layouts, roofline, scaling, bases and frame.
 
-A row tells what it is in its fields; its name is for readers. Each chart is a function from rows to a figure, or None
-where no row is for it.
+Each function turns rows into a figure, or returns None if no row belongs to its chart. It reads fields of rows, not names.
 """
 import itertools
 import math
@@ -16,7 +15,7 @@ from clpv_draw.documents import NUMBER, TEXT_OR_NULL
 ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout": TEXT_OR_NULL,
        "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}
 DEVICE_CHARS = 70
-CLOSEST_LABELS = 0.7  # of the bandwidth before: nearer ones would overlap
+CLOSEST_LABELS = 0.7  # maximum ratio to the previous labelled bandwidth; closer labels would overlap
 
 
 def of_suite(rows, suite):
@@ -28,7 +27,7 @@ def distinct(values):
 
 
 def error_bars(rows):
-    """Distances from the median down to the fastest and up to the 95th percentile."""
+    """Returns distances from the median down to the minimum and up to the 95th percentile."""
     return [[max(0.0, r["median"] - r["min"]) for r in rows], [max(0.0, r["p95"] - r["median"]) for r in rows]]
 
 
@@ -49,7 +48,7 @@ def layouts(rows):
         axis.barh(names, [r["median"] for r in members], xerr=error_bars(members), color=colours,
                   error_kw={"lw": 0.8, "ecolor": style.INK})
         style.logarithmic(axis.xaxis)
-        axis.set(title=group, xlabel="ms (bars: median; whiskers: fastest to 95 %)")
+        axis.set(title=group, xlabel="ms (median; whiskers: minimum to 95 %)")
         axis.invert_yaxis()
         for i, r in enumerate(members):
             axis.annotate(f"{r['median']:.2f}", (r["median"], i), textcoords="offset points", xytext=(4, 5), size=7)
@@ -85,7 +84,7 @@ def roofline(rows, ceilings):
                      color=colours[layout], marker=markers[stage], zorder=3)
     key = [Line2D([], [], ls="", marker=markers[stage], color=style.SOFT, label=stage) for stage in stages]
     key += [Line2D([], [], ls="", marker="s", ms=8, color=colours[layout], label=layout) for layout in kinds if layout]
-    axis.set(xlabel="operations a byte that must move", ylabel="GFLOP/s", xlim=(lowest, highest), title="Roofline")
+    axis.set(xlabel="operations per byte", ylabel="GFLOP/s", xlim=(lowest, highest), title="Roofline")
     style.logarithmic(axis.xaxis)
     style.logarithmic(axis.yaxis)
     axis.legend(handles=key, fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)

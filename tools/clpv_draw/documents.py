@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""JSON that clpv wrote, checked before it is drawn; files written whole or not at all."""
+"""Reads and validates the JSON of clpv; writes files atomically."""
 import json
 import os
 
@@ -9,7 +9,7 @@ NAMES = {str: "text", int: "a number", float: "a number", bool: "true or false",
 
 
 class BadDocument(Exception):
-    """A document is not of the shape its command writes: file, place, value found, value allowed."""
+    """An invalid document. The message has file, place, value found and value allowed."""
 
 
 def read(path):
@@ -17,10 +17,10 @@ def read(path):
 
 
 def checked(document, source, key, fields):
-    """The rows document[key], once each has the fields {name: type or types}."""
+    """Returns the rows document[key]. Raises BadDocument unless each has the fields {name: type or types}."""
     rows = document.get(key) if isinstance(document, dict) else None
     if not isinstance(rows, list):
-        raise BadDocument(f"{source}: no list '{key}' in it")
+        raise BadDocument(f"{source}: no list '{key}'")
     for i, row in enumerate(rows):
         for name, kind in fields.items():
             value = row.get(name) if isinstance(row, dict) else None
@@ -32,7 +32,7 @@ def checked(document, source, key, fields):
 
 
 def write(path, data):
-    """Puts the bytes at `path` through a file beside it: whoever reads it sees the old file or the new one."""
+    """Writes the bytes to a temporary file beside `path`, then renames it: readers see the old file or the new one."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         beside.write_bytes(data)

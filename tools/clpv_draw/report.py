@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The report page: one HTML file with everything inside, nothing from anywhere else.
+"""The report page: one self-contained HTML file.
 
-report.json: "subtitle"; "views", each with "scene",
-"camera", the "truth" and "shots" with "title", "options" and the figures of `clpv compare`; truth and shots name an
-"image" (.png, as shown) and "values" (.npy: rows, columns, R G B A, linear). "quality" and "benchmarks": {"file",
-"document"} of `clpv quality --json` and `clpv bench --format json`. "marked": the options of variants to point out.
+report.json: "subtitle"; "views", each with "scene", "camera", the "truth", and "shots" with "title", "options" and the numbers of
+`clpv compare`. Truth and shots name an "image" (.png, as shown) and "values" (.npy: rows, columns, R G B A, linear).
+"quality" and "benchmarks": {"file", "document"} of `clpv quality --json` and `clpv bench --format json`. "marked": options of
+variants to highlight.
 """
 import base64
 import io
@@ -19,8 +19,8 @@ from matplotlib import image, pyplot
 from clpv_draw import bench, documents, style
 from clpv_draw.documents import NUMBER
 
-FULL_SCALE = 1.5  # of false colour, in root mean squares of the truth
-COLOURS = "inferno"  # dark to light in print, and for eyes that see no red or no green
+FULL_SCALE = 1.5  # of false colour, in root mean squares of the ground truth
+COLOURS = "inferno"  # readable in greyscale and by colour-blind readers
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # Rec. 709
 VARIANT = {"options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER, "energy_ratio": NUMBER,
            "frame_ms": NUMBER}
@@ -31,7 +31,7 @@ def data_uri(png):
 
 
 def coloured(shares):
-    """Values in [0, 1] as R G B A."""
+    """Returns the colours R G B A of values in [0, 1]."""
     return pyplot.get_cmap(COLOURS)(numpy.asarray(shares, dtype=float))
 
 
@@ -42,8 +42,8 @@ def as_png(pixels):
 
 
 def false_colour(shot, truth):
-    """Luminance of the absolute difference over the truth's root mean square, 0 to FULL_SCALE, over pixels that show
-    a surface in both; the others are transparent. R G B A each."""
+    """Returns R G B A: luminance of the absolute difference over the ground truth's root mean square, 0 to FULL_SCALE. Pixels
+    without a surface in either image are transparent."""
     surface = truth[..., 3] > 0
     squares = (truth[surface, :3] @ LUMINANCE) ** 2
     rms = numpy.sqrt(squares.mean()) if squares.size else 0
@@ -54,8 +54,7 @@ def false_colour(shot, truth):
 
 
 def inlined(figure, titles=()):
-    """A figure as SVG inside the page, in the page's colours; titles[i] is shown when the artist "point<i>" is pointed
-    at."""
+    """Returns a figure as inline SVG in the page's colours; titles[i] is the tooltip of the artist "point<i>"."""
     if figure is None:
         return ""
     figure.tight_layout()
@@ -70,13 +69,13 @@ def inlined(figure, titles=()):
 
 
 def page_colours():
-    """Names of the page's colours, and what they are in charts; the page has others for dark screens."""
+    """Returns the page's colour names and their values in charts; the page replaces them on dark screens."""
     return {"ink": style.INK, "soft": style.SOFT, "line": style.LINE,
             **{f"c{i}": colour for i, colour in enumerate(style.COLOURS)}}
 
 
 def view(shown, folder):
-    """A view with its images inside."""
+    """Returns a view with its images as data URIs."""
     truth = numpy.load(folder / shown["truth"]["values"])
 
     def uri(entry):
@@ -103,7 +102,7 @@ def variants(quality, marked):
 
 
 def front_of(points):
-    """Points (x, y) that none beats in both, by growing x."""
+    """Returns the Pareto front of points (x, y), sorted by x: no other point is lower in both."""
     front = []
     for x, y in sorted(points):
         if not front or y < front[-1][1]:
@@ -135,7 +134,7 @@ def error_against_cost(rows):
 
 
 def table1(rows):
-    """A line a stage and cascade, a column a basis: (bases, [(stage, cells)])."""
+    """Returns (bases, [(stage, cells)]): one line per stage and cascade, one column per basis."""
     bases, lines = bench.distinct(str(row["basis"]) for row in rows), {}
     for row in rows:
         cascade = "" if row.get("cascade") is None else f" cascade {row['cascade']}"

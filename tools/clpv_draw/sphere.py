@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Spherical plots: functions f on the sphere as the surfaces |f(w)| w, lit, with axes; z is up.
+"""Spherical plots: functions f on the sphere as shaded surfaces |f(w)| w with axes; z is up.
 
-A function comes as its values on a grid: rows from +z to -z (theta from 0 to pi, both poles included), columns round
-z from +x towards +y (phi from 0, the last before 2 pi).
+Input: values on a grid. Rows go from +z to -z (theta from 0 to pi, both poles included), columns around z from +x towards +y
+(phi from 0 to below 2 pi).
 """
 import numpy
 from matplotlib.collections import TriMesh
@@ -10,8 +10,8 @@ from matplotlib.patches import Circle
 from matplotlib.tri import Triangulation
 
 POSITIVE, NEGATIVE = (0.07, 0.26, 0.62), (0.85, 0.16, 0.03)  # linear: a blue, a vermilion
-AXIS, LABEL = 0.86, 0.94  # of the extent
-SAMPLES = 100  # along half an axis, and along the ray that tells whether something hides it
+AXIS, LABEL = 0.86, 0.94  # ends of axes and places of labels, over the extent
+SAMPLES = 100  # along half an axis, and along a ray of the occlusion test
 
 
 def unit(v):
@@ -33,12 +33,12 @@ def directions(shape):
 
 
 def signed(values):
-    """Linear colours of a function's two signs."""
+    """Returns linear colours by sign."""
     return numpy.where(values[..., None] < 0, NEGATIVE, POSITIVE)
 
 
 def joint(functions, colours):
-    """Several functions as one surface, that of the largest, and its colours: seen from outside all is the same."""
+    """Returns the maximum of several functions as one surface, and the colour of the largest at each point."""
     return functions.max(axis=0), numpy.asarray(colours)[functions.argmax(axis=0)]
 
 
@@ -46,13 +46,13 @@ def normals_of(points):
     down = numpy.gradient(points, axis=0)
     around = numpy.roll(points, -1, axis=1) - numpy.roll(points, 1, axis=1)
     normals = unit(numpy.cross(down, around))
-    for pole, beside in ((0, 1), (-1, -2)):  # there, nothing changes around
+    for pole, beside in ((0, 1), (-1, -2)):  # the gradient around z is 0 at the poles
         normals[pole] = unit(normals[beside].mean(axis=0))
     return normals
 
 
 def lit(colours, normals):
-    """Linear colours under the lamp, encoded for a display."""
+    """Shades linear colours and encodes them as sRGB."""
     diffuse = numpy.maximum(0, normals @ LAMP)[..., None]
     gloss = 0.18 * numpy.maximum(0, normals @ unit(LAMP + TOWARDS))[..., None] ** 40
     linear = numpy.clip(colours * (0.22 + 0.95 * diffuse) + gloss, 0, 1)
@@ -60,7 +60,7 @@ def lit(colours, normals):
 
 
 def front_facets(screen):
-    """Triangles of a projected grid that face the eye, the farthest first: painted in order they hide each other."""
+    """Returns triangles of a projected grid that face the eye, farthest first (painter's algorithm)."""
     rows, columns = screen.shape[:2]
     a = (numpy.arange(rows - 1)[:, None] * columns + numpy.arange(columns)[None, :]).ravel()
     b = (numpy.arange(rows - 1)[:, None] * columns + (numpy.arange(columns) + 1)[None, :] % columns).ravel()
@@ -73,7 +73,7 @@ def front_facets(screen):
 
 
 def radius_at(values, points):
-    """|f| in the directions of points, of the nearest on the grid."""
+    """Returns |f| in the directions of points, at the nearest grid point."""
     w = unit(points)
     row = numpy.rint(numpy.arccos(numpy.clip(w[..., 2], -1, 1)) / numpy.pi * (values.shape[0] - 1)).astype(int)
     column = numpy.rint(numpy.arctan2(w[..., 1], w[..., 0]) / (2 * numpy.pi) * values.shape[1]).astype(int)
@@ -81,7 +81,7 @@ def radius_at(values, points):
 
 
 def hidden(values, points, extent):
-    """Which points have something of the solid within |f| between them and the eye."""
+    """Returns which points the surface |f| hides from the eye."""
     along = numpy.linspace(0, 2 * extent, SAMPLES)[:, None, None] * TOWARDS
     rays = points + along
     return (numpy.linalg.norm(rays, axis=-1) < radius_at(values, rays)).any(axis=0)
@@ -100,8 +100,8 @@ def draw_axes(axis, values, extent):
 
 
 def plot(axis, values, colours=None, extent=1.2, outline=None):
-    """Into `axis`: |f| = extent reaches an edge. `colours`: linear, a point of the grid each; None: by sign. `outline`:
-    (centre, radius) of a sphere of which only the silhouette is drawn, over everything. `values` None: axes alone."""
+    """Draws into `axis`; |f| = extent reaches its edge. `colours`: linear, one per grid point; None: by sign. `outline`:
+    (centre, radius) of a sphere whose silhouette is drawn on top. `values` None: axes only."""
     if values is not None:
         points = abs(values)[..., None] * directions(values.shape)
         screen = points @ VIEW.T

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How all pictures look, how they are saved, and sheets of tiles in rows."""
+"""Style and output of all charts, and sheets of tiles."""
 import io
 import math
 
@@ -11,14 +11,14 @@ from matplotlib import pyplot, ticker  # noqa: E402  (the backend comes first)
 from clpv_draw import documents  # noqa: E402
 
 INK, SOFT, LINE = "#1c1e21", "#5d646e", "#d8dce1"
-# Told apart by colour-blind eyes as well (Okabe and Ito).
+# Distinguishable by colour-blind readers (Okabe and Ito).
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8c8c00", "#5a5a5a"]
-SHORT = 500  # a logarithmic axis over less than that many times has 2 and 5 written as well
+SHORT = 500  # a logarithmic axis with a smaller range also labels 2 and 5
 
 matplotlib.rcParams.update({
-    "svg.hashsalt": "clpv",  # the same input gives the same bytes
+    "svg.hashsalt": "clpv",  # reproducible bytes
     "svg.fonttype": "none",
-    "text.parse_math": False,  # a name with dollar signs is a name
+    "text.parse_math": False,  # dollar signs in names are literal
     "font.size": 9, "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "xtick.color": INK,
     "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": LINE,
     "grid.linewidth": 0.6, "axes.axisbelow": True, "legend.frameon": False, "legend.labelcolor": INK,
@@ -30,7 +30,7 @@ def colour(i):
 
 
 def logarithmic(axis):
-    """Makes the x or y axis logarithmic, with numbers as readers write them; after its data are in."""
+    """Makes the x or y axis logarithmic, with plain numbers. Call after plotting."""
     (axis.axes.set_xscale if axis is axis.axes.xaxis else axis.axes.set_yscale)("log")
     low, high = axis.get_view_interval()
     axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if high < SHORT * low else (1,)))
@@ -39,9 +39,9 @@ def logarithmic(axis):
 
 
 def rendered(figure, suffix, **options):
-    """The bytes of a file of that kind, without the time of day; closes the figure."""
+    """Returns the bytes of a file of that format, without a date; closes the figure."""
     out = io.BytesIO()
-    if suffix == "svg":  # nothing about its maker: the same bytes whatever made them, and no addresses in a page
+    if suffix == "svg":  # no creator or date: reproducible bytes
         options["metadata"] = dict.fromkeys(("Creator", "Date", "Format", "Type"))
     figure.savefig(out, format=suffix, **options)
     pyplot.close(figure)
@@ -49,7 +49,7 @@ def rendered(figure, suffix, **options):
 
 
 def panels(count, columns, size):
-    """A figure of `count` panels in rows, each of that size [inches], and their axes."""
+    """Returns a figure of `count` panels in rows, each of that size [inches], and their axes."""
     columns = min(columns, count)
     rows = math.ceil(count / columns)
     figure, axes = pyplot.subplots(rows, columns, figsize=(size[0] * columns, size[1] * rows), squeeze=False)
@@ -59,7 +59,7 @@ def panels(count, columns, size):
 
 
 class Sheet:
-    """Tiles of one size in rows, each with lines of caption below or above it, under lines of title."""
+    """Tiles of one size in rows, each with caption lines below or above, under title lines."""
 
     def __init__(self, title, columns, count, tile, caption_lines=1, above=False, font=8.5):
         """`tile`: width and height [inches] without captions."""
@@ -78,7 +78,7 @@ class Sheet:
             self.places.append((left / width, 1 - (top + tile[1]) / height, tile[0] / width, tile[1] / height))
 
     def tile(self, i, caption):
-        """The axes of tile i, empty, with its caption."""
+        """Returns the empty axes of tile i, with its caption."""
         axis = self.figure.add_axes(self.places[i])
         axis.axis("off")
         y, anchor, offset = (1, "bottom", 3) if self.above else (0, "top", -1)
@@ -87,7 +87,7 @@ class Sheet:
         return axis
 
     def save(self, path, dpi):
-        """As PNG or JPEG, by the name."""
+        """Writes PNG or JPEG, by the suffix."""
         suffix = path.suffix.lstrip(".")
         options = {"pil_kwargs": {"quality": 80, "optimize": True}} if suffix == "jpg" else {}
         documents.write(path, rendered(self.figure, suffix, dpi=dpi, **options))
