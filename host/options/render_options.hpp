@@ -18,7 +18,7 @@
 namespace clpv {
 
 /// The defaults are the preset `best`, and stand here alone: what comes closest to path tracing at about the
-/// published scheme's cost (docs/method.md, 'Two ways to use clpv').
+/// published scheme's cost (docs/method.md, 'Presets').
 struct RenderOptions {
   PresetName preset = PresetName::best;  ///< the one set last; options set after it may differ from it
   std::string basis = "bins24";          ///< one of basis_names(), or the name in `centres`

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `emit`: what a scene's emissive triangles send out, as virtual point lights (kernels/emit.cl; docs/method.md, 'Surfaces
-// that glow').
+// Stage `emit`: what a scene's emissive triangles send out, as virtual point lights (kernels/emit.cl; docs/method.md, 'Emissive
+// surfaces').
 #pragma once
 
 #include <cstdint>
