@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-# Lists the files of a program of GoogleTest as tests of ctest: STEM for STEM_test.cpp, a process each, which opens the device
-# and compiles once what its tests share.
+# Registers each file of a GoogleTest program as one ctest test: STEM for STEM_test.cpp. A file's tests share one process, and so
+# the device and compiled kernels.
 #
 #   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -DCACHE=FOLDER -P discover_tests.cmake
 #
-# All take compiled programs from CACHE, and leave theirs there: neither the user's nor, where POCL_CACHE_DIR is not set, PoCL's.
-# PATH begins with /usr/bin: drawing takes Debian's Python, which has the modules it needs. LONG begin first, so that none of them is left to run alone at the end.
+# All tests keep compiled programs in CACHE: clpv's, and PoCL's unless POCL_CACHE_DIR is set. PATH begins with /usr/bin, since drawing
+# needs the modules of Debian's Python. LONG tests start first, so that none of them runs alone at the end.
 cmake_minimum_required(VERSION 3.22)
 set(LONG killed drawing starved bench soak quality hostile_surroundings sequence propagate frame gather inject)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)

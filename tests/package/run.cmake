@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # cmake -DBUILD=build -DSOURCE=project -DWORK=folder -DGENERATOR=g -DCOMPILER=c++ -DARCHITECTURE=a-b-c -P run.cmake
-# Installs clpv into a folder of its own, builds examples/ against that alone and runs both programs; then configures the
-# library without the program, which asks for nothing of the program's.
+# Installs clpv into an empty folder, builds examples/ against that installation and runs both programs. Then configures the library
+# without the program and its dependencies.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -15,7 +15,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCM
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
 run(${WORK}/prefix/bin/clpv devices)
-# The same program by pkg-config, where there is one.
+# The same program with pkg-config, if installed.
 find_program(PKG_CONFIG pkg-config)
 if(PKG_CONFIG)
   set(ENV{PKG_CONFIG_PATH} ${WORK}/prefix/lib/pkgconfig:${WORK}/prefix/lib/${ARCHITECTURE}/pkgconfig)
@@ -25,7 +25,7 @@ if(PKG_CONFIG)
   run(${COMPILER} ${SOURCE}/examples/render_cornell.cpp ${flags} -o ${WORK}/by_pkg_config)
   run(${WORK}/by_pkg_config ${SOURCE}/scenes/cornell.json ${WORK}/cornell_by_pkg_config.png)
 endif()
-# The man page came along where help2man could make it, and names what commands take.
+# The man page is installed if help2man is, and names the options of commands.
 find_program(HELP2MAN help2man)
 if(HELP2MAN)
   file(READ ${WORK}/prefix/share/man/man1/clpv.1 page)
@@ -33,7 +33,7 @@ if(HELP2MAN)
     message(FATAL_ERROR "the man page lacks commands or their options")
   endif()
 endif()
-# What is installed names nothing of the house: one folder of headers, which include each other and the standard library's.
+# Installed headers are one folder, and include only each other and the standard library.
 file(GLOB_RECURSE headers RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
 foreach(header IN LISTS headers)
   file(STRINGS ${WORK}/prefix/include/${header} private REGEX "#include \"" )
@@ -42,13 +42,13 @@ foreach(header IN LISTS headers)
     message(FATAL_ERROR "${header}: installed, but private: ${private}")
   endif()
 endforeach()
-# The package that draws came along, and the program takes that one.
+# The drawing package is installed, and the program uses it.
 file(WRITE ${WORK}/prefix/share/clpv/clpv_draw/__main__.py "raise SystemExit('installed')")
 execute_process(COMMAND ${WORK}/prefix/bin/clpv basis sh2 --figures ${WORK}/figures ERROR_VARIABLE said)
 if(NOT EXISTS ${WORK}/prefix/share/clpv/clpv_draw/page.html OR NOT said MATCHES "installed")
   message(FATAL_ERROR "the installed program does not use its own clpv_draw: ${said}")
 endif()
-# The library alone.
+# The library without the program.
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library -G ${GENERATOR} -DCLPV_BUILD_PROGRAM=OFF
     -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON
     -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON)
