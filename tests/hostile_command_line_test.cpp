@@ -32,7 +32,7 @@ TEST(HostileCommandLines, OfFrames) {
                    {"--grid 32.5", {"grid", "32.5"}},
                    {"--grid ' 32'", {"grid", "1..512"}},
                    {"--cascades 9", {"cascades", "1..8"}},
-                   {"--cascade-size 0", {"cascade-size", "neither included"}},
+                   {"--cascade-size 0", {"cascade-size", "greater than 0"}},
                    {"--cascade-size nan", {"cascade-size", "nan"}},
                    {"--cascade-size inf", {"cascade-size", "inf"}},
                    {"--width 0", {"width", "1..16384"}},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What can be chosen of a frame, each choice an enumeration with its names on the command line, in files and in tables.
-// Those that a basis knows are beside it: TransportKind, Blocking, LobeKind. Knows no OpenCL.
+// Enumerations of render options, with their names on the command line and in files. TransportKind, Blocking and LobeKind
+// are in basis/. Independent of OpenCL.
 #pragma once
 
 #include "support/named_enum.hpp"
@@ -12,9 +12,9 @@ enum class PresetName { best, paper };
 template <>
 inline constexpr auto kNames<PresetName> = name_list("best", "paper");
 
-/// How volumes lie in memory, as kernels/volume/ has them. `image`: a 3-D image of RGBA texels, four coefficients each;
-/// `aos`: the coefficients of a sample side by side; `soa`: a plane of samples a channel and coefficient; `tiled`: blocks
-/// of 8 samples along x by all coefficients.
+/// Memory layout of volumes (kernels/volume/). `image`: 3-D image of RGBA texels, four coefficients per texel. `aos`: all
+/// coefficients of a sample are adjacent. `soa`: one array of samples per channel and coefficient. `tiled`: blocks of 8
+/// samples along x times all coefficients.
 enum class Layout { image, aos, soa, tiled };
 
 template <>
@@ -31,55 +31,54 @@ struct VolumeFormat {
   bool operator==(const VolumeFormat&) const = default;
 };
 
-/// What cells hold while light travels. `coefficients`: the N of the basis. `fluxes`: what a face transport's cell
-/// received through its six faces, whatever N is; the N coefficients come back at the end
-/// (docs/method.md, 'Propagation').
+/// State of a cell between propagation steps. `coefficients`: the N coefficients of the basis. `fluxes`: the flux received
+/// through the six faces; the N coefficients are restored after the last step (docs/method.md, 'Propagation').
 enum class State { coefficients, fluxes };
 
 template <>
 inline constexpr auto kNames<State> = name_list("coefficients", "fluxes");
 
-/// Where propagation's lobes are made.
+/// Where the lobes of propagation are computed.
 enum class LobeTime {
-  host,    ///< constants of the step's code
-  kernel,  ///< made from each face's normal, read from memory, and rotated ones from a table
+  host,    ///< on the host: constants in the kernel text
+  kernel,  ///< in the kernel from the face's normal; rotated lobes from a table
 };
 
 template <>
 inline constexpr auto kNames<LobeTime> = name_list("host", "kernel");
 
-/// How stages come by the values of SRBF functions.
+/// Evaluation of SRBF functions.
 enum class Evaluation { exact, table };
 
 template <>
 inline constexpr auto kNames<Evaluation> = name_list("exact", "table");
 
-/// What kernels read look-up tables as.
+/// Storage of look-up tables.
 enum class TableStorage { buffer, image };
 
 template <>
 inline constexpr auto kNames<TableStorage> = name_list("buffer", "image");
 
-/// What blocks light on its way.
+/// Source of blockers.
 enum class Blockers {
-  scene,  ///< the scene's triangles, whoever sees them
-  seen,   ///< the surfels that lights' maps and the camera see
+  scene,  ///< all triangles of the scene
+  seen,   ///< surfels of RSMs and G-buffer, as published
 };
 
 template <>
 inline constexpr auto kNames<Blockers> = name_list("scene", "seen");
 
-/// Which of the eight cells round a point light a surface.
+/// Which of the eight nearest cells light a surface.
 enum class Gathering {
   all,
-  visible,  ///< those that the scene's triangles do not hide from it
+  visible,  ///< cells that no triangle hides from the surface
 };
 
 template <>
 inline constexpr auto kNames<Gathering> = name_list("all", "visible");
 
-/// How far off a surface it looks volumes up [cells]: half a cell, so that it is not lit by those behind it; closer where
-/// those are told apart.
+/// Default distance of the look-up from the surface [cells]. Half a cell avoids light from behind the surface; hidden cells
+/// have no weight with `visible`, so the look-up can be closer.
 constexpr double usual_gather_offset(Gathering gathering) {
   switch (gathering) {
     case Gathering::all:
@@ -90,18 +89,18 @@ constexpr double usual_gather_offset(Gathering gathering) {
   return {};
 }
 
-/// Directions that light is swept along: 24 bins in so many parts (basis/sweep.hpp).
+/// Number of sweep directions: 24 bins of 1, 4, 9 or 16 parts (basis/sweep.hpp).
 enum class Directions { of24, of96, of216, of384 };
 
 template <>
 inline constexpr auto kNames<Directions> = name_list("24", "96", "216", "384");
 
-/// Parts of a bin along each of its edges.
+/// Returns the number of parts along each edge of a bin.
 constexpr int parts_of(Directions directions) {
   return 1 + static_cast<int>(directions);
 }
 
-/// Surfaces between a light and the surface seen.
+/// Number of indirect bounces: surfaces between a light and the visible surface.
 enum class Bounces { one, two, all };
 
 template <>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Presets: named sets of render options (--preset). Single options override what they set.
+// Presets: named sets of render options (--preset). Single options override them.
 #pragma once
 
 #include <string_view>
@@ -12,10 +12,10 @@ namespace clpv {
 
 struct RenderOptions;
 
-/// Long names and values of the options that `paper`, the published scheme, sets; `best` leaves them at their defaults.
+/// Returns names and values of the options that `paper` (the published scheme) sets. `best` leaves them at their defaults.
 const std::vector<std::pair<std::string_view, std::string_view>>& paper_options();
 
-/// Gives those options their values in this preset; the others, such as the image's size, stay as they are.
+/// Sets these options to their values in the preset. Other options, such as the image size, do not change.
 void apply_preset(RenderOptions& options, PresetName name);
 
 }  // namespace clpv

@@ -16,84 +16,93 @@
 namespace clpv {
 namespace {
 
-// Largest values: beyond any use, so that a slip of the finger is told before gigabytes are asked for.
-constexpr double kMostCells = 512, kMostSteps = 4096, kMostTexels = 8192, kMostPixels = 16384,
-                 kMostMetres = 1e6;
-constexpr int kMostCascades = 8;
-constexpr int kMostStride = 16;
-constexpr int kMostEntries = 65536;  // what the least of devices with images takes as an image of a buffer
+// Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
+constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192, kMaxPixels = 16384, kMaxMetres = 1e6;
+constexpr int kMaxCascades = 8;
+constexpr int kMaxStride = 16;
+constexpr int kMaxEntries = 65536;  // minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
 
 struct Range {
   double least, most;
-  bool open = false;  ///< the ends themselves are not allowed
+  bool open = false;  ///< excludes both ends
 };
 
 struct Path {
-  const char* of;  ///< what the file holds
+  const char* content;  ///< of the file
 };
 
 struct OneOf {
   std::vector<std::string> names;
 };
 
-struct Named {};  ///< the names of the member's enumeration
+struct Named {};  ///< names of the member's enumeration
 struct OnOff {};
 
-/// A line a preset.
+/// One line per preset.
 std::string preset_help() {
   std::string text =
-      "a set of options, overridden by any of them that is given\n"
-      "best: the defaults: closest to path tracing at about the published scheme's cost\n"
+      "set of options; single options override it\n"
+      "best: the defaults, closest to path tracing at about the cost of the published scheme\n"
       "paper: the published scheme";
   for (const auto& [name, value] : paper_options()) text += fmt::format(" --{} {}", name, value);
   return text;
 }
 
-/// Calls visit(name, member, help, allowed) for every option; the one list of them.
+/// Calls visit(name, member, help, allowed) for every option. This is the only list of render options.
 template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
   visit("preset", o.preset, preset_help(), Named{});
-  visit("basis", o.basis, "basis of the sphere (clpv basis tells of each)", OneOf{basis_names()});
-  visit("centres", o.centres, "an SRBF set of your own, in place of a basis", Path{"directions as JSON"});
+  visit("basis", o.basis, "basis of spherical functions (clpv basis describes each)", OneOf{basis_names()});
+  visit("centres", o.centres, "SRBF set of your own, replaces --basis", Path{"directions as JSON"});
   visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
-  visit("lobe", o.lobe, "cosine lobes: projected each, or that along +z turned through a table", Named{});
-  visit("lobe-time", o.lobe_time, "propagation's lobes: constants, or made in the kernel as the paper does",
+  visit("lobe", o.lobe, "cosine lobes: each projected exactly, or the lobe along +z rotated through a table",
         Named{});
-  visit("evaluate", o.evaluate, "SRBF functions: computed, or read from a table", Named{});
-  visit("table-size", o.table_size, "entries of those tables", Range{2, kMostEntries});
-  visit("table", o.table, "what kernels read those tables as: a buffer, or a 1-D image of it", Named{});
-  visit("transport", o.transport, "how light moves from cell to cell", Named{});
-  visit("directions", o.directions, "that light is swept along in the finest cascade", Named{});
-  visit("coarser-directions", o.coarser_directions, "the same in all other cascades", Named{});
-  visit("bounces", o.bounces, "surfaces between a light and the surface seen; more than 1 for a sweep alone",
+  visit("lobe-time", o.lobe_time,
+        "lobes of propagation: host constants, or computed in the kernel as in the paper", Named{});
+  visit("evaluate", o.evaluate, "SRBF evaluation: computed, or read from a table", Named{});
+  visit("table-size", o.table_size, "entries of lobe and SRBF tables", Range{2, kMaxEntries});
+  visit("table", o.table, "storage of these tables: buffer or 1-D image buffer", Named{});
+  visit("transport", o.transport,
+        "propagation: steps with sampled or exact face fluxes, or one sweep along directions", Named{});
+  visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
+  visit("coarser-directions", o.coarser_directions, "number of sweep directions in all other cascades",
         Named{});
-  visit("state", o.state, "what travels in steps: the basis's coefficients, or six fluxes a cell", Named{});
+  visit("bounces", o.bounces, "indirect bounces; more than 1 needs --transport sweep", Named{});
+  visit("state", o.state, "cell state between steps: the coefficients of the basis, or six face fluxes",
+        Named{});
   visit("layout", o.layout,
-        "how volumes lie in memory: 3-D images, or buffers by cell, by coefficient, by blocks", Named{});
-  visit("storage", o.storage, "numbers of the volumes; all arithmetic is float", Named{});
-  visit("iterations", o.iterations, "propagation steps a cascade; a sweep takes none", Range{0, kMostSteps});
-  visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMostCells});
-  visit("cascades", o.cascades, "cascades, each twice the size of the one before", Range{1, kMostCascades});
-  visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: the scene's, else 12.5",
-        Range{0, kMostMetres, true});
-  visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map", Range{1, kMostTexels});
-  visit("rsm-format", o.rsm_format, "RSM storage; paper: 32-bit depth, 8-bit normal and flux", Named{});
-  visit("shadow-size", o.shadow_size, "texels along each side of a direct light's shadow map",
-        Range{1, kMostTexels});
-  visit("occlusion", o.occlusion, "indirect shadows: the geometry volume blocks light", OnOff{});
+        "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by block",
+        Named{});
+  visit("storage", o.storage, "number format of volumes; arithmetic is float", Named{});
+  visit("iterations", o.iterations, "propagation steps per cascade; ignored by --transport sweep",
+        Range{0, kMaxSteps});
+  visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMaxCells});
+  visit("cascades", o.cascades, "number of cascades, each twice as large as the previous one",
+        Range{1, kMaxCascades});
+  visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: from the scene, else 12.5",
+        Range{0, kMaxMetres, true});
+  visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map (RSM)",
+        Range{1, kMaxTexels});
+  visit("rsm-format", o.rsm_format, "RSM format; paper: 32-bit depth, 8-bit normal and flux", Named{});
+  visit("shadow-size", o.shadow_size, "texels along each side of a shadow map for direct light",
+        Range{1, kMaxTexels});
+  visit("occlusion", o.occlusion, "indirect shadows from the geometry volume", OnOff{});
   visit("blockers", o.blockers,
-        "what blocks light: the scene's triangles, or what lights and the camera see of it", Named{});
+        "source of blockers: all triangles of the scene, or surfels of RSM and G-buffer", Named{});
   visit("blocking", o.blocking,
-        "how surfaces block light: by their area across each axis, or by lobes what meets their lit side",
+        "blocking model: projected area per axis, or a cosine lobe that blocks light on the lit side (the "
+        "paper)",
         Named{});
-  visit("blocker-stride", o.blocker_stride, "of the camera's pixels every so many each way become blockers",
-        Range{1, kMostStride});
+  visit("blocker-stride", o.blocker_stride,
+        "with --blockers seen: every Nth G-buffer pixel along x and y becomes a blocker",
+        Range{1, kMaxStride});
   visit("gather", o.gather,
-        "cells that a surface is lit by, of the eight round it: all, or those that no triangle hides",
+        "cells that light a surface, of the eight nearest: all, or only those that no triangle hides",
         Named{});
-  visit("gather-offset", o.gather_offset, "how far off the surface light is gathered [cells]", Range{0, 4});
-  visit("width", o.width, "image width [pixels]", Range{1, kMostPixels});
-  visit("height", o.height, "image height [pixels]", Range{1, kMostPixels});
+  visit("gather-offset", o.gather_offset, "distance from the surface at which light is gathered [cells]",
+        Range{0, 4});
+  visit("width", o.width, "image width [pixels]", Range{1, kMaxPixels});
+  visit("height", o.height, "image height [pixels]", Range{1, kMaxPixels});
 }
 
 std::string text_of(const std::string& value) {
@@ -123,10 +132,10 @@ std::string allowed_text(bool, OnOff) {
   return "on|off";
 }
 std::string allowed_text(const std::string&, const Path& path) {
-  return fmt::format("a file of {}", path.of);
+  return fmt::format("a file of {}", path.content);
 }
 std::string allowed_text(double, const Range& range) {
-  return range.open ? fmt::format("between {} and {}, neither included", range.least, range.most)
+  return range.open ? fmt::format("greater than {} and less than {}", range.least, range.most)
                     : fmt::format("{}..{}", range.least, range.most);
 }
 
@@ -196,7 +205,7 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
     }
   });
   if (name == "basis") options.centres.clear();
-  if (!known) throw Error(ExitCode::usage, "there is no option '{}'", name);
+  if (!known) throw Error(ExitCode::usage, "unknown option '{}'", name);
   if (name == "preset") apply_preset(options, options.preset);
 }
 

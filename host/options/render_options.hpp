@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every choice that shapes a rendered frame, as one typed value; and the one table of names and texts that the command
-// line, --stats, image metadata and presets go through. Below it no text stands for a choice. Knows no OpenCL.
+// Render options as one typed value, and the table of their names, help texts and limits. The command line, --stats,
+// image metadata and presets use this table. Independent of OpenCL.
 #pragma once
 
 #include <memory>
@@ -17,12 +17,12 @@
 
 namespace clpv {
 
-/// The defaults are the preset `best`, and stand here alone: what comes closest to path tracing at about the
-/// published scheme's cost (docs/method.md, 'Presets').
+/// Options of a frame. The defaults are the preset `best`: closest to path tracing at about the cost of the published
+/// scheme (docs/method.md).
 struct RenderOptions {
-  PresetName preset = PresetName::best;  ///< the one set last; options set after it may differ from it
-  std::string basis = "bins24";          ///< one of basis_names(), or the name in `centres`
-  std::string centres;                   ///< file of an SRBF set that replaces `basis`; none: empty
+  PresetName preset = PresetName::best;  ///< the last preset set; later options may override it
+  std::string basis = "bins24";          ///< one of basis_names(), or the name in the file `centres`
+  std::string centres;                   ///< file of an SRBF set that replaces `basis`; empty: none
   double lambda = 0.25;
   LobeKind lobe = LobeKind::exact;
   LobeTime lobe_time = LobeTime::host;
@@ -55,19 +55,19 @@ struct RenderOptions {
   LobeOptions lobes() const { return {lobe, table_size, evaluate == Evaluation::table}; }
 };
 
-/// The basis and the transport they ask for. Throw as make_basis and load_basis do.
+/// Creates the basis and transport of the options. Throws as make_basis and load_basis do.
 std::unique_ptr<Basis> make_basis(const RenderOptions& options);
 Transport make_transport(const RenderOptions& options, const Basis& basis);
 
-/// All options with their present values, in the order of --help.
+/// Returns all options with their current values, in the order of --help.
 std::vector<OptionDescription> list_options(const RenderOptions& options);
 
-/// Sets one option from text; `preset` sets all that presets know of, so it comes before those that override it; a
-/// basis replaces a file of centres. Throws Error(usage) that names the option, the value found and the values
-/// allowed: "layout: found 'planes', allowed: image|aos|soa|tiled".
+/// Sets one option from text. `preset` sets every option of paper_options(), so set it before options that override it.
+/// `basis` clears `centres`. Throws Error(usage) with option, value found and values allowed, for example
+/// "layout: found 'planes', allowed: image|aos|soa|tiled".
 void set_option(RenderOptions& options, std::string_view name, std::string_view value);
 
-/// Every option resolved, by name: numbers, strings, and true or false.
+/// Returns every option by name, as a number, string or boolean.
 nlohmann::json to_json(const RenderOptions& options);
 
 }  // namespace clpv

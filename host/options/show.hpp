@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an image can show of a frame: the library's View, by its names. Units and meaning in kernels/shared/shade.h.
+// Quantities that an image can show: View with its names. kernels/shared/shade.h has meaning and units.
 #pragma once
 
 #include "clpv/renderer.hpp"
@@ -13,7 +13,7 @@ using Show = View;
 static_assert(static_cast<int>(Show::full) == CLPV_SHOW_FULL &&
               static_cast<int>(Show::depth) == CLPV_SHOW_DEPTH);
 
-/// Whether a sky is seen where no surface is.
+/// Returns true if the view shows the sky where there is no surface.
 constexpr bool shows_sky(Show show) {
   return show == Show::full || show == Show::direct;
 }

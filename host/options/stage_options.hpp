@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each stage is told of a frame's choices, and the one place where that comes from them. Knows no OpenCL, so that
-// stages and their CPU references share it.
+// Options of each stage, derived from RenderOptions. Independent of OpenCL: stages and their CPU references share them.
 #pragma once
 
 #include <vector>
@@ -16,18 +15,18 @@ struct RenderOptions;
 struct InjectOptions {
   int grid = 32;  ///< cells along each axis
   Blocking blocking = Blocking::one_sided;
-  bool unit_flux_lobes = false;  ///< lobes scaled to a flux of pi, as transport `exact` wants them
-  LobeOptions lobes = {};        ///< rotated lobes are so at run time, by a table
+  bool unit_flux_lobes = false;  ///< scales lobes to a flux of pi, as transport `exact` requires
+  LobeOptions lobes = {};        ///< `rotate`: by a table in the kernel
   TableStorage table = TableStorage::buffer;
-  VolumeFormat format = {};  ///< of the volumes injected into
+  VolumeFormat format = {};  ///< of light and geometry volumes
 };
 
-/// What shapes a launch that serves every cell of a grid. Work-items lie along x, y, z; along x each serves `lanes` cells.
-/// Work-groups are rows as long as the grid's, of at most 64 work-items.
+/// Launch shape of a kernel over all cells of a grid. A work-item processes `lanes` cells along x. A work-group is a row
+/// along x, as long as the grid and at most 64 work-items.
 struct StencilOptions {
   int grid = 32;             ///< cells along each axis
-  VolumeFormat format = {};  ///< of all volumes a kernel reaches
-  int lanes = 0;             ///< 1 or 8; 0: what suits device and format
+  VolumeFormat format = {};  ///< of all volumes that the kernel accesses
+  int lanes = 0;             ///< 1 or 8; 0: chosen by device and format
 };
 
 struct PropagateOptions {
@@ -38,38 +37,38 @@ struct PropagateOptions {
   VolumeFormat format = {};                   ///< of all volumes
   int lanes = 0;                              ///< as in StencilOptions
 
-  /// Lobes made in the kernel are those of one cell.
+  /// Kernels that compute lobes process one cell per work-item.
   StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes}; }
 };
 
-/// How the work of a sweep is dealt out; light is the same but for rounding.
+/// Distribution of a sweep's work. The light is equal up to rounding.
 enum class SweepForm {
-  suited,  ///< to the device
-  bins,    ///< a work-item a bin: CPUs
-  planes,  ///< a launch a plane: devices of many thousand work-items
+  suited,  ///< chosen by device type
+  bins,    ///< one work-item per bin: CPUs
+  planes,  ///< one launch per plane: devices with thousands of work-items
 };
 
 struct SweepOptions {
   int grid = 32;                   ///< cells along each axis
-  std::vector<int> parts;          ///< of each bin (sweep_bins), one a cascade, finest first
-  bool blocking = true;            ///< geometry volumes block
-  Bounces bounces = Bounces::one;  ///< more need Sweeper::reflect()
-  VolumeFormat format = {};        ///< of all volumes; its storage is that of what the sweep keeps for itself
+  std::vector<int> parts;          ///< of each bin (sweep_bins), per cascade, finest first
+  bool blocking = true;            ///< light is blocked by geometry volumes
+  Bounces bounces = Bounces::one;  ///< more than one needs Sweeper::reflect()
+  VolumeFormat format = {};        ///< of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
 };
 
 struct GatherOptions {
   int grid = 32;  ///< cells along each axis of every cascade
   Gathering gather = Gathering::all;
-  double gather_offset = 0.5;  ///< where a surface looks a volume up, in cells along its normal
-  double blend_cells = 2;      ///< a cascade hands over to the next coarser one over so many outer cells, > 0
-  LobeOptions lobes = {};      ///< b(-n) may come from a table; alpha(-n) is exact always
+  double gather_offset = 0.5;  ///< distance of the look-up from the surface along its normal [cells]
+  double blend_cells = 2;      ///< width of the blend to the next coarser cascade [cells], > 0
+  LobeOptions lobes = {};      ///< b(-n) may be read from a table; alpha(-n) is always exact
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< of the cascades' volumes
-  bool filtered = true;  ///< images: sampled by the device's filter; else from texels, in single precision
+  bool filtered = true;      ///< images: filtered by the sampler; false: from texels in float
 };
 
-/// `unit_flux_lobes`: Transport's.
+/// `unit_flux_lobes`: as in Transport.
 InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes);
 PropagateOptions propagate_options(const RenderOptions& options);
 SweepOptions sweep_options(const RenderOptions& options);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The stages there are, and what the timeline tells apart of them: the one list for `clpv check`, the times of a frame and
-// the benchmarks. A new one that is not everywhere it must be does not compile.
+// Stages and timed passes: the list that `clpv check`, frame times and benchmarks share. Switches over these enumerations
+// have no default, so that a new stage does not compile until every switch handles it.
 #pragma once
 
 #include "support/named_enum.hpp"
 
 namespace clpv {
 
-/// As the house files them: kernels, what launches them, CPU reference, check and test of one stem. `sizes`, the layout of structs
-/// that both sides share, is none of a frame's: it is checked before all others.
+/// A stage has one file stem in kernels/, pipeline/, reference/, verify/ and tests/. `sizes` checks the layout of structs
+/// that host and kernels share; it is not part of a frame and is checked first.
 enum class Stage {
   sizes,
   rasterize,
@@ -29,19 +29,18 @@ inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "i
                                                 "reflectors", "propagate", "sweep", "bounce", "visibility",
                                                 "gather", "shade");
 
-/// A part of a frame with a time of its own: a stage, or what it does for one purpose. `whole`: what a benchmark times as
-/// one, whatever it launches.
+/// A part of a frame that is timed separately: a stage, or one use of it. `whole`: everything that a benchmark launches.
 enum class Pass {
   rasterize_camera,
-  rasterize_shadow,  ///< a light
-  rasterize_rsm,     ///< a cascade and light
+  rasterize_shadow,  ///< per light
+  rasterize_rsm,     ///< per cascade and light
   emit,              ///< points of emissive surfaces
-  inject_light,      ///< a cascade, as are the next five
+  inject_light,      ///< per cascade, as the next five
   inject_geometry,
   blockers,
   reflectors,
-  propagate,   ///< in steps, or by a sweep and its bounces
-  visibility,  ///< a cascade
+  propagate,   ///< steps, or a sweep with its bounces
+  visibility,  ///< per cascade
   gather,
   shade,
   whole,
