@@ -28,13 +28,13 @@ class Charts(unittest.TestCase):
         self.assertEqual([t.get_text() for t in plain.get_yticklabels()], ["image/half texels", "image/half"])
         self.assertEqual(shadowed.get_title(), "gather sh2, occlusion")
 
-    def test_frames_are_told_by_preset_and_by_what_was_made_anew(self):
-        rows = [row("frame", stage, preset=p, anew=a, median=m)
+    def test_labels_of_frames_are_preset_and_recomputed_results(self):
+        rows = [row("frame", stage, preset=p, recompute=a, median=m)
                 for p, a in (("paper", "light"), ("best", "nothing"), ("best", "light"))
                 for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0)) if (a, stage) != ("nothing", "propagate")]
         axis, = bench.frame(rows).axes
         self.assertEqual([t.get_text() for t in axis.get_yticklabels()],
-                         ["sh2 paper, light anew", "sh2 best, nothing anew", "sh2 best, light anew"])
+                         ["sh2 paper, light recomputed", "sh2 best, nothing recomputed", "sh2 best, light recomputed"])
         self.assertEqual(axis.patches[-2].get_width(), 0.0)
         self.assertEqual(axis.patches[-1].get_x() + axis.patches[-1].get_width(), 8.0)
 

@@ -139,11 +139,11 @@ def frame(rows):
     if not frames:
         return None
     figure, axis = pyplot.subplots(figsize=(8, 1.2 + 0.5 * len(frames)))
-    names = [f"{r['basis']} {r['preset']}" + (f", {r['anew']} anew" if r.get("anew") else "") for r in frames]
+    names = [f"{r['basis']} {r['preset']}" + (f", {r['recompute']} recomputed" if r.get("recompute") else "") for r in frames]
     left = [0.0] * len(frames)
     for i, stage in enumerate(distinct(r["stage"] for r in rows if r["stage"] != "frame")):
-        times = {(r["basis"], r["preset"], r.get("anew")): r["median"] for r in rows if r["stage"] == stage}
-        widths = [times.get((f["basis"], f["preset"], f.get("anew")), 0.0) for f in frames]
+        times = {(r["basis"], r["preset"], r.get("recompute")): r["median"] for r in rows if r["stage"] == stage}
+        widths = [times.get((f["basis"], f["preset"], f.get("recompute")), 0.0) for f in frames]
         axis.barh(names, widths, left=left, color=style.colour(i), hatch="//" if i >= len(style.COLOURS) else None,
                   label=stage)
         left = [a + b for a, b in zip(left, widths)]
