@@ -88,6 +88,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {"bench bases --model a.gltf", {"--model", "--scene"}},
                        {"bench bases --format json --compare @/a.json", {"--compare", "stdout"}},
                        {"check --stage cook", {"--stage", "gather"}},
+                       {"check --stage see", {"--stage", "now 'visibility'"}},
                        {"propagate --at 99,0,0 --grid 8 -o @/out.npy", {"--at", "99"}},
                        {"propagate --at 1,2", {"--at", "'1,2'"}},
                        {"propagate --at 1,2,3,4", {"--at", "'1,2,3,4'"}},

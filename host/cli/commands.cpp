@@ -71,7 +71,8 @@ void reject_misspelt_command(const CLI::App& app) {
   if (word == words.end()) return;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (*word == "reference") throw Error(ExitCode::usage, "'reference' is now 'pathtrace'");
+  if (const std::string renamed = reject_old_name(*word); !renamed.empty())
+    throw Error(ExitCode::usage, "{}", renamed);
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
   if (edits(*word, *nearest) <= kMostEdits)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -42,6 +43,13 @@ CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
 }
 
 }  // namespace
+
+std::string reject_old_name(const std::string& name) {
+  static const std::map<std::string, std::string> kRenamed{
+      {"reference", "pathtrace"}, {"block", "blockers"}, {"reflect", "reflectors"}, {"see", "visibility"}};
+  const auto found = kRenamed.find(name);
+  return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
+}
 
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, const std::string& help,
                         const NumberRange& range) {
