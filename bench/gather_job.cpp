@@ -109,15 +109,15 @@ Job gather_job(Bench& bench, const Variant& variant) {
   const int n = p->basis->size();
   double volumes = 0;  // read once; buffers are packed first: read, written and read again
   for (const auto& volume : p->volumes)
-    volumes += static_cast<double>(volume->bytes()) * (sampled_by_device(format) ? 1 : 3);
+    volumes += static_cast<double>(volume->bytes()) * (format.layout == Layout::image ? 1 : 3);
   job.cost.bytes = static_cast<double>(pixels) * (sizeof(float) + 2 * sizeof(cl_float4)) + volumes;
   job.cost.working_set = job.cost.bytes;
   // Of a pixel within one cascade: eight cells, or one filtered texel in their place. Buffers are read packed, two
   // coefficients of three channels at once.
   const double texels = 3.0 * accesses_per_cell(format, n);
-  job.cost.reads_per_cell = !sampled_by_device(format) ? 8.0 * ((n + 1) / 2)
-                            : variant.filtered         ? texels
-                                                       : 8 * texels;
+  job.cost.reads_per_cell = format.layout != Layout::image ? 8.0 * ((n + 1) / 2)
+                            : variant.filtered             ? texels
+                                                           : 8 * texels;
   // Trilinear weights once, then 8 multiply-adds a coefficient and channel unless the filter does them, and g(n) . c.
   job.cost.flops = static_cast<double>(pixels) * 3 * n * (filters(variant) ? 2 : 2 * 8 + 2);
   return job;

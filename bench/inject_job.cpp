@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
@@ -58,49 +59,6 @@ std::vector<double> reference_of(const Injection& injection, const Inputs::Seen&
   return values;
 }
 
-/// Directions in which functions are compared: the axes and the corners of a cube.
-std::vector<glm::dvec3> directions() {
-  std::vector<glm::dvec3> found;
-  for (int c = 0; c < 8; ++c)
-    found.push_back(glm::normalize(glm::dvec3(c & 1, c >> 1 & 1, c >> 2) * 2.0 - 1.0));
-  for (int axis = 0; axis < 6; ++axis) {
-    glm::dvec3 d(0);
-    d[axis / 2] = axis % 2 == 0 ? 1 : -1;
-    found.push_back(d);
-  }
-  return found;
-}
-
-/// Functions, not coefficients, are compared: an ill-conditioned Gram matrix tells coefficients apart that hardly
-/// differ as functions. `n` samples along each axis; of one volume. `other` is as right as `CPU reference`.
-void compare(const Basis& basis, const std::vector<float>& device, const double* expected,
-             const double* other, int n, const char* what, Deviation& deviation) {
-  const auto samples = static_cast<std::size_t>(n) * n * n, size = static_cast<std::size_t>(basis.size());
-  double largest = 0;
-  reference::WorstError worst;
-  for (const glm::dvec3& w : directions()) {
-    const std::vector<double> b = basis.evaluate(w);
-    for (std::size_t at = 0; at < device.size() / size; ++at) {
-      double found = 0, wanted = 0, or_wanted = 0;
-      for (std::size_t i = 0; i < size; ++i) {
-        const std::size_t index = (at / samples * size + i) * samples + at % samples;
-        found += b[i] * device[index];
-        wanted += b[i] * expected[index];
-        or_wanted += b[i] * other[index];
-      }
-      largest = std::max(largest, std::abs(wanted));
-      worst.take(std::min(std::abs(found - wanted), std::abs(found - or_wanted)), at);
-    }
-  }
-  const double error = worst.value / largest;
-  if (worst.value == 0 || error <= deviation.worst || std::isnan(deviation.worst)) return;
-  deviation.worst = error;
-  const std::size_t cell = worst.at % samples, side = static_cast<std::size_t>(n);
-  deviation.place =
-      fmt::format("{}, sample {},{},{} channel {}: off by {:.3g} of the largest value", what, cell % side,
-                  cell / side % side, cell / side / side, worst.at / samples, error);
-}
-
 void run(Injection& p, const Inputs::Seen& seen) {
   if (p.light) p.injector.inject_light(seen.rsm, seen.grid, *p.light);
   if (!p.geometry) return;
@@ -113,20 +71,27 @@ Deviation verify(const Injection& p, Bench& bench, const Inputs::Seen& seen, con
   const std::string key =
       fmt::format("inject {} {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o), p.light != nullptr,
                   p.geometry != nullptr, o.grid, variant.cascade.value_or(0));
-  const auto expected = bench.expected(key, [&] { return reference_of(p, seen, inject_options(o, false)); });
+  const InjectOptions options = inject_options(o, false);
+  const auto expected = bench.expected(key, [&] { return reference_of(p, seen, options); });
   const bool plain = o.lobe == LobeKind::exact || o.storage == Storage::float16;
   Deviation deviation{0, reference::tolerance(plain ? "inject" : "inject-rotated", o.format().storage), {}};
-  std::size_t before = 0;
-  if (p.light) {
-    const std::vector<float> light = p.light->read(bench.session);
-    compare(*p.basis, light, expected->data(), expected->data(), o.grid, "light", deviation);
-    before = light.size();
-  }
-  if (p.geometry) {
-    const std::vector<float> geometry = p.geometry->read(bench.session);
-    const double* merged = expected->data() + before;
-    compare(*p.basis, geometry, merged, merged + geometry.size(), o.grid + 1, "geometry", deviation);
-  }
+  const auto compare = [&](const Volume& volume, bool light) {
+    const std::vector<float> found = volume.read(bench.session);
+    const std::span<const double> all(*expected);
+    const auto merged = light ? all.first(found.size()) : all.last(2 * found.size()).first(found.size());
+    const auto other = light ? merged : all.last(found.size());
+    const auto weights = [&](const glm::dvec3& w) {
+      return light ? p.basis->evaluate(w) : blocking_weights(options.blocking, *p.basis, options.lobes, w);
+    };
+    const VolumeShape& shape = volume.shape();
+    const reference::Comparison apart =
+        reference::compare_functions(found, merged, other, shape.n, shape.coefficients, weights);
+    if (apart.place.empty() || apart.worst <= deviation.worst || std::isnan(deviation.worst)) return;
+    deviation.worst = apart.worst;
+    deviation.place = fmt::format("{}, {}", light ? "light" : "geometry", apart.place);
+  };
+  if (p.light) compare(*p.light, true);
+  if (p.geometry) compare(*p.geometry, false);
   return deviation;
 }
 

@@ -67,7 +67,7 @@ Cost cost_of(const Sweeping& p) {
   const int coefficients = p.basis->size(), kept = swept_basis()->size();
   const double bins = kChannels * kSweepBins, links = p.geometry ? link_volumes().count() : 0;
   const double swept = kChannels * p.directions(), sides = 2 * swept * n * n;
-  const auto number = static_cast<double>(number_bytes(format));
+  const auto number = static_cast<double>(number_bytes(format.storage));
   const double light =
       kChannels * static_cast<double>(bytes_per_cell(format, coefficients) + bytes_per_cell(format, kept));
   const double copied = p.sweeper.in_place() ? 2.0 / 3 : 1;  // written, and read

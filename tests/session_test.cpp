@@ -5,13 +5,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
 
-#include <sstream>
-
-#include "device/compile_notice.hpp"
 #include "device/kernel.hpp"
-#include "support/log.hpp"
 #include "tests/support/error_of.hpp"
 #include "verify/check.hpp"
 
@@ -152,37 +147,6 @@ TEST(Sizes, HostAndDeviceAgreeOnTheSharedStructs) {
   Session session(choose_device());
   for (const auto& result : reference::check(Stage::sizes, session))
     EXPECT_TRUE(result.passed()) << result.place;
-}
-
-/// The log, in place of stderr, while this lives.
-class LogInMemory {
- public:
-  LogInMemory() : before_(spdlog::default_logger()) {
-    auto logger =
-        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_));
-    logger->set_pattern("%v");
-    spdlog::set_default_logger(logger);
-  }
-  ~LogInMemory() { spdlog::set_default_logger(before_); }
-
-  std::string text() const { return text_.str(); }
-
- private:
-  std::ostringstream text_;
-  std::shared_ptr<spdlog::logger> before_;
-};
-
-TEST(CompileNotice, ALongWaitIsToldOnceAndAShortOneNot) {
-  const LogInMemory log;
-  tell_of_compiling("this device", 0, 600);
-  tell_of_keeping(600);
-  EXPECT_EQ(log.text(), "");
-  tell_of_compiling("this device", 600, 1200);
-  tell_of_compiling("this device", 1200, 6000);
-  tell_of_keeping(1200);
-  EXPECT_EQ(log.text(),
-            "compiling kernels for this device, which takes a while the first time\n"
-            "keeping the compiled kernels for later starts\n");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ ZonalValue ZonalSeries::operator()(double t, double mu) const {
   double slope = 0, slope_before = 0;  // their derivatives
   double power = 1, power_before = 0;  // mu^k, mu^(k-1)
   for (std::size_t i = 0; i < coefficients_.size() && power > kNegligible; ++i) {
-    const auto k = static_cast<double>(i);
+    const double k = i;
     const double c = coefficients_[i];
     sum.value += c * power * p;
     sum.by_t += c * power * slope;

@@ -27,17 +27,6 @@ std::vector<double> inner_lines(int side) {
   return side == 2 ? std::vector<double>{0} : std::vector<double>{-kLine, 0, kLine};
 }
 
-// The axes along the normal of a face of kAxes, and along its u and v.
-struct FaceAxes {
-  int n, u, v;
-  double sign;
-};
-
-FaceAxes axes_of(int face) {
-  const int n = face / 2;
-  return {n, (n + 1) % 3, (n + 2) % 3, face % 2 == 0 ? 1.0 : -1.0};
-}
-
 }  // namespace
 
 DirectionBins::DirectionBins(int side) : side_(side), lines_(inner_lines(side)) {
@@ -52,7 +41,7 @@ DirectionBins::DirectionBins(int side) : side_(side), lines_(inner_lines(side)) 
     for (std::size_t v = 0; v < kPatchesAlongFace; ++v) {
       for (std::size_t u = 0; u < kPatchesAlongFace; ++u) {
         const SphericalPolygon polygon =
-            region(face, {corners[u], corners[u + 1]}, {corners[v], corners[v + 1]});
+            face_region(face, {corners[u], corners[u + 1]}, {corners[v], corners[v + 1]});
         const int bin =
             (face * side + static_cast<int>(v) / patches_a_bin) * side + static_cast<int>(u) / patches_a_bin;
         solid_angles[bin] += solid_angle(polygon);
@@ -65,7 +54,12 @@ DirectionBins::DirectionBins(int side) : side_(side), lines_(inner_lines(side)) 
   set_gram(std::move(gram), std::move(solid_angles));
 }
 
-SphericalPolygon DirectionBins::region(int face, std::array<double, 2> u, std::array<double, 2> v) const {
+FaceAxes axes_of(int face) {
+  const int n = face / 2;
+  return {n, (n + 1) % 3, (n + 2) % 3, face % 2 == 0 ? 1.0 : -1.0};
+}
+
+SphericalPolygon face_region(int face, std::array<double, 2> u, std::array<double, 2> v) {
   const FaceAxes axes = axes_of(face);
   SphericalPolygon corners;
   for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {

@@ -13,6 +13,16 @@
 
 namespace clpv {
 
+/// The axes along the normal of a face of kAxes, and along its u and v.
+struct FaceAxes {
+  int n, u, v;
+  double sign;
+};
+FaceAxes axes_of(int face);
+
+/// What of a face lies between two lines along u and two along v.
+SphericalPolygon face_region(int face, std::array<double, 2> u, std::array<double, 2> v);
+
 class DirectionBins : public Basis {
  public:
   /// `side`: bins along each edge of a face, 2 or 4.
@@ -35,7 +45,6 @@ class DirectionBins : public Basis {
     double width;  ///< of the patch, times its solid angle: it straddles the horizon where |area . d| < width
                    ///< / 2
   };
-  SphericalPolygon region(int face, std::array<double, 2> u, std::array<double, 2> v) const;
   void add_patch(int bin, const SphericalPolygon& polygon);
   std::string kernel_basis() const;
   std::string kernel_cosine() const;

@@ -19,7 +19,6 @@ using nlohmann::json;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kNorm = 2 * kPi / 3;        // Int max(0, w . d)^2 dw
-constexpr int kEvenDirections = 2000;        // the mean over them is good to three digits
 constexpr std::size_t kMostWeights = 10000;  // what a search still bears
 
 WeightedDirection weighted_direction(const json& entry, const std::string& path, std::size_t index) {
@@ -34,16 +33,6 @@ WeightedDirection weighted_direction(const json& entry, const std::string& path,
   throw Error(ExitCode::bad_input,
               "{}: /weights/{} is {}; allowed: [x, y, z, weight], a direction and a weight above 0", path,
               index, quoted(entry));
-}
-
-/// |f - max(0, w . d)|^2 / |max(0, w . d)|^2; f is a projection, so that |f|^2 is what is taken off.
-double square_error(const Basis& basis, const glm::dvec3& d) {
-  std::vector<double> alpha(basis.size());
-  basis.cosine_integrals(d, alpha);
-  const std::vector<double> c = basis.clamped_cosine(d), product = basis.gram() * c;
-  double square = kNorm;
-  for (std::size_t i = 0; i < c.size(); ++i) square += c[i] * (product[i] - 2 * alpha[i]);
-  return std::max(0.0, square) / kNorm;
 }
 
 }  // namespace
@@ -77,6 +66,12 @@ LobeAims load_aims(const std::string& path) {
   return aims;
 }
 
+double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
+  std::vector<double> alpha(c.size());
+  basis.cosine_integrals(d, alpha);
+  return std::sqrt(std::max(0.0, kNorm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / kNorm);
+}
+
 std::vector<glm::dvec3> even_directions(int count) {
   std::vector<glm::dvec3> directions;
   for (int i = 0; i < count; ++i) {
@@ -88,11 +83,14 @@ std::vector<glm::dvec3> even_directions(int count) {
 }
 
 double error_over(const Basis& basis, const LobeAims& aims) {
+  std::vector<WeightedDirection> directions = aims.directions;
+  if (directions.empty()) {
+    for (const glm::dvec3& d : even_directions(kEvenDirections))
+      directions.push_back({d, 1.0 / kEvenDirections});
+  }
   double sum = 0;
-  for (const WeightedDirection& aim : aims.directions) sum += aim.weight * square_error(basis, aim.direction);
-  if (!aims.directions.empty()) return std::sqrt(sum);
-  for (const glm::dvec3& d : even_directions(kEvenDirections))
-    sum += square_error(basis, d) / kEvenDirections;
+  for (const auto& [d, weight] : directions)
+    sum += weight * std::pow(relative_l2(basis, basis.clamped_cosine(d), d), 2);
   return std::sqrt(sum);
 }
 

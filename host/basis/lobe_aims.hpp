@@ -29,6 +29,10 @@ LobeAims propagation_axes();
 /// Error(bad_input) with the JSON pointer of what is wrong.
 LobeAims load_aims(const std::string& path);
 
+/// |f - max(0, w . d)| / |max(0, w . d)|, L2 norms over the sphere, of the function with coefficients c.
+double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d);
+
+inline constexpr int kEvenDirections = 2000;  ///< a mean over so many is good to three digits
 /// Directions spread evenly, on a golden spiral.
 std::vector<glm::dvec3> even_directions(int count);
 

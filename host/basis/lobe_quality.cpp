@@ -15,7 +15,6 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kSpacing = kPi / 90;  // between starting points: finer than any lobe's bumps
 constexpr double kResolution = 1e-7;   // rad: where the search stops
-constexpr int kMeanAxes = 2000;        // the mean then is good to three digits
 
 // Unit direction of the largest f: the best of a grid of directions, then steps across it, ever smaller.
 glm::dvec3 highest(const std::function<double(const glm::dvec3&)>& f) {
@@ -41,14 +40,6 @@ glm::dvec3 highest(const std::function<double(const glm::dvec3&)>& f) {
   return best;
 }
 
-// |f - max(0, w . d)| / |max(0, w . d)|
-double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
-  std::vector<double> alpha(c.size());
-  basis.cosine_integrals(d, alpha);
-  const double norm = 2 * kPi / 3;  // Int max(0, w . d)^2 dw
-  return std::sqrt(std::max(0.0, norm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / norm);
-}
-
 }  // namespace
 
 LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
@@ -64,8 +55,8 @@ LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const gl
 
 double mean_relative_l2(const Basis& basis, const Lobes& lobes) {
   double sum = 0;
-  for (const glm::dvec3& d : even_directions(kMeanAxes)) sum += relative_l2(basis, lobes(d), d);
-  return sum / kMeanAxes;
+  for (const glm::dvec3& d : even_directions(kEvenDirections)) sum += relative_l2(basis, lobes(d), d);
+  return sum / kEvenDirections;
 }
 
 double energy_after(const Basis& basis, const FaceTransport& transport, int steps) {

@@ -100,7 +100,7 @@ Srbf::Srbf(const std::string& name, const std::vector<glm::dvec3>& centres,
   name_ = name;
   lambdas_ = lambdas;
   centres_ = centres;
-  size_ = static_cast<int>(centres.size());
+  size_ = centres.size();
   for (const double lambda : lambdas) cosines_.try_emplace(lambda, lambda);
   Matrix gram(size_, size_);
   for (int i = 0; i < size_; ++i) {

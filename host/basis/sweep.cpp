@@ -16,32 +16,13 @@ namespace {
 constexpr int kSide = 2;  // bins along each edge of a cube's face
 constexpr int kSweptBands = 3;
 
-struct FaceAxes {
-  int n, u, v;
-  double sign;
-};
-
-FaceAxes axes_of(int bin) {
-  const int face = bin / (kSide * kSide), n = face / 2;
-  return {n, (n + 1) % 3, (n + 2) % 3, face % 2 == 0 ? 1.0 : -1.0};
-}
-
 /// Part (i, j) of a bin: equal angles from the axis to the diagonal, as bins96 cuts bins24.
 SphericalPolygon part(int bin, int parts, int i, int j) {
-  const FaceAxes axes = axes_of(bin);
-  const auto line = [&](int side, int step) {
-    return (side == 0 ? -1 : 1) * std::tan(std::numbers::pi / 4 * step / parts);
+  const auto lines = [&](int side, int step) -> std::array<double, 2> {
+    const double sign = side == 0 ? -1 : 1, angle = std::numbers::pi / 4;
+    return {sign * std::tan(angle * step / parts), sign * std::tan(angle * (step + 1) / parts)};
   };
-  const int side_u = bin % kSide, side_v = bin / kSide % kSide;
-  SphericalPolygon polygon;
-  for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-    glm::dvec3 corner;
-    corner[axes.n] = axes.sign;
-    corner[axes.u] = line(side_u, i + a);
-    corner[axes.v] = line(side_v, j + b);
-    polygon.push_back(glm::normalize(corner));
-  }
-  return polygon;
+  return face_region(bin / (kSide * kSide), lines(bin % kSide, i), lines(bin / kSide % kSide, j));
 }
 
 SweepDirection direction_of(const SphericalPolygon& polygon, const SweepBin& bin) {
@@ -64,7 +45,7 @@ SweepDirection direction_of(const SphericalPolygon& polygon, const SweepBin& bin
 std::vector<SweepBin> sweep_bins(int parts) {
   std::vector<SweepBin> bins;
   for (int b = 0; b < kSweepBins; ++b) {
-    const FaceAxes axes = axes_of(b);
+    const FaceAxes axes = axes_of(b / (kSide * kSide));
     // Rows of memory run along x where the plane holds x: u is the first of the plane's axes in memory.
     const int u = axes.n == 0 ? 1 : 0, v = axes.n == 2 ? 1 : 2;
     SweepBin bin{axes.n, u, v, {}, {}, 0, {}};
@@ -182,14 +163,10 @@ std::vector<SweepLink> sweep_links() {
   return links;
 }
 
-namespace {
-
-int link_number(const glm::ivec3& offset) {
+static int link_number(const glm::ivec3& offset) {
   const int place = (offset.x + 1) + 3 * (offset.y + 1) + 9 * (offset.z + 1);
   return place - (place > 13 ? 1 : 0);  // 13 is the cell itself
 }
-
-}  // namespace
 
 int LinkVolumes::volume(int axis, const glm::ivec3& offset) const {
   int before = 0;

@@ -48,13 +48,6 @@ std::vector<double> sample_of(const Basis& basis, const LobeOptions& lobes, cons
   return b;
 }
 
-}  // namespace
-
-const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0), glm::ivec3(0, 1, 0),
-                                      glm::ivec3(0, -1, 0), glm::ivec3(0, 0, 1),  glm::ivec3(0, 0, -1)};
-
-namespace {
-
 void look_up_blockers(Transport& transport, const Basis& basis) {
   const auto weights = [&](const glm::dvec3& direction) {
     return blocking_weights(transport.blocking, basis, transport.lobes, direction);
@@ -68,6 +61,9 @@ void look_up_blockers(Transport& transport, const Basis& basis) {
 }
 
 }  // namespace
+
+const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0), glm::ivec3(0, 1, 0),
+                                      glm::ivec3(0, -1, 0), glm::ivec3(0, 0, 1),  glm::ivec3(0, 0, -1)};
 
 std::vector<TransportKind> stepped_transports() {
   std::vector<TransportKind> stepped;

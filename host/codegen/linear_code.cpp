@@ -61,7 +61,7 @@ int parity_class(std::span<const double> coordinate, const std::vector<SignedPer
     for (std::size_t i = 0; i < coordinate.size(); ++i) {
       if (coordinate[i] == 0) continue;
       const double image = mirrors[b].sign[i] * coordinate[i];
-      if (image != coordinate[static_cast<std::size_t>(mirrors[b].target[i])]) bits |= 1 << b;
+      if (image != coordinate[mirrors[b].target[i]]) bits |= 1 << b;
       break;
     }
   }

@@ -29,7 +29,7 @@ SignedPermutation mirror(const Basis& basis, int axis) {
   const auto directions = scattered_directions(64 * n);
   Matrix plain(static_cast<int>(directions.size()), n), mirrored = plain;
   for (int q = 0; q < plain.rows(); ++q) {
-    glm::dvec3 w = directions[static_cast<std::size_t>(q)];
+    glm::dvec3 w = directions[q];
     basis.evaluate(w, plain.row(q));
     w[axis] = -w[axis];
     basis.evaluate(w, mirrored.row(q));
@@ -54,12 +54,6 @@ SignedPermutation mirror(const Basis& basis, int axis) {
   return result;
 }
 
-SignedPermutation mirror_of_fluxes(int axis) {
-  SignedPermutation swap{{0, 1, 2, 3, 4, 5}, {1, 1, 1, 1, 1, 1}};
-  std::swap(swap.target[2 * axis], swap.target[2 * axis + 1]);
-  return swap;
-}
-
 std::vector<SignedPermutation> Mirrors::across(int axis) const {
   return {all[(axis + 1) % 3], all[(axis + 2) % 3]};
 }
@@ -69,7 +63,12 @@ Mirrors mirrors_of(const Basis& basis) {
 }
 
 Mirrors mirrors_of_fluxes() {
-  return {{mirror_of_fluxes(0), mirror_of_fluxes(1), mirror_of_fluxes(2)}};
+  Mirrors mirrors;
+  for (int axis = 0; axis < 3; ++axis) {
+    mirrors.all[axis] = {{0, 1, 2, 3, 4, 5}, {1, 1, 1, 1, 1, 1}};
+    std::swap(mirrors.all[axis].target[2 * axis], mirrors.all[axis].target[2 * axis + 1]);
+  }
+  return mirrors;
 }
 
 int axis_of(const glm::ivec3& along) {

@@ -22,9 +22,6 @@ struct SignedPermutation {
 /// say).
 SignedPermutation mirror(const Basis& basis, int axis);
 
-/// What the mirror of `axis` does to six fluxes in the order of kAxes: it swaps the two of its axis.
-SignedPermutation mirror_of_fluxes(int axis);
-
 /// The mirrors of x, y and z.
 struct Mirrors {
   std::array<SignedPermutation, 3> all;
@@ -33,6 +30,7 @@ struct Mirrors {
   std::vector<SignedPermutation> across(int axis) const;
 };
 Mirrors mirrors_of(const Basis& basis);
+/// Those of six fluxes in the order of kAxes: each swaps the two of its axis.
 Mirrors mirrors_of_fluxes();
 
 /// The axis, 0 to 2, of a vector along one.

@@ -58,7 +58,7 @@ std::vector<std::string> blockers_towards(LinearCode& code, const glm::ivec3& no
 void add_links(TransmittanceCode& out, const std::optional<Mirrors>& mirrors, const glm::ivec3& normal,
                const std::vector<std::vector<double>>& weights, const std::vector<int>& links) {
   LinearCode& code = out.code;
-  const auto corners = static_cast<double>(corners_towards(normal).size());
+  const double corners = corners_towards(normal).size();
   Matrix rows(static_cast<int>(weights.size()), static_cast<int>(weights.front().size()));
   for (int r = 0; r < rows.rows(); ++r) {
     for (int i = 0; i < rows.columns(); ++i) rows(r, i) = weights[r][i] * (0.5 / corners);
@@ -86,7 +86,7 @@ int add_faces(TransmittanceCode& out, const std::optional<Mirrors>& mirrors, con
     }
     add_links(out, mirrors, normal, weights, links);
   }
-  return static_cast<int>(scheme.faces.size());
+  return scheme.faces.size();
 }
 
 /// One link a neighbour, through the face, edge or corner that the two cells share.

@@ -36,7 +36,7 @@ void add_neighbour(TransportCode& out, const glm::ivec3& travel) {
 /// Half the fluxes of the travelling state through the 30 faces: F = flux . c, or with fluxes travelling
 /// F = (flux L) . phi.
 Matrix half_face_rows(const FaceTransport& faces, State source) {
-  const int n = static_cast<int>(faces.faces.front().flux.size());
+  const int n = faces.faces.front().flux.size();
   Matrix rows(static_cast<int>(faces.faces.size()), n);
   for (int f = 0; f < rows.rows(); ++f) {
     for (int i = 0; i < n; ++i) rows(f, i) = 0.5 * faces.faces[f].flux[i];

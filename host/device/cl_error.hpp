@@ -9,7 +9,7 @@
 
 namespace clpv {
 
-/// "CL_OUT_OF_RESOURCES (-5)"; "code -9999" for one that no header names.
+/// "CL_OUT_OF_RESOURCES (-5)"; "code -9999" for one that devices and drivers do not give of themselves.
 std::string cl_error_name(cl_int code);
 
 /// `error` as an Error: the call that failed, the code's name, what may help. `doing` (may be empty) is what

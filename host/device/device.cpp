@@ -121,9 +121,9 @@ DeviceList list_devices() {
       device.handle = handles[d];
       device.platform = platform;
       device.platform_version = trimmed(platforms[p].getInfo<CL_PLATFORM_VERSION>());
-      device.index = static_cast<int>(list.devices.size());
-      device.platform_index = static_cast<int>(p);
-      device.device_index = static_cast<int>(d);
+      device.index = list.devices.size();
+      device.platform_index = p;
+      device.device_index = d;
       try {
         describe(device);
       } catch (const cl::Error& error) {  // a broken driver must not hide the others' devices

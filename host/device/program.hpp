@@ -25,12 +25,8 @@ struct ProgramSource {
 std::string program_text(const ProgramSource& source);
 
 /// Compiles `text`, which is program_text(source), for the device.
-/// Throws Error(run_time) with options, the compiler's log and the numbered lines round each fault it names.
+/// Throws Error(run_time) with options and the compiler's log, which names lines by their #line marks.
 cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
                           const std::string& text);
-
-/// The lines of `text` round each place "FILE:LINE:" at which `log` tells of an error, numbered as #line
-/// marks say, the faulty one marked; empty where the log names none.
-std::string lines_round_errors(const std::string& text, const std::string& log);
 
 }  // namespace clpv

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "device/cl_error.hpp"
-#include "device/compile_notice.hpp"
 #include "device/kernel.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"
@@ -21,11 +20,12 @@ ProgramSource words_program() {
   return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
-constexpr int kKeepingPart = 10;  // of the time that a process runs, for programs to be kept in
+constexpr double kPatienceMs = 1000;  // who waits longer is told what for
+constexpr int kKeepingPart = 10;      // of the time that a process runs, for programs to be kept in
 const auto kProcessStart = std::chrono::steady_clock::now();
 
 cl_uint words_of(std::size_t bytes) {
-  return static_cast<cl_uint>(bytes / sizeof(cl_uint));
+  return bytes / sizeof(cl_uint);
 }
 
 std::size_t round_up(std::size_t value, std::size_t step) {
@@ -111,7 +111,8 @@ void Session::build(Program& program) {
   if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
-  if (!program.stored) tell_of_compiling(device_.name, before_ms, build_ms_);
+  if (!program.stored && before_ms <= kPatienceMs && build_ms_ > kPatienceMs)
+    spdlog::info("compiling kernels for {}, which takes a while the first time", device_.name);
   spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
                 program.stored ? "from the cache" : "compiled", elapsed.count());
 }
@@ -137,7 +138,9 @@ void Session::store_programs() {
   for (auto& [key, program] : programs_) {
     if (program->stored || program->built() == nullptr) continue;
     if (std::chrono::steady_clock::now() - start > most) return;
-    if (!std::exchange(told, true)) tell_of_keeping(build_ms_);
+    // Some drivers compile once more for it.
+    if (!std::exchange(told, true) && build_ms_ > kPatienceMs)
+      spdlog::info("keeping the compiled kernels for later starts");
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries[0].empty()) {
       spdlog::debug("{} gives no compiled programs to keep", device_.name);
@@ -150,14 +153,15 @@ void Session::store_programs() {
 
 std::size_t Session::largest_buffer() const {
   const std::uint64_t left = device_.memory_bytes > use_->now ? device_.memory_bytes - use_->now : 0;
-  return static_cast<std::size_t>(std::min<std::uint64_t>(device_.max_alloc_bytes, left));
+  return std::min<std::uint64_t>(device_.max_alloc_bytes, left);
 }
 
 void Session::require_room(std::size_t bytes, const std::string& what) const {
   if (bytes <= largest_buffer()) return;
   throw Error(ExitCode::run_time,
               "{} needs {:.1f} MiB, but {} has room for a buffer of at most {:.1f} MiB "
-              "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use)",
+              "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): try a smaller "
+              "grid, rsm-size or image",
               what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
               mib(device_.memory_bytes), mib(use_->now));
 }
@@ -226,21 +230,20 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
   timeline_.add(event);
 }
 
+// Oclgrind 21.10 does not take a fill for an initialisation, and a write or a copy to a part of a buffer makes it lose
+// track of the rest: its memory checker would report what is sound. There kernels fill and copy.
 void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from) {
-  if (oclgrind()) return fill_by_kernel(buffer, bytes, from);
+  if (oclgrind()) {
+    const cl_uint words = words_of(bytes), first = words_of(from);
+    Kernel(*this, words_program(), "zero")
+        .set(buffer, first, words)
+        .launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
+    return;
+  }
   cl::Event event;
   // By bytes: PoCL then calls memset, and is five times as fast as with words or with a kernel.
   queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
   timeline_.add(event);
-}
-
-// Oclgrind 21.10 does not take a fill for an initialisation, and a write or a copy to a part of a buffer makes it lose
-// track of the rest: its memory checker would report what is sound.
-void Session::fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from) {
-  const cl_uint words = words_of(bytes), first = words_of(from);
-  Kernel(*this, words_program(), "zero")
-      .set(buffer, first, words)
-      .launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
 }
 
 void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {

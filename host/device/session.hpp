@@ -48,7 +48,7 @@ class Session {
   std::shared_ptr<Program> describe(const ProgramSource& source);
 
   /// Builds the programs described so far that are not built yet and still wanted by someone.
-  /// Throws Error(run_time) with the compiler's log and the numbered lines round the fault; so does kernel().
+  /// Throws Error(run_time) with the compiler's log; so does kernel().
   void build_described();
 
   /// The kernel `name` of a program of describe().
@@ -121,7 +121,6 @@ class Session {
   bool load(Program& program);
 
   void require_room(std::size_t bytes, const std::string& what) const;
-  void fill_by_kernel(const Buffer& buffer, std::size_t bytes, std::size_t from);
 
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
 

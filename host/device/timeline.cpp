@@ -6,12 +6,8 @@
 namespace clpv {
 
 void Timeline::begin(StageMark mark) {
-  const auto same = [&](const Entry& entry) {
-    return entry.mark.pass == mark.pass && entry.mark.cascade == mark.cascade &&
-           entry.mark.light == mark.light;
-  };
-  const auto found = std::find_if(entries_.begin(), entries_.end(), same);
-  current_ = static_cast<int>(found - entries_.begin());
+  const auto found = std::ranges::find(entries_, mark, &Entry::mark);
+  current_ = found - entries_.begin();
   if (found == entries_.end()) entries_.push_back({std::move(mark), {}, 0});
   started_ = std::chrono::steady_clock::now();
 }

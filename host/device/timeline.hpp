@@ -16,6 +16,7 @@ struct StageMark {
   Pass pass;
   std::optional<int> cascade = std::nullopt;
   std::optional<int> light = std::nullopt;
+  bool operator==(const StageMark&) const = default;
 };
 
 struct StageTime {

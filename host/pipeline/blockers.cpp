@@ -28,10 +28,6 @@ ProgramSource shares_program(int grid, const VolumeFormat& format) {
 
 }  // namespace
 
-std::size_t BlockerVoxelizer::bytes(int grid, int cascades) {
-  return voxel_mask_bytes(shape_of(grid, cascades));
-}
-
 BlockerVoxelizer::BlockerVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
                                    const VolumeFormat& format)
     : scene_(scene),

@@ -25,9 +25,6 @@ class BlockerVoxelizer {
   /// Overwrites `geometry`: grid + 1 samples a side, 3 numbers, one channel.
   void block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry);
 
-  /// Of its masks.
-  static std::size_t bytes(int grid, int cascades);
-
  private:
   SceneBuffers scene_;
   int grid_;

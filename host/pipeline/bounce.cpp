@@ -28,14 +28,6 @@ Bouncer::Bouncer(Session& session, const SweepOptions& options)
         volumes_.make_bordered(kChannels * kReflectingSides, "light on surfaces of a coarser cascade"));
 }
 
-double Bouncer::bytes(const SweepOptions& options) {
-  if (options.bounces != Bounces::all) return 0;
-  const double arriving = kChannels * kReflectingSides *
-                          static_cast<double>(SweepVolumes::bordered_bytes(options.grid, options.format));
-  return static_cast<double>(stored_bytes(options.format, {options.grid, kReflectingSides, kChannels})) +
-         static_cast<double>(options.parts.size() - 1) * arriving;
-}
-
 void Bouncer::reflect(std::size_t cascade, const Volume& reflectors) {
   reflectors_[cascade] = &reflectors;
   if (cascade + 1 == reflectors_.size()) sending_ = &reflectors;

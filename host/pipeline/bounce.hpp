@@ -45,9 +45,6 @@ class Bouncer {
   /// Adds to `light` what surfaces send back of that in the next coarser cascade. `offset`: offset_in_coarser().
   void bounce_finer(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& light);
 
-  /// Device memory of what is kept between frames [bytes].
-  static double bytes(const SweepOptions& options);
-
  private:
   SweepVolumes volumes_;
   std::vector<const Volume*> reflectors_;

@@ -23,11 +23,11 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
   for (int c = 0; c < count; ++c) {
     const double cell = std::ldexp(size, c) / cells;
     ClpvGrid grid{};
-    grid.cell = static_cast<float>(cell);
-    grid.n = static_cast<unsigned>(cells);
+    grid.cell = cell;
+    grid.n = cells;
     for (int axis = 0; axis < 3; ++axis) {
       const double first = std::floor(eye[axis] / cell) - cells / 2;
-      grid.origin[axis] = static_cast<float>(first * cell);
+      grid.origin[axis] = first * cell;
       grid.middle[axis] = eye[axis];
     }
     grids.push_back(grid);
@@ -71,7 +71,7 @@ std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& fi
                   "numbers -1..{} allowed",
                   axis, cells, most);
     }
-    offset[axis] = static_cast<int>(whole);
+    offset[axis] = whole;
   }
   return offset;
 }

@@ -26,7 +26,7 @@ namespace clpv {
 /// Holds all device memory a frame needs; render() may be called again and again, for one camera or many.
 class Frame {
  public:
-  /// Throws Error(run_time) where the device's memory does not suffice, naming a grid that would fit.
+  /// Throws Error(run_time) where the device's memory does not suffice.
   Frame(Session& session, const Scene& scene, const RenderOptions& options);
   Frame(const Frame&) = delete;  // its stages refer to its other parts
   Frame& operator=(const Frame&) = delete;

@@ -46,12 +46,11 @@ std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const
   return made;
 }
 
-FrameCascades::CachedVolume& FrameCascades::of_cascade(std::vector<CachedVolume>& volumes,
-                                                       std::size_t cascade) {
-  return volumes[std::min(cascade, volumes.size() - 1)];
+FrameCascades::CachedVolume& FrameCascades::of_cascade(std::vector<CachedVolume>& volumes, int cascade) {
+  return volumes[std::min<std::size_t>(cascade, volumes.size() - 1)];
 }
 
-const Volume* FrameCascades::geometry(std::size_t cascade) {
+const Volume* FrameCascades::geometry(int cascade) {
   return geometry_.empty() ? nullptr : of_cascade(geometry_, cascade).volume.get();
 }
 
@@ -59,20 +58,20 @@ void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface& c
   grids_ = grids;
   camera_ = &camera;
   if (scene_.sky) sweeper_->scale_sky(lights_.scale());
-  for (std::size_t cascade = grids_.size(); cascade-- > 0;) keys_[cascade] = keys_of(cascade);
+  for (int cascade = options_.cascades; cascade-- > 0;) keys_[cascade] = keys_of(cascade);
 }
 
-FrameCascades::Keys FrameCascades::keys_of(std::size_t cascade) const {
+FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   const ClpvGrid& grid = grids_[cascade];
-  const int c = static_cast<int>(cascade);
   // Where in a cascade the eye is matters to gathering alone.
   const CacheKey place = Fingerprint().add(grid.origin).add(grid.cell).value();
   Keys keys;
   keys.triangles = Fingerprint().add(place).add(buffers_.clusters->instant()).value();
-  keys.injected = Fingerprint().add(place).add(lights_.sources_key(c)).value();
+  keys.injected = Fingerprint().add(place).add(lights_.sources_key(cascade)).value();
   if (!geometry_.empty()) keys.geometry = keys.triangles;
   if (!geometry_.empty() && !blocker_)
-    keys.geometry = Fingerprint().add(keys.triangles).add(lights_.rsms_key(c)).add(camera_->view).value();
+    keys.geometry =
+        Fingerprint().add(keys.triangles).add(lights_.rsms_key(cascade)).add(camera_->view).value();
   // All bounces depend on what blocks.
   keys.reflected = Fingerprint().add(keys.triangles).add(keys.geometry).value();
   Fingerprint accumulated;
@@ -80,73 +79,71 @@ FrameCascades::Keys FrameCascades::keys_of(std::size_t cascade) const {
   if (reflector_) accumulated.add(keys.reflected);
   // A sweep takes light at its border from the next coarser cascade, and keeps what the next finer one will take.
   if (sweeper_) accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
-  if (sweeper_ && cascade + 1 < keys_.size()) accumulated.add(keys_[cascade + 1].accumulated);
+  if (sweeper_ && cascade + 1 < options_.cascades) accumulated.add(keys_[cascade + 1].accumulated);
   keys.accumulated = accumulated.value();
   return keys;
 }
 
-void FrameCascades::inject(std::size_t cascade) {
+void FrameCascades::inject(int cascade) {
   CachedVolume& injected = of_cascade(injected_, cascade);
   injected.cached.update(keys_[cascade].injected, [&] {
-    const int c = static_cast<int>(cascade);
-    lights_.update_sources(c);
-    const StageScope scope(session_, {Pass::inject_light, c});
+    lights_.update_sources(cascade);
+    const StageScope scope(session_, {Pass::inject_light, cascade});
     injected.volume->clear(session_);
-    for (const Surface* source : lights_.sources(c))
+    for (const Surface* source : lights_.sources(cascade))
       injector_.inject_light(*source, grids_[cascade], *injected.volume);
   });
 }
 
-void FrameCascades::block(std::size_t cascade) {
+void FrameCascades::block(int cascade) {
   if (geometry_.empty()) return;
   CachedVolume& geometry = of_cascade(geometry_, cascade);
   geometry.cached.update(keys_[cascade].geometry, [&] {
     if (!blocker_) return inject_geometry(cascade, *geometry.volume);
-    const StageScope scope(session_, {Pass::blockers, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::blockers, cascade});
     blocker_->block(cascade, grids_[cascade], *geometry.volume);
   });
 }
 
-void FrameCascades::inject_geometry(std::size_t cascade, Volume& geometry) {
-  const int c = static_cast<int>(cascade);
-  lights_.rasterize_rsms(c);
-  const StageScope scope(session_, {Pass::inject_geometry, c});
+void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
+  lights_.rasterize_rsms(cascade);
+  const StageScope scope(session_, {Pass::inject_geometry, cascade});
   geometry.clear(session_);
-  for (const Surface* rsm : lights_.rsms(c)) injector_.inject_geometry(*rsm, grids_[cascade], geometry);
+  for (const Surface* rsm : lights_.rsms(cascade)) injector_.inject_geometry(*rsm, grids_[cascade], geometry);
   injector_.inject_geometry(*camera_, grids_[cascade], geometry, options_.blocker_stride);
 }
 
-void FrameCascades::let_through(std::size_t cascade) {
+void FrameCascades::let_through(int cascade) {
   if (const Volume* blockers = geometry(cascade))
     links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->block(cascade, *blockers); });
 }
 
-void FrameCascades::reflect(std::size_t cascade) {
+void FrameCascades::reflect(int cascade) {
   if (!reflector_) return;
   reflected_[cascade].update(keys_[cascade].reflected, [&] {
-    const StageScope scope(session_, {Pass::reflectors, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::reflectors, cascade});
     let_through(cascade);
     reflector_->reflect(cascade, grids_[cascade]);
     sweeper_->reflect(cascade, reflector_->reflectors(cascade));
   });
 }
 
-void FrameCascades::see(std::size_t cascade) {
+void FrameCascades::see(int cascade) {
   if (!sight_) return;
   seen_[cascade].update(keys_[cascade].triangles, [&] {
-    const StageScope scope(session_, {Pass::visibility, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::visibility, cascade});
     sight_->see(cascade, grids_[cascade]);
   });
 }
 
-void FrameCascades::propagate(std::size_t cascade) {
+void FrameCascades::propagate(int cascade) {
   Volume& accumulated = *accumulated_[cascade].volume;
   accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
     inject(cascade);
     block(cascade);
     reflect(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
-    const StageScope scope(session_, {Pass::propagate, static_cast<int>(cascade)});
+    const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
       return propagator_->propagate({injected, geometry(cascade), accumulated}, options_.iterations);
     let_through(cascade);
@@ -155,14 +152,13 @@ void FrameCascades::propagate(std::size_t cascade) {
 }
 
 void FrameCascades::update(int cascade, const CascadeObserver& observer) {
-  const std::size_t c = cascade;
-  propagate(c);
-  see(c);
+  propagate(cascade);
+  see(cascade);
   if (!observer) return;
-  inject(c);  // what cascades share may hold another one's
-  block(c);
-  observer({cascade, grids_[c], *of_cascade(injected_, c).volume, geometry(c), *accumulated_[c].volume,
-            lights_.scale()});
+  inject(cascade);  // what cascades share may hold another one's
+  block(cascade);
+  observer({cascade, grids_[cascade], *of_cascade(injected_, cascade).volume, geometry(cascade),
+            *accumulated_[cascade].volume, lights_.scale()});
 }
 
 GatheredLight FrameCascades::light() const {

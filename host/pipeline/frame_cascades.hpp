@@ -58,7 +58,7 @@ class FrameCascades {
   void update(int cascade, const CascadeObserver& observer);
 
   /// Of a cascade's accumulated light.
-  CacheKey key(std::size_t cascade) const { return keys_[cascade].accumulated; }
+  CacheKey key(int cascade) const { return keys_[cascade].accumulated; }
   GatheredLight light() const;
 
  private:
@@ -72,18 +72,18 @@ class FrameCascades {
     CacheKey triangles = 0, injected = 0, geometry = 0, reflected = 0, accumulated = 0;
   };
   std::vector<CachedVolume> volumes(int count, const VolumeShape& shape, const char* what) const;
-  static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, std::size_t cascade);
-  Keys keys_of(std::size_t cascade) const;
+  static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, int cascade);
+  Keys keys_of(int cascade) const;
 
   /// Each brings a cascade's result to date, and what it is computed from before it where it is not.
-  void inject(std::size_t cascade);
-  void block(std::size_t cascade);
-  void let_through(std::size_t cascade);
-  void reflect(std::size_t cascade);
-  void propagate(std::size_t cascade);
-  void see(std::size_t cascade);
-  void inject_geometry(std::size_t cascade, Volume& geometry);
-  const Volume* geometry(std::size_t cascade);
+  void inject(int cascade);
+  void block(int cascade);
+  void let_through(int cascade);
+  void reflect(int cascade);
+  void propagate(int cascade);
+  void see(int cascade);
+  void inject_geometry(int cascade, Volume& geometry);
+  const Volume* geometry(int cascade);
 
   Session& session_;
   const Scene& scene_;

@@ -7,7 +7,6 @@
 
 #include "pipeline/frame_volumes.hpp"
 #include "pipeline/view.hpp"
-#include "scene/light_kind.hpp"
 #include "support/fingerprint.hpp"
 
 namespace clpv {
@@ -19,14 +18,7 @@ constexpr double kMostDoubling = 60;  // of a light so weak that floats end firs
 /// The most that a light sends through a cell [W].
 double most_flux(const ClpvLight& light, double cell) {
   const double brightest = *std::max_element(light.intensity, light.intensity + 3);
-  switch (kind_of(light)) {
-    case LightKind::directional:
-      return brightest * (cell * cell);
-    case LightKind::spot:
-    case LightKind::point:
-      break;
-  }
-  return brightest * (4 * std::numbers::pi);
+  return brightest * (rsm_follows_cascade(light) ? cell * cell : 4 * std::numbers::pi);
 }
 
 }  // namespace
@@ -68,7 +60,7 @@ void FrameLights::find_lights(const Camera& camera) {
   for (std::size_t i = 0; i < shining.size(); ++i) {
     const auto found = std::ranges::find(scene_.lights, shining[i].name, &Light::name);
     lights_[i].light = shining[i].data;
-    lights_[i].index = static_cast<int>(found - scene_.lights.begin());
+    lights_[i].index = found - scene_.lights.begin();
   }
 }
 
@@ -166,7 +158,7 @@ float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& ligh
   for (const ClpvLight& light : lights) flux += most_flux(light, static_cast<double>(coarsest_cell));
   if (format.storage != Storage::float16 || !(flux > 0)) return 1;
   const double doublings = std::floor(std::log2(kFull * std::numbers::pi / flux));
-  return static_cast<float>(std::exp2(std::clamp(doublings, -kMostDoubling, kMostDoubling)));
+  return std::exp2(std::clamp(doublings, -kMostDoubling, kMostDoubling));
 }
 
 ClpvLight scaled(ClpvLight light, float scale) {

@@ -30,7 +30,7 @@ int injected_volumes(const RenderOptions& options);
 int geometry_volumes(const RenderOptions& options);
 
 /// `options` themselves. Throws Error(usage) for those that contradict each other, Error(device) for volumes that the device
-/// cannot hold at all, Error(run_time) for a grid too large for it, naming the largest that fits.
+/// cannot hold at all.
 const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis);
 
 }  // namespace clpv

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather.hpp"
 
-#include <cmath>
-
 #include "codegen/gather_source.hpp"
 #include "pipeline/surface.hpp"
 #include "support/error.hpp"
@@ -41,16 +39,6 @@ ProgramSource source_of(const Basis& basis, TransportKind transport, const Gathe
   return source;
 }
 
-void require_sound(const GatherOptions& options) {
-  if (options.grid < 1) throw Error(ExitCode::usage, "gather: grid {} is not at least 1", options.grid);
-  if (!std::isfinite(options.gather_offset)) {
-    throw Error(ExitCode::usage, "gather: offset {} is not finite", options.gather_offset);
-  }
-  if (!(options.blend_cells > 0)) {
-    throw Error(ExitCode::usage, "gather: blend over {} cells; more than 0 allowed", options.blend_cells);
-  }
-}
-
 }  // namespace
 
 Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport,
@@ -64,7 +52,6 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
       stencil_(session.device(), {.grid = options.grid,
                                   .format = options.format,
                                   .lanes = preferred_row_lanes(session.device(), options.format)}) {
-  require_sound(options);
   if (!packs()) return;
   ProgramSource pack{"pack.cl", stencil_.literals(), pack_source(basis)};
   pack.literals.integer("CLPV_PAIRS", pairs_);

@@ -29,7 +29,6 @@ namespace clpv {
 /// boundary, and is 0 outside.
 class Gatherer {
  public:
-  /// Throws Error(usage) for options out of range.
   Gatherer(Session& session, const Basis& basis, TransportKind transport, const GatherOptions& options);
 
   /// Finest cascade first; `accumulated` a volume a grid.
@@ -45,7 +44,7 @@ class Gatherer {
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
   /// Images are sampled as they are, unless cells are chosen one by one.
-  bool packs() const { return !sampled_by_device(options_.format) || sees(); }
+  bool packs() const { return options_.format.layout != Layout::image || sees(); }
   Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;

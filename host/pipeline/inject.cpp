@@ -65,7 +65,7 @@ Injector::Kernels& Injector::kernels(const Variant& variant) {
 
 void Injector::reserve(std::size_t texels) {
   sorter_.reserve(texels);
-  const auto coefficients = static_cast<std::size_t>(basis_.size());
+  const std::size_t coefficients = basis_.size();
   const std::size_t blocks = block_count(texels);
   session_.reserve(shares_, texels * sizeof(cl_float), "injection, texels");
   session_.reserve(partials_, 2 * blocks * 3 * coefficients * sizeof(cl_float), "injection, partial sums");
@@ -80,7 +80,7 @@ void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, i
 void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
                             const Volume& volume) {
   const bool light = kind == Kind::light;
-  const auto step = static_cast<unsigned>(stride);
+  const unsigned step = stride;
   const std::size_t width = CLPV_TAKEN(surface.view.width, step),
                     height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
   if (texels == 0) return;
@@ -92,11 +92,10 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
   if (!light) kernel.find_cells.add(shares_, step);
   kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
                            strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
-  const auto keys = static_cast<std::size_t>(options_.grid + (light ? 0 : 1));
+  const std::size_t keys = options_.grid + (light ? 0 : 1);
   sorter_.sort(texels, keys * keys * keys);
 
-  const auto length = static_cast<cl_uint>(segment_length(texels)),
-             blocks = static_cast<cl_uint>(block_count(texels));
+  const cl_uint length = segment_length(texels), blocks = block_count(texels);
   kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, surface.normal);
   if (light) {
     kernel.sum_segments.add(surface.colour, surface.colour_scale);

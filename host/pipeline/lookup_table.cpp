@@ -32,8 +32,8 @@ LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions
                          TableStorage storage, TableUse use)
     : values_(table_of(basis, options, use)), storage_(storage) {
   if (!values_) return;
-  if (storage == TableStorage::image) require_image(session.device(), values_->size());
   if (storage == TableStorage::image) {
+    require_image(session.device(), values_->size());
     image_ = session.table_image(*values_, "look-up table");
   } else {
     buffer_ = session.upload(*values_, "look-up table");

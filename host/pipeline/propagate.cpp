@@ -96,22 +96,13 @@ void Propagator::run_step(Form& form, bool first, const Volume& source, const Vo
   stencil_.launch(form.step, form.channels == 3 ? 1 : 3);
 }
 
-Volume& Propagator::sum_of(const PropagateVolumes& volumes) {
-  return options_.state == State::coefficients ? volumes.accumulated : *sum_;
-}
-
-void Propagator::expand(Form& form, const PropagateVolumes& volumes) {
-  form.expand.set(volumes.injected.memory(), sum_->memory(), volumes.accumulated.memory());
-  stencil_.launch(form.expand, 3);
-}
-
 void Propagator::propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step) {
   const bool blocks = volumes.geometry != nullptr && iterations > 1;
   if (blocks) transmit(*volumes.geometry);
-  if (options_.state == State::fluxes) sum_->clear(session_);
+  if (sum_) sum_->clear(session_);
   if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);
 
-  Volume& sum = sum_of(volumes);
+  Volume& sum = sum_ ? *sum_ : volumes.accumulated;
   const Volume* source = &volumes.injected;
   Form* last = nullptr;
   for (int step = 1; step <= iterations; ++step) {
@@ -129,7 +120,9 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
     source = &target;
     if (after_step) after_step(step, target);
   }
-  if (last != nullptr && options_.state == State::fluxes) expand(*last, volumes);
+  if (last == nullptr || !sum_) return;
+  last->expand.set(volumes.injected.memory(), sum_->memory(), volumes.accumulated.memory());
+  stencil_.launch(last->expand, 3);
 }
 
 }  // namespace clpv

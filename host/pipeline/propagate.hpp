@@ -61,9 +61,6 @@ class Propagator {
   void transmit(const Volume& geometry);
   void run_step(Form& form, bool first, const Volume& source, const Volume& target, const Volume& sum_so_far,
                 const Volume& sum);
-  /// What steps add up in: light, or the fluxes it will come from.
-  Volume& sum_of(const PropagateVolumes& volumes);
-  void expand(Form& form, const PropagateVolumes& volumes);
 
   Session& session_;
   const Basis& basis_;
@@ -74,7 +71,7 @@ class Propagator {
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<LinkTransmittance> transmitter_;
-  std::unique_ptr<Volume> sum_;  ///< of the six fluxes
+  std::unique_ptr<Volume> sum_;  ///< of the six fluxes, that light will come from; none: coefficients travel
   Accumulator accumulator_;
 };
 

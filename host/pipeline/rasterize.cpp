@@ -64,11 +64,11 @@ void Rasterizer::reserve_list(std::size_t count) {
 }
 
 cl_uint Rasterizer::list_room() const {
-  return static_cast<cl_uint>(listed_.bytes() / sizeof(ClpvRasterTriangle));
+  return listed_.bytes() / sizeof(ClpvRasterTriangle);
 }
 
 cl_uint Rasterizer::entry_room() const {
-  return static_cast<cl_uint>(entries_.bytes() / kEntryBytes);
+  return entries_.bytes() / kEntryBytes;
 }
 
 void Rasterizer::reserve_entries(std::size_t count) {
@@ -117,13 +117,13 @@ unsigned Rasterizer::list_runs(const ClpvView& view) {
   const std::vector<cl_uint> in_sight =
       scene_.clusters->which([&](const Bounds& run) { return may_be_in_sight(view, run); });
   session_.write(clusters_, in_sight);
-  return static_cast<unsigned>(in_sight.size());
+  return in_sight.size();
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and enters them for the tiles they are over.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   SetUp& kernels = set_up_kernels(pass.view);
-  const auto cull = static_cast<cl_uint>(pass.cull_back_faces ? 1 : 0);
+  const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
   session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;

@@ -34,10 +34,6 @@ ProgramSource reflect_shares_program(int grid, const VolumeFormat& format) {
 
 }  // namespace
 
-std::size_t ReflectorVoxelizer::bytes(int grid) {
-  return voxel_mask_bytes(shape_of(grid));
-}
-
 ReflectorVoxelizer::ReflectorVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
                                        const VolumeFormat& format)
     : scene_(scene),

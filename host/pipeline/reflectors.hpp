@@ -31,9 +31,6 @@ class ReflectorVoxelizer {
   /// kReflectingSides numbers, three channels.
   const Volume& reflectors(std::size_t cascade) const { return *reflectors_[cascade]; }
 
-  /// Of what is counted, whatever the number of cascades: that of one is made anew from all triangles near it.
-  static std::size_t bytes(int grid);
-
  private:
   SceneBuffers scene_;
   int grid_;

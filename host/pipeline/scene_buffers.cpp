@@ -76,14 +76,11 @@ bool is_masked(const Material& material) {
 }
 
 TextureTable make_table(const Scene& scene) {
-  std::vector<bool> masked(scene.textures.size(), false);
-  for (const Material& material : scene.materials) {
-    if (is_masked(material) && material.texture != CLPV_NO_TEXTURE) masked[material.texture] = true;
-  }
+  const std::vector<bool> holes = textures_with_holes(scene);
   TextureTable table;
-  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+  for (std::size_t i = 0; i < holes.size(); ++i) {
     check_texture(scene, scene.textures[i]);
-    append(table, mip_chain(scene.textures[i], masked[i]));
+    append(table, mip_chain(scene.textures[i], holes[i]));
   }
   Texture white;  // what materials without texture are looked up in
   white.width = white.height = 1;
@@ -134,12 +131,12 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   SceneBuffers buffers;
   buffers.vertices = session.upload(scene.vertices, "vertices");
   buffers.triangles = session.upload(scene.triangles, "triangles");
-  buffers.white = static_cast<unsigned>(scene.textures.size());
+  buffers.white = scene.textures.size();
   buffers.materials = session.upload(with_textures(scene.materials, buffers.white), "materials");
   buffers.textures = session.upload(table.levels, "texture table");
   buffers.texels = session.upload(table.texels, "textures");
-  buffers.vertex_count = static_cast<unsigned>(scene.vertices.size());
-  buffers.triangle_count = static_cast<unsigned>(scene.triangles.size());
+  buffers.vertex_count = scene.vertices.size();
+  buffers.triangle_count = scene.triangles.size();
   buffers.textured = std::any_of(scene.materials.begin(), scene.materials.end(), is_textured);
   buffers.coloured = is_coloured(scene.vertices);
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);

@@ -60,12 +60,12 @@ void CellSorter::add_up(const Buffer& count, cl_uint digits, cl_uint chunks) {
 }
 
 void CellSorter::sort(std::size_t texels, std::size_t cells) {
-  const auto bits = static_cast<cl_uint>(std::bit_width(std::max<std::size_t>(cells, 2) - 1));
+  const cl_uint bits = std::bit_width(std::max<std::size_t>(cells, 2) - 1);
   const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits, high_digits = 1u << (bits - low_bits);
-  const auto chunk = static_cast<cl_uint>(
+  const cl_uint chunk =
       std::min(kLongestChunk,
-               round_up(std::max(kLeastChunk, (texels + kMostChunks - 1) / kMostChunks), CLPV_LONGEST_RUN)));
-  const auto count = static_cast<cl_uint>(texels);
+               round_up(std::max(kLeastChunk, (texels + kMostChunks - 1) / kMostChunks), CLPV_LONGEST_RUN));
+  const cl_uint count = texels;
   const cl_uint chunks = (count + chunk - 1) / chunk;
   reserve_counts(low_digits, chunks);
 

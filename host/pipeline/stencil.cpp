@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kWidestGroup = 64;
 
 std::size_t items_per_row(int grid, int lanes) {
-  return static_cast<std::size_t>((grid + lanes - 1) / lanes);
+  return (grid + lanes - 1) / lanes;
 }
 
 }  // namespace

@@ -18,12 +18,8 @@ namespace {
 
 constexpr int kFirstParts = 1;  // of the bins that light takes to where it bounces
 
-std::size_t squared(int parts) {
-  return static_cast<std::size_t>(parts) * static_cast<std::size_t>(parts);
-}
-
 std::size_t directions_of(int parts) {
-  return kSweepBins * squared(parts);
+  return kSweepBins * parts * parts;
 }
 
 /// Of a plane by itself.
@@ -48,7 +44,7 @@ ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
 std::size_t halo_bytes(const SweepOptions& options, int parts, std::size_t cascade) {
   if (cascade == 0) return sizeof(float);
   const std::size_t side = CLPV_SWEEP_HALO_SIDE_OF(options.grid);
-  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_HALO_FACE_OF(side) * number_bytes(options.format);
+  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_HALO_FACE_OF(side) * number_bytes(options.format.storage);
 }
 
 bool within(const ClpvSweepHalo& halo, int grid) {
@@ -59,55 +55,22 @@ bool within(const ClpvSweepHalo& halo, int grid) {
 ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_bins) {
   ProgramSource source{"sweep.cl", {}, {}};
   source.literals.integer("CLPV_GRID", options.grid)
-      .integer("CLPV_PARTS", squared(parts))
+      .integer("CLPV_PARTS", parts * parts)
       .flag("CLPV_BLOCKING", options.blocking)
       .flag("CLPV_WHOLE_BINS", whole_bins);
   add_format_literals(source.literals, options.format, whole_bins ? 8 : 1);
   return source;
 }
 
-/// `in_place`: of the bins across x and y alone.
-ProgramSource source_program(const SweepVolumes& volumes, const Basis& basis, bool in_place) {
-  ProgramSource source = volumes.program("sweep_source.cl", sweep_source_text(basis).text);
-  source.literals.flag("CLPV_Z_IN_PLACE", in_place);
-  return source;
-}
-
-ProgramSource border_program(const SweepOptions& options, int parts, int coarser_parts) {
-  ProgramSource source{"sweep_border.cl", {}, {}};
-  source.literals.integer("CLPV_GRID", options.grid)
-      .integer("CLPV_PARTS", squared(parts))
-      .integer("CLPV_COARSER_PARTS", squared(coarser_parts));
-  add_format_literals(source.literals, options.format, 8);
-  return source;
-}
-
-ProgramSource sky_program(const SweepOptions& options, int parts) {
-  ProgramSource source{"sweep_sky.cl", {}, {}};
-  source.literals.integer("CLPV_GRID", options.grid).integer("CLPV_PARTS", squared(parts));
+/// For the kernels that let light in at a border of bins in parts^2.
+ProgramSource inflow_program(const char* file, const SweepOptions& options, int parts) {
+  ProgramSource source{file, {}, {}};
+  source.literals.integer("CLPV_GRID", options.grid).integer("CLPV_PARTS", parts * parts);
   add_format_literals(source.literals, options.format, 8);
   return source;
 }
 
 }  // namespace
-
-double Sweeper::bytes(const SweepOptions& options) {
-  const auto number = static_cast<double>(number_bytes(options.format));
-  const auto volume = static_cast<double>(SweepVolumes::bytes(options.grid, options.format));
-  const auto plane = static_cast<double>(plane_numbers(options.grid));
-  const bool once = options.bounces == Bounces::one;
-  double most = 0, halos = 0;
-  for (std::size_t c = 0; c < options.parts.size(); ++c) {
-    most = std::max(most, static_cast<double>(3 * directions_of(options.parts[c])));
-    halos += static_cast<double>(halo_bytes(options, options.parts[c], c));
-    if (options.bounces == Bounces::two) halos += static_cast<double>(halo_bytes(options, kFirstParts, c));
-  }
-  const double links =
-      options.blocking ? static_cast<double>(options.parts.size()) * link_volumes().count() : 0;
-  const int lights = once ? 1 : (options.bounces == Bounces::two ? 2 : 3);
-  return (3 * lights * kSweepBins + links) * volume + most * 2 * plane * (sizeof(float) + number) + halos +
-         Bouncer::bytes(options);
-}
 
 Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transport,
                  const SweepOptions& options)
@@ -115,7 +78,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       options_(options),
       volumes_(session, options.grid, options.format),
       in_place_(options.bounces == Bounces::one && swept_in_place(basis, options.format)),
-      source_(session, source_program(volumes_, basis, in_place_), "sweep_source"),
+      source_(session, source_program(basis), "sweep_source"),
       collect_(session, volumes_.program("sweep_collect.cl", sweep_collect_text().text), "sweep_collect") {
   const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t swept = 3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
@@ -123,8 +86,9 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   bins_ = session.upload(sweep_bin_table(options.grid, swept_from), "bins to sweep");
   light_ = volumes_.make(3 * kSweepBins, "light to sweep, and swept");
   live_ = zeroed_buffer(session, (whole_bins() ? 1 : 2) * swept * plane, "planes being swept");
-  border_ = zeroed_buffer(session, 2 * swept * plane_numbers(options.grid) * number_bytes(options.format),
-                          "light at the border");
+  border_ =
+      zeroed_buffer(session, 2 * swept * plane_numbers(options.grid) * number_bytes(options.format.storage),
+                    "light at the border");
   if (options.blocking)
     links_.emplace(session, volumes_.program("sweep_links.cl", sweep_links_text(basis, transport)),
                    "sweep_links");
@@ -145,6 +109,13 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   collect_for_finer_.emplace(session, collecting, "sweep_collect");
 }
 
+/// Where light is swept from in place, of the bins across x and y alone.
+ProgramSource Sweeper::source_program(const Basis& basis) const {
+  ProgramSource source = volumes_.program("sweep_source.cl", sweep_source_text(basis).text);
+  source.literals.flag("CLPV_Z_IN_PLACE", in_place_);
+  return source;
+}
+
 bool Sweeper::whole_bins() const {
   return options_.form == SweepForm::bins ||
          (options_.form == SweepForm::suited && session_.device().type == "cpu");
@@ -162,8 +133,11 @@ Sweeper::Passes Sweeper::make_passes(const std::vector<int>& parts) {
               zeroed_buffer(session_, halo_bytes(options_, parts[c], c), "light for a finer cascade"),
               {},
               {}};
-    if (coarser > 0)
-      pass.let_in.emplace(session_, border_program(options_, parts[c], coarser), "sweep_border");
+    if (coarser > 0) {
+      ProgramSource border = inflow_program("sweep_border.cl", options_, parts[c]);
+      border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);
+      pass.let_in.emplace(session_, border, "sweep_border");
+    }
     passes.push_back(std::move(pass));
   }
   return passes;
@@ -186,46 +160,40 @@ void Sweeper::reflect(std::size_t cascade, const Volume& reflectors) {
 }
 
 void Sweeper::let_in(const Sky& sky) {
-  let_in(passes_, sky);
-  let_in(first_passes_, sky);
-}
-
-void Sweeper::let_in(Passes& passes, const Sky& sky) {
-  if (passes.empty()) return;
-  Pass& coarsest = passes.back();
-  coarsest.sky = session_.upload(swept_sky(sky, coarsest.parts), "light of the sky");
-  coarsest.let_sky_in.emplace(session_, sky_program(options_, coarsest.parts), "sweep_sky");
+  for (Passes* passes : {&passes_, &first_passes_}) {
+    if (passes->empty()) continue;
+    Pass& coarsest = passes->back();
+    coarsest.sky = session_.upload(swept_sky(sky, coarsest.parts), "light of the sky");
+    coarsest.let_sky_in.emplace(session_, inflow_program("sweep_sky.cl", options_, coarsest.parts),
+                                "sweep_sky");
+  }
 }
 
 /// Where planes of odd number begin: the one before the first is of them.
-std::size_t Sweeper::before_first(const Pass& pass) const {
+cl_int Sweeper::before_first(const Pass& pass) const {
   return whole_bins() ? 0 : 3 * directions_of(pass.parts) * plane_numbers(options_.grid);
 }
 
-void Sweeper::let_sky_in(Pass& pass, float cell) {
-  pass.let_sky_in->set(pass.sky, sky_scale_ * (cell * cell), live_, static_cast<cl_int>(before_first(pass)),
-                       border_);
-  const auto rows = static_cast<std::size_t>(options_.grid) + 2;
-  pass.let_sky_in->launch({(rows + 7) / 8, rows, 9 * directions_of(pass.parts)},
-                          {1, std::min(rows, kRowGroup), 1});
+void Sweeper::launch_at_border(Kernel& kernel, const Pass& pass) {
+  const std::size_t rows = options_.grid + 2;
+  kernel.launch({(rows + 7) / 8, rows, 9 * directions_of(pass.parts)}, {1, std::min(rows, kRowGroup), 1});
 }
 
-/// Into the coarsest cascade; whether anything is.
-bool Sweeper::let_beyond_in(Pass& pass, float cell) {
+/// Into the coarsest cascade; whether there is a sky.
+bool Sweeper::let_sky_in(Pass& pass, float cell) {
   if (!pass.let_sky_in) return false;
-  let_sky_in(pass, cell);
+  pass.let_sky_in->set(pass.sky, sky_scale_ * (cell * cell), live_, before_first(pass), border_);
+  launch_at_border(*pass.let_sky_in, pass);
   return true;
 }
 
 bool Sweeper::let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   Pass& pass = passes[cascade];
-  if (!pass.let_in) return let_beyond_in(pass, grids[cascade].cell);
-  const std::size_t swept = 3 * directions_of(pass.parts);
+  if (!pass.let_in) return let_sky_in(pass, grids[cascade].cell);
   const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
   pass.let_in->set(bins_, pass.directions, passes[cascade + 1].halo, halo_of(options_.grid, offset),
-                   offset[0], offset[1], offset[2], live_, static_cast<cl_int>(before_first(pass)), border_);
-  const auto rows = static_cast<std::size_t>(options_.grid) + 2;
-  pass.let_in->launch({(rows + 7) / 8, rows, 3 * swept}, {1, std::min(rows, kRowGroup), 1});
+                   offset[0], offset[1], offset[2], live_, before_first(pass), border_);
+  launch_at_border(*pass.let_in, pass);
   return true;
 }
 
@@ -257,7 +225,7 @@ void Sweeper::sweep(Pass& pass, std::size_t cascade, const Light& light, const C
 /// Where planes are swept one by one: a work-item finds what comes in beside its cell.
 void Sweeper::let_nothing_in(const Pass& pass) {
   const std::size_t planes = 3 * directions_of(pass.parts) * plane_numbers(options_.grid);
-  session_.fill_zero(border_, 2 * planes * number_bytes(options_.format));
+  session_.fill_zero(border_, 2 * planes * number_bytes(options_.format.storage));
   session_.fill_zero(live_, 2 * planes * sizeof(float));
 }
 
@@ -287,7 +255,7 @@ void Sweeper::bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
 void Sweeper::bounce_in_all(float cell) {
   Pass& pass = first_passes_.back();
   const std::size_t coarsest = options_.parts.size() - 1;
-  const bool lit = let_beyond_in(pass, cell);
+  const bool lit = let_sky_in(pass, cell);
   sweep(pass, coarsest, {light_.handle(), light_, first_light_}, {}, lit);
   session_.fill_zero(second_light_, second_light_.bytes());
   bouncer_->bounce(coarsest, first_light_, second_light_);

@@ -56,9 +56,6 @@ class Sweeper {
   /// Whether it reads injected light where it lies, for the bins across z (swept_in_place()).
   bool in_place() const { return in_place_; }
 
-  /// Device memory of all that a sweeper keeps [bytes].
-  static double bytes(const SweepOptions& options);
-
  private:
   struct Pass {  ///< of a cascade
     int parts;
@@ -71,10 +68,10 @@ class Sweeper {
   };
   using Passes = std::vector<Pass>;  ///< one a cascade
   Passes make_passes(const std::vector<int>& parts);
-  void let_in(Passes& passes, const Sky& sky);
+  ProgramSource source_program(const Basis& basis) const;
   void let_nothing_in(const Pass& pass);
-  void let_sky_in(Pass& pass, float cell);
-  bool let_beyond_in(Pass& pass, float cell);
+  void launch_at_border(Kernel& kernel, const Pass& pass);
+  bool let_sky_in(Pass& pass, float cell);
   bool let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   struct Light {
     const cl::Memory& injected;  ///< as bins_ says, some of the sources are here
@@ -86,7 +83,7 @@ class Sweeper {
   void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
   void bounce_in_all(float cell);
   void collect(std::size_t cascade, Volume& accumulated);
-  std::size_t before_first(const Pass& pass) const;
+  cl_int before_first(const Pass& pass) const;
 
   Session& session_;
   SweepOptions options_;

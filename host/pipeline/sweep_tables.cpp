@@ -12,9 +12,8 @@ namespace {
 void put_source(ClpvSweepBin& entry, std::size_t b, const SweepBin& bin, int grid,
                 const VolumeFormat& injected) {
   const VolumeShape shape{grid, kSweepBins, 3};
-  const auto at = [&](int channel, const glm::ivec3& cell) {
-    return static_cast<int>(
-        stored_index(injected, shape, channel, static_cast<int>(b), cell.x, cell.y, cell.z));
+  const auto at = [&](int channel, const glm::ivec3& cell) -> int {
+    return stored_index(injected, shape, channel, static_cast<int>(b), cell.x, cell.y, cell.z);
   };
   const auto along = [](int axis) {
     glm::ivec3 step(0);
@@ -63,12 +62,12 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
     for (std::size_t part = 0; part < bins[b].directions.size(); ++part) {
       const SweepDirection& d = bins[b].directions[part];
       ClpvSweepDirection entry{};
-      for (std::size_t k = 0; k < d.taps.size(); ++k) entry.taps[k] = static_cast<float>(d.taps[k]);
-      entry.share = static_cast<float>(d.solid_angle / (d.flux * bins[b].solid_angle));
+      for (std::size_t k = 0; k < d.taps.size(); ++k) entry.taps[k] = d.taps[k];
+      entry.share = d.solid_angle / (d.flux * bins[b].solid_angle);
       if (coarser_parts > 0) {
         entry.coarser = coarser_part(static_cast<int>(part), parts, coarser_parts);
         const SweepDirection& from = coarser[b].directions[entry.coarser];
-        entry.from_coarser = static_cast<float>(kArea * d.flux / from.flux);
+        entry.from_coarser = kArea * d.flux / from.flux;
       }
       table.push_back(entry);
     }

@@ -11,10 +11,6 @@
 
 namespace clpv {
 
-std::size_t number_bytes(const VolumeFormat& format) {
-  return format.storage == Storage::float16 ? 2 : 4;
-}
-
 Buffer zeroed_buffer(Session& session, std::size_t bytes, const char* what) {
   const std::size_t words = (bytes + sizeof(cl_uint) - 1) / sizeof(cl_uint) * sizeof(cl_uint);
   Buffer buffer = session.buffer(words, what);
@@ -34,20 +30,13 @@ ProgramSource SweepVolumes::program(const char* file, std::string generated) con
 
 void SweepVolumes::launch(Kernel& kernel, int channels) const {
   const std::size_t tiles = (grid_ + tile_ - 1) / tile_;
-  const auto slices = static_cast<std::size_t>(grid_) * static_cast<std::size_t>(channels);
+  const std::size_t slices = grid_ * channels;
   kernel.launch({tiles, tiles, slices}, {tile_ == 1 ? std::min(tiles, kRowGroup) : 1, 1, 1});
 }
 
-std::size_t SweepVolumes::bytes(int grid, const VolumeFormat& format) {
-  return CLPV_SWEEP_VOLUME_OF(std::size_t(grid)) * number_bytes(format);
-}
-
-std::size_t SweepVolumes::bordered_bytes(int grid, const VolumeFormat& format) {
-  return CLPV_SWEEP_BORDERED_OF(std::size_t(grid)) * number_bytes(format);
-}
-
 Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
-  return zeroed_buffer(session_, count * bordered_bytes(grid_, format_), what);
+  const std::size_t numbers = count * CLPV_SWEEP_BORDERED_OF(std::size_t(grid_));
+  return zeroed_buffer(session_, numbers * number_bytes(format_.storage), what);
 }
 
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
@@ -56,7 +45,7 @@ Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   if (numbers > kMost)
     throw Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what, numbers,
                 kMost);
-  return zeroed_buffer(session_, count * bytes(grid_, format_), what);
+  return zeroed_buffer(session_, numbers * number_bytes(format_.storage), what);
 }
 
 }  // namespace clpv

@@ -23,9 +23,6 @@ class SweepVolumes {
   /// `count` of them, zeroed; and of those with a border. Throws Error(device) "unsupported: ..." for more than kernels can address.
   Buffer make(std::size_t count, const char* what) const;
   Buffer make_bordered(std::size_t count, const char* what) const;
-  /// Of one [bytes].
-  static std::size_t bytes(int grid, const VolumeFormat& format);
-  static std::size_t bordered_bytes(int grid, const VolumeFormat& format);
 
  private:
   Session& session_;
@@ -33,9 +30,6 @@ class SweepVolumes {
   VolumeFormat format_;
   int tile_;  ///< cells along the edges of a tile
 };
-
-/// Of a volume's [bytes].
-std::size_t number_bytes(const VolumeFormat& format);
 
 /// Zeroed, of at least `bytes`. Errors as of Session::buffer().
 Buffer zeroed_buffer(Session& session, std::size_t bytes, const char* what);

@@ -36,7 +36,7 @@ Axes light_axes(const glm::dvec3& direction) {
 }
 
 void store(float out[3], const glm::dvec3& v) {
-  for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i]);
+  for (int i = 0; i < 3; ++i) out[i] = v[i];
 }
 
 ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int height) {
@@ -45,8 +45,8 @@ ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int heigh
   store(view.right, axes.right);
   store(view.up, axes.up);
   store(view.forward, axes.forward);
-  view.width = static_cast<unsigned>(width);
-  view.height = static_cast<unsigned>(height);
+  view.width = width;
+  view.height = height;
   return view;
 }
 
@@ -66,10 +66,10 @@ ClpvView orthographic_view(const Axes& axes, double x, double y, double half_wid
   ClpvView view =
       make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward, size, size);
   view.orthographic = 1;
-  view.half_width = static_cast<float>(half_width);
-  view.half_height = static_cast<float>(half_height);
-  view.near_depth = static_cast<float>(0.5 * margin);
-  view.far_depth = static_cast<float>(depths.y - depths.x + 2 * margin);
+  view.half_width = half_width;
+  view.half_height = half_height;
+  view.near_depth = 0.5 * margin;
+  view.far_depth = depths.y - depths.x + 2 * margin;
   return view;
 }
 
@@ -81,9 +81,9 @@ ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double
   double farthest = glm::length(reach);
   if (light.range > 0) farthest = std::min(farthest, static_cast<double>(light.range));
   ClpvView view = make_view(axes, eye, size, size);
-  view.half_width = view.half_height = static_cast<float>(tangent);
-  view.near_depth = static_cast<float>(kLightNear);
-  view.far_depth = static_cast<float>(std::max(farthest * (1 + kRelativeMargin), 2 * kLightNear));
+  view.half_width = view.half_height = tangent;
+  view.near_depth = kLightNear;
+  view.far_depth = std::max(farthest * (1 + kRelativeMargin), 2 * kLightNear);
   return view;
 }
 
@@ -95,16 +95,6 @@ double outer_angle(const ClpvLight& light) {
 
 bool too_wide_for_one_view(const ClpvLight& spot) {
   return outer_angle(spot) > kWidestSpotView * (1 + 1e-4);
-}
-
-std::vector<ClpvView> six_views(const ClpvLight& light, const Bounds& bounds, int size) {
-  const std::array<ClpvView, 6> views = point_views(light, size, bounds);
-  return {views.begin(), views.end()};
-}
-
-std::vector<ClpvView> spot_views(const ClpvLight& light, const Bounds& bounds, int size) {
-  if (too_wide_for_one_view(light)) return six_views(light, bounds, size);
-  return {spot_view(light, size, bounds)};
 }
 
 ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, int size) {
@@ -122,8 +112,8 @@ ClpvView camera_view(const Camera& camera, int width, int height) {
   ClpvView view = make_view(axes(glm::normalize(glm::dvec3(camera.forward)), glm::dvec3(camera.up)),
                             glm::dvec3(camera.eye), width, height);
   const double tangent = std::tan(0.5 * camera.vertical_fov);
-  view.half_height = static_cast<float>(tangent);
-  view.half_width = static_cast<float>(tangent * width / height);
+  view.half_height = tangent;
+  view.half_width = tangent * width / height;
   view.near_depth = camera.near_depth;
   view.far_depth = std::numeric_limits<float>::max();
   return view;
@@ -160,12 +150,12 @@ ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
                                 bounds);
 }
 
-std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Bounds& bounds) {
-  std::array<ClpvView, 6> views;
+std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds& bounds) {
+  std::vector<ClpvView> views;
   for (int side = 0; side < 6; ++side) {
     glm::dvec3 forward(0);
     forward[side / 2] = side % 2 == 0 ? 1 : -1;
-    views[side] = perspective_light_view(light_axes(forward), light, 1, size, bounds);
+    views.push_back(perspective_light_view(light_axes(forward), light, 1, size, bounds));
   }
   return views;
 }
@@ -190,27 +180,13 @@ bool may_be_in_sight(const ClpvView& view, const Bounds& bounds) {
 }
 
 bool rsm_follows_cascade(const ClpvLight& light) {
-  switch (kind_of(light)) {
-    case LightKind::directional:
-      return true;
-    case LightKind::spot:
-    case LightKind::point:
-      return false;
-  }
-  return true;
+  return kind_of(light) == LightKind::directional;
 }
 
 std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
                                 int size) {
-  switch (kind_of(light)) {
-    case LightKind::directional:
-      return {directional_rsm_view(light, cascade, bounds, size)};
-    case LightKind::spot:
-      return spot_views(light, bounds, size);
-    case LightKind::point:
-      return six_views(light, bounds, size);
-  }
-  return {};
+  if (rsm_follows_cascade(light)) return {directional_rsm_view(light, cascade, bounds, size)};
+  return shadow_views(light, bounds, size);
 }
 
 std::vector<ClpvView> shadow_views(const ClpvLight& light, const Bounds& bounds, int size) {
@@ -218,11 +194,12 @@ std::vector<ClpvView> shadow_views(const ClpvLight& light, const Bounds& bounds,
     case LightKind::directional:
       return {directional_shadow_view(light, bounds, size)};
     case LightKind::spot:
-      return spot_views(light, bounds, size);
+      if (!too_wide_for_one_view(light)) return {spot_view(light, size, bounds)};
+      break;
     case LightKind::point:
-      return six_views(light, bounds, size);
+      break;
   }
-  return {};
+  return point_views(light, size, bounds);
 }
 
 }  // namespace clpv

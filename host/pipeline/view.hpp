@@ -3,7 +3,6 @@
 // maps.
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -40,7 +39,7 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
 ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds);
 
 /// Six square views from the light along +x, -x, +y, -y, +z, -z that together see every direction once.
-std::array<ClpvView, 6> point_views(const ClpvLight& light, int size, const Bounds& bounds);
+std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds& bounds);
 
 /// Whether a light's reflective shadow maps differ from cascade to cascade: a directional light's do; others see all they
 /// light from where they stand.

@@ -24,10 +24,6 @@ std::size_t CellVisibility::bytes(int grid) {
   return hidden_shape(grid, 1).bytes();
 }
 
-std::size_t CellVisibility::bytes(int grid, int cascades) {
-  return voxel_mask_bytes(hidden_shape(grid, cascades));
-}
-
 CellVisibility::CellVisibility(Session& session, const SceneBuffers& scene, int grid, int cascades)
     : hidden_(session, scene, hidden_shape(grid, cascades), kMostHiders, "cells hidden by triangles"),
       triangles_(session, program_of(grid), "hide_cells") {}

@@ -27,9 +27,8 @@ class CellVisibility {
   /// bytes() a cascade, finest first.
   const Buffer& hidden() const { return hidden_.buffer(); }
 
-  /// Of one cascade; and of so many, with what it takes to make them.
+  /// Of one cascade.
   static std::size_t bytes(int grid);
-  static std::size_t bytes(int grid, int cascades);
 
  private:
   VoxelMasks hidden_;

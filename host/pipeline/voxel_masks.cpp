@@ -22,8 +22,8 @@ ClpvRegion place_of(const ClpvGrid& grid) {
   for (int a = 0; a < 3; ++a) {
     const double first = std::round(grid.origin[a] / cell);
     const double base = apart * std::floor((first - 2 * n) / apart);
-    place.base[a] = static_cast<float>(base * cell);
-    place.first[a] = static_cast<int>(first - base);
+    place.base[a] = base * cell;
+    place.first[a] = first - base;
   }
   return place;
 }
@@ -38,8 +38,8 @@ Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
   for (int a = 0; a < 3; ++a) {
     const double low = region.first[a] + box.low[a] - kReach,
                  high = region.first[a] + box.high[a] + 1 + kReach;
-    reach.lower[a] = static_cast<float>(region.base[a] + region.cell * low);
-    reach.upper[a] = static_cast<float>(region.base[a] + region.cell * high);
+    reach.lower[a] = region.base[a] + region.cell * low;
+    reach.upper[a] = region.base[a] + region.cell * high;
   }
   return reach;
 }
@@ -73,10 +73,6 @@ std::size_t VoxelMaskShape::words_a_cascade() const {
   return along * along * along * words;
 }
 
-std::size_t voxel_mask_bytes(const VoxelMaskShape& shape) {
-  return shape.bytes() + (shape.cascades > 1 ? shape.words_a_cascade() * sizeof(cl_uint) : 0);
-}
-
 VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape,
                        unsigned most, const std::string& what)
     : session_(session),
@@ -95,7 +91,7 @@ VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelM
 }
 
 cl_uint VoxelMasks::slot(std::size_t cascade) const {
-  return static_cast<cl_uint>(std::min(cascade, states_.size() - 1));
+  return std::min(cascade, states_.size() - 1);
 }
 
 /// Makes room for what is to be marked: none where all is as it was.
@@ -147,9 +143,9 @@ void VoxelMasks::add_moved(ClpvRegion& region) const {
     ClpvBox box;
     const double most = 2.0 * shape_.cells;
     for (int a = 0; a < 3; ++a) {
-      const auto cell = [&](float at, double reach) {
+      const auto cell = [&](float at, double reach) -> int {
         const double from_first = (double{at} - region.base[a]) / region.cell - region.first[a];
-        return static_cast<int>(std::clamp(std::floor(from_first + reach), -most, most));
+        return std::clamp(std::floor(from_first + reach), -most, most);
       };
       box.low[a] = cell(moved.lower[a], -kReach);
       box.high[a] = cell(moved.upper[a], kReach);
@@ -202,7 +198,7 @@ void VoxelMasks::list_runs(const ClpvRegion& region) {
   const std::vector<cl_uint> near = scene_.clusters->which([&](const Bounds& run) {
     return std::any_of(reaches.begin(), reaches.end(), [&](const Bounds& reach) { return meet(run, reach); });
   });
-  near_ = static_cast<unsigned>(near.size());
+  near_ = near.size();
   session_.write(clusters_, near);
 }
 

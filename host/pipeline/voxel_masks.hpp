@@ -31,9 +31,6 @@ struct VoxelMaskShape {
   std::size_t bytes() const { return words_a_cascade() * cascades * sizeof(cl_uint); }
 };
 
-/// Bytes on the device that VoxelMasks takes for them.
-std::size_t voxel_mask_bytes(const VoxelMaskShape& shape);
-
 class VoxelMasks {
  public:
   /// `scene` must stay as it is, but for upload_moving(). `most`: triangles a launch, of which some device may need seconds

@@ -37,10 +37,8 @@ class Glow {
  public:
   Glow(const Scene& scene, const Materials& materials, std::uint32_t triangle)
       : materials_(materials), index_(triangle) {
-    const Triangle& t = scene.triangles[triangle];
-    first_ = glm::dvec3(position(scene.vertices[t.vertex[0]]));
-    to_second_ = glm::dvec3(position(scene.vertices[t.vertex[1]])) - first_;
-    to_third_ = glm::dvec3(position(scene.vertices[t.vertex[2]])) - first_;
+    const std::array<glm::dvec3, 3> corners = corners_of(scene, scene.triangles[triangle]);
+    first_ = corners[0], to_second_ = corners[1] - first_, to_third_ = corners[2] - first_;
     across_ = glm::cross(to_second_, to_third_);
   }
 

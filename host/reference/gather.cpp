@@ -150,9 +150,7 @@ std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, cons
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
-    const auto x = static_cast<double>(pixel % camera.view.width),
-               y = static_cast<double>(pixel / camera.view.width);
-    image[pixel] = gather(basis, transport, options, cascades, surface_position(camera.view, x, y, depth),
+    image[pixel] = gather(basis, transport, options, cascades, surface_position(camera.view, pixel, depth),
                           glm::dvec3(camera.normal[pixel]));
   }
   return image;

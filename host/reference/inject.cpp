@@ -38,24 +38,9 @@ void add(Volume& volume, int channel, const glm::ivec3& cell, double weight, con
   }
 }
 
-/// Area of the pixel's surface across its ray over the cell's: distance^2 x solid angle / s^2 in perspective.
-double footprint_share(const ClpvView& view, std::size_t pixel, double depth, double cell) {
-  const double area =
-      4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
-  if (view.orthographic != 0) return area / (cell * cell);
-  const glm::dvec3 eye(view.eye[0], view.eye[1], view.eye[2]);
-  const glm::dvec3 p = surface_position(view, static_cast<double>(pixel % view.width),
-                                        static_cast<double>(pixel / view.width), depth);
-  const double distance = glm::length(p - eye), cosine = depth / distance;
-  return distance * distance * area * cosine * cosine * cosine / (cell * cell);
-}
-
 glm::dvec3 ray(const ClpvView& view, std::size_t pixel) {
-  const glm::dvec3 forward(view.forward[0], view.forward[1], view.forward[2]);
-  if (view.orthographic != 0) return forward;
-  const glm::dvec3 eye(view.eye[0], view.eye[1], view.eye[2]);
-  const auto px = static_cast<double>(pixel % view.width), py = static_cast<double>(pixel / view.width);
-  return glm::normalize(surface_position(view, px, py, 1.0) - eye);
+  if (view.orthographic != 0) return vector(view.forward);
+  return glm::normalize(surface_position(view, pixel, 1.0) - vector(view.eye));
 }
 
 bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
@@ -77,8 +62,10 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
     if (!taken || !has_surface(surface, pixel)) continue;
     const glm::dvec3 normal = xyz(surface.normal[pixel]);
     const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
-    const double share =
-        stride * stride * footprint_share(surface.view, pixel, surface.depth[pixel], grid.cell) / cosine;
+    const double share = stride * stride *
+                         footprint(surface.view, pixel % surface.view.width, pixel / surface.view.width,
+                                   surface.depth[pixel]) /
+                         (double{grid.cell} * grid.cell * cosine);
     const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
     if (!blocks_by_lobes(options.blocking)) {
       add(blocking, 0, corner, share, {std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
@@ -89,21 +76,12 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
   return blocking;
 }
 
-std::vector<double> cell_of(const Volume& volume, int x, int y, int z) {
-  std::vector<double> c;
-  for (int i = 0; i < volume.coefficients; ++i) c.push_back(volume.value(0, i, x, y, z));
-  return c;
-}
-
 }  // namespace
 
 glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light) {
-  const glm::dvec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
-  const auto px = static_cast<double>(pixel % surface.view.width);
-  const auto py = static_cast<double>(pixel / surface.view.width);
-  const glm::dvec3 p = surface.position.empty() ? surface_position(surface.view, px, py, surface.depth[pixel])
+  const glm::dvec3 p = surface.position.empty() ? surface_position(surface.view, pixel, surface.depth[pixel])
                                                 : xyz(surface.position[pixel]);
-  return (p - origin) / static_cast<double>(grid.cell) + (light ? 0.5 : 0.0) * xyz(surface.normal[pixel]);
+  return (p - vector(grid.origin)) / double{grid.cell} + (light ? 0.5 : 0.0) * xyz(surface.normal[pixel]);
 }
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
@@ -121,18 +99,13 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
 }
 
 void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, Volume& geometry) {
-  for (int z = 0; z < geometry.n; ++z) {
-    for (int y = 0; y < geometry.n; ++y) {
-      for (int x = 0; x < geometry.n; ++x) {
-        const std::vector<double> c = cell_of(found, x, y, z), kept = cell_of(geometry, x, y, z);
-        const bool areas = !blocks_by_lobes(blocking);
-        if (!areas && basis.energy(c) <= basis.energy(kept)) continue;
-        for (std::size_t i = 0; i < c.size(); ++i) {
-          geometry.at(0, static_cast<int>(i), x, y, z) = areas ? std::max(c[i], kept[i]) : c[i];
-        }
-      }
-    }
-  }
+  for_each_cell(geometry.n, [&](const glm::ivec3& p) {
+    const std::vector<double> c = found.cell(0, p), kept = geometry.cell(0, p);
+    const bool areas = !blocks_by_lobes(blocking);
+    if (!areas && basis.energy(c) <= basis.energy(kept)) return;
+    for (int i = 0; i < found.coefficients; ++i)
+      geometry.at(0, i, p.x, p.y, p.z) = areas ? std::max(c[i], kept[i]) : c[i];
+  });
 }
 
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
@@ -144,17 +117,11 @@ Volume otherwise_merged(const Volume& a, const Volume& b, const Basis& basis, Bl
   Volume other = a;
   merge_geometry(b, basis, blocking, other);
   if (!blocks_by_lobes(blocking)) return other;
-  for (int z = 0; z < a.n; ++z) {
-    for (int y = 0; y < a.n; ++y) {
-      for (int x = 0; x < a.n; ++x) {
-        const std::vector<double> of_a = cell_of(a, x, y, z), of_b = cell_of(b, x, y, z);
-        const double in_a = basis.energy(of_a), in_b = basis.energy(of_b);
-        if (std::abs(in_a - in_b) > kTie * std::max(in_a, in_b)) continue;
-        const std::vector<double>& loser = in_b > in_a ? of_a : of_b;
-        for (std::size_t i = 0; i < loser.size(); ++i) other.at(0, static_cast<int>(i), x, y, z) = loser[i];
-      }
-    }
-  }
+  for_each_cell(a.n, [&](const glm::ivec3& p) {
+    const std::vector<double> of_a = a.cell(0, p), of_b = b.cell(0, p);
+    const double in_a = basis.energy(of_a), in_b = basis.energy(of_b);
+    if (std::abs(in_a - in_b) <= kTie * std::max(in_a, in_b)) other.set_cell(0, p, in_b > in_a ? of_a : of_b);
+  });
   return other;
 }
 

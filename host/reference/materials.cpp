@@ -8,44 +8,9 @@
 
 #include "reference/triangle.hpp"
 #include "scene/mip_chain.hpp"
-#include "support/error.hpp"
 
 namespace clpv::reference {
 namespace {
-
-void check(const Scene& scene) {
-  const auto finite = [](float v) { return std::isfinite(v); };
-  const auto known = [&](std::uint32_t t) { return t == CLPV_NO_TEXTURE || t < scene.textures.size(); };
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    if (!std::ranges::all_of(m.base_colour, finite) || !std::ranges::all_of(m.emissive, finite) ||
-        !finite(m.alpha_cutoff)) {
-      throw Error(ExitCode::bad_input, "{}: material {}: a colour or alpha cutoff that is not finite",
-                  scene.path, i);
-    }
-    if (!known(m.texture) || !known(m.emissive_texture)) {
-      throw Error(ExitCode::bad_input, "{}: material {}: texture {} and {} of {}", scene.path, i, m.texture,
-                  m.emissive_texture, scene.textures.size());
-    }
-  }
-  for (const Texture& t : scene.textures) {
-    if (t.width == 0 || t.height == 0 || t.rgba.size() != 4 * static_cast<std::size_t>(t.width) * t.height) {
-      throw Error(ExitCode::bad_input, "{}: texture {}: {} bytes for {}x{} texels of 4", scene.path, t.name,
-                  t.rgba.size(), t.width, t.height);
-    }
-  }
-}
-
-/// Colours of textures with holes are weighted by alpha, as on the device.
-std::vector<std::vector<Texture>> mip_chains(const Scene& scene) {
-  std::vector<bool> holes(scene.textures.size(), false);
-  for (const Material& m : scene.materials) {
-    if ((m.flags & CLPV_MATERIAL_MASKED) && m.texture != CLPV_NO_TEXTURE) holes[m.texture] = true;
-  }
-  std::vector<std::vector<Texture>> chains;
-  for (std::size_t i = 0; i < holes.size(); ++i) chains.push_back(mip_chain(scene.textures[i], holes[i]));
-  return chains;
-}
 
 /// Base colour and alpha before any texture.
 glm::vec4 untextured(const Scene& scene, const SurfacePoint& point) {
@@ -58,7 +23,7 @@ glm::vec4 untextured(const Scene& scene, const SurfacePoint& point) {
 /// The linear values of every 8-bit one.
 std::array<float, 256> decode_table() {
   std::array<float, 256> table{};
-  for (unsigned i = 0; i < table.size(); ++i) table[i] = static_cast<float>(linear_from_srgb(i));
+  for (unsigned i = 0; i < table.size(); ++i) table[i] = linear_from_srgb(i);
   return table;
 }
 
@@ -69,7 +34,7 @@ std::uint32_t wrap(std::int64_t i, std::uint32_t size, std::uint32_t mode) {
   const std::int64_t period = mode == CLPV_WRAP_MIRROR ? 2 * n : n;
   std::int64_t j = i % period;
   if (j < 0) j += period;
-  return static_cast<std::uint32_t>(j < n ? j : period - 1 - j);
+  return j < n ? j : period - 1 - j;
 }
 
 glm::vec4 texel(const Texture& texture, std::uint32_t x, std::uint32_t y) {
@@ -89,8 +54,8 @@ double mip_level(double square) {
 }  // namespace
 
 Materials::Materials(const Scene& scene) : scene_(&scene) {
-  check(scene);
-  textures_ = mip_chains(scene);
+  const std::vector<bool> holes = textures_with_holes(scene);
+  for (std::size_t i = 0; i < holes.size(); ++i) textures_.push_back(mip_chain(scene.textures[i], holes[i]));
 }
 
 glm::vec3 Materials::albedo(const SurfacePoint& point, const Footprint& footprint) const {
@@ -121,7 +86,7 @@ double Materials::solidity(const SurfacePoint& point) const {
 }
 
 bool Materials::hole(const SurfacePoint& point) const {
-  return alpha(point) < scene_->materials[scene_->triangles[point.triangle].material].alpha_cutoff;
+  return solidity(point) < 0;
 }
 
 /// What a texture multiplies the colour with.
@@ -170,10 +135,10 @@ glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const
                   const glm::dvec2& step_y) {
   const glm::dvec2 size(levels[0].width, levels[0].height);
   const glm::dvec2 x = step_x * size, y = step_y * size;  // [texels]
-  const double coarsest = static_cast<double>(levels.size() - 1);
+  const double coarsest = levels.size() - 1;
   const double level = std::min(mip_level(std::max(glm::dot(x, x), glm::dot(y, y))), coarsest);
   const std::size_t fine = level;
-  const auto weight = static_cast<float>(level - static_cast<double>(fine));
+  const float weight = level - static_cast<double>(fine);
   const glm::vec4 colour = look_up(levels[fine], uv);
   return weight == 0 ? colour : glm::mix(colour, look_up(levels[fine + 1], uv), weight);
 }

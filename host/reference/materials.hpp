@@ -26,7 +26,6 @@ struct Footprint {
 /// Borrows the scene: it must outlive this.
 class Materials {
  public:
-  /// Throws Error(bad_input) that names a material or texture out of range or not finite.
   explicit Materials(const Scene& scene);
 
   /// Diffuse albedo: base colour x texture x vertex colour, linear.

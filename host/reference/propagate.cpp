@@ -10,20 +10,8 @@
 namespace clpv::reference {
 namespace {
 
-std::vector<double> cell(const Volume& volume, int channel, const glm::ivec3& p) {
-  std::vector<double> c(volume.coefficients);
-  for (int i = 0; i < volume.coefficients; ++i) c[i] = volume.value(channel, i, p.x, p.y, p.z);
-  return c;
-}
-
-double flux_through(const Face& face, const std::vector<double>& c, bool clamp) {
-  double flux = 0;
-  for (std::size_t i = 0; i < c.size(); ++i) flux += face.flux[i] * c[i];
-  return clamp ? std::max(0.0, flux) : flux;
-}
-
 int column_of(const glm::ivec3& normal) {
-  return static_cast<int>(std::find(kAxes.begin(), kAxes.end(), normal) - kAxes.begin());
+  return std::find(kAxes.begin(), kAxes.end(), normal) - kAxes.begin();
 }
 
 /// One number a cell, in the order of Volume::values.
@@ -124,7 +112,7 @@ std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
   std::array<double, 3> sum{};
   for (int channel = 0; channel < volume.channels; ++channel) {
     for_each_cell(volume.n,
-                  [&](const glm::ivec3& p) { sum[channel] += basis.energy(cell(volume, channel, p)); });
+                  [&](const glm::ivec3& p) { sum[channel] += basis.energy(volume.cell(channel, p)); });
   }
   return sum;
 }
@@ -135,15 +123,14 @@ std::array<double, 3> leaving(const Basis& basis, const Transport& transport, co
   const auto outside = [&](const glm::ivec3& p) { return !travelling.inside(p.x, p.y, p.z); };
   for_each_cell(travelling.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < travelling.channels; ++channel) {
-      double& sum = lost[static_cast<std::size_t>(channel)];
+      double& sum = lost[channel];
       std::vector<double> here;
       for (const Face& face : faces.faces) {
         if (!outside(p + face.travel)) continue;
-        if (here.empty()) here = cell(travelling, channel, p);
-        const double flux = flux_through(face, here, true);
+        if (here.empty()) here = travelling.cell(channel, p);
+        const double flux = std::max(0.0, dot(face.flux, here));
         for (int i = 0; i < basis.size(); ++i)
-          sum +=
-              flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[static_cast<std::size_t>(i)];
+          sum += flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[i];
       }
     }
   });

@@ -28,13 +28,12 @@ glm::dvec3 along(const ClpvView& view, unsigned px, unsigned py) {
 class Candidate {
  public:
   Candidate(const Scene& scene, const ClpvView& view, std::uint32_t index)
-      : index_(index), corners_(world(scene, scene.triangles[index])), polygon_(view, corners_) {
+      : index_(index), corners_(corners_of(scene, scene.triangles[index])), polygon_(view, corners_) {
     normal_ = glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
   }
 
   const ScreenPolygon& polygon() const { return polygon_; }
   const glm::dvec3& normal() const { return normal_; }
-  std::uint32_t index() const { return index_; }
 
   /// The depth of its plane behind a pixel, no farther out than its corners are.
   double depth(const ClpvView& view, unsigned px, unsigned py) const {
@@ -61,12 +60,6 @@ class Candidate {
   }
 
  private:
-  static std::array<glm::dvec3, 3> world(const Scene& scene, const Triangle& triangle) {
-    std::array<glm::dvec3, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = position(scene.vertices[triangle.vertex[i]]);
-    return corners;
-  }
-
   std::uint32_t index_;
   std::array<glm::dvec3, 3> corners_;
   ScreenPolygon polygon_;
@@ -82,8 +75,7 @@ struct Visible {
 
 class Eye {
  public:
-  Eye(const Scene& scene, const ClpvView& view, bool cull_back_faces)
-      : scene_(scene), view_(view), materials_(scene) {
+  Eye(const Scene& scene, const ClpvView& view, bool cull_back_faces) : view_(view), materials_(scene) {
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
       Candidate candidate(scene, view, i);
       const unsigned flags = scene.materials[scene.triangles[i].material].flags;
@@ -105,17 +97,15 @@ class Eye {
   }
 
  private:
-  double alpha_above_cutoff(const Candidate& candidate, unsigned px, unsigned py, double depth) const {
-    const Material& material = scene_.materials[scene_.triangles[candidate.index()].material];
-    if (!(material.flags & CLPV_MATERIAL_MASKED)) return 1;
-    return materials_.alpha(candidate.point(view_, px, py, depth)) - material.alpha_cutoff;
+  double solidity(const Candidate& candidate, unsigned px, unsigned py, double depth) const {
+    return materials_.solidity(candidate.point(view_, px, py, depth));
   }
 
   void consider(const Candidate& candidate, unsigned px, unsigned py, Visible& visible) const {
     if (!candidate.polygon().covers(px, py)) return;
     const double depth = candidate.depth(view_, px, py);
     if (depth > view_.far_depth || depth >= visible.depth) return;  // of equals the first stays
-    if (alpha_above_cutoff(candidate, px, py, depth) < 0) return;
+    if (solidity(candidate, px, py, depth) < 0) return;
     visible.seen = &candidate;
     visible.depth = depth;
   }
@@ -130,10 +120,9 @@ class Eye {
     const bool depth_close = depth != visible.depth && depth > visible.depth * (1 - kDepthDoubt);
     const bool own_edge = edge <= kEdgeDoubt && &candidate == visible.seen;
     return edge_close || own_edge || depth_close || candidate.edge_on(view_, px, py) ||
-           std::abs(alpha_above_cutoff(candidate, px, py, depth)) < kAlphaDoubt;
+           std::abs(solidity(candidate, px, py, depth)) < kAlphaDoubt;
   }
 
-  const Scene& scene_;
   const ClpvView& view_;
   Materials materials_;
   std::vector<Candidate> candidates_;
@@ -180,7 +169,7 @@ Rasterized rasterize(const Scene& scene, const ClpvView& view, bool camera, Colo
       const glm::dvec3 ray = along(view, px, py);
       const Footprint footprint = pixel_footprint(view, *visible.seen, ray, visible.depth);
       const double depth = std::max<double>(visible.depth, view.near_depth);
-      image.depth[at] = static_cast<float>(depth);
+      image.depth[at] = depth;
       image.normal[at] = glm::vec4(glm::vec3(seen_normal(scene, *visible.seen, point, ray)), 0);
       image.colour[at] =
           glm::vec4(colour(glm::dvec3(eye.materials().albedo(point, footprint)), px, py, depth), 0);

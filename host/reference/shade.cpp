@@ -72,9 +72,7 @@ std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
-    const auto x = static_cast<double>(pixel % camera.view.width);
-    const auto y = static_cast<double>(pixel / camera.view.width);
-    const glm::dvec3 position = surface_position(camera.view, x, y, depth);
+    const glm::dvec3 position = surface_position(camera.view, pixel, depth);
     for (const MappedLight& light : lights) {
       image[pixel] += direct_irradiance(light, position, glm::dvec3(camera.normal[pixel]));
     }

@@ -17,20 +17,6 @@ namespace {
 /// D of every direction in every cell, one volume of 3 channels a direction: [bin * parts^2 + part].
 using Fields = std::vector<Volume>;
 
-/// Trilinear between cells' centres, zero beyond them.
-double sampled(const Volume& field, int channel, const glm::dvec3& at) {
-  const glm::dvec3 low = glm::floor(at), t = at - low;
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2);
-    double weight = 1;
-    for (int axis = 0; axis < 3; ++axis) weight *= up[axis] == 1 ? t[axis] : 1 - t[axis];
-    const glm::ivec3 cell = glm::ivec3(low) + up;
-    sum += weight * field.value(channel, 0, cell.x, cell.y, cell.z);
-  }
-  return sum;
-}
-
 /// What a cascade's border knows of the coarser one.
 struct Beyond {
   const SweptCascade* cascade = nullptr;  ///< null: there is none
@@ -43,20 +29,7 @@ struct Beyond {
 class Sweep {
  public:
   Sweep(const Basis& basis, const Transport& transport, const SweptCascade& cascade, const Beyond& beyond)
-      : cascade_(cascade),
-        beyond_(beyond),
-        n_(static_cast<int>(cascade.grid.n)),
-        sources_(n_, kSweepBins, 3) {
-    const Matrix means = bin_means(basis);
-    const Volume& from = *cascade.injected;
-    for_each_cell(n_, [&](const glm::ivec3& p) {
-      std::vector<double> c(basis.size());
-      for (int channel = 0; channel < 3; ++channel) {
-        for (int i = 0; i < basis.size(); ++i) c[i] = from.value(channel, i, p.x, p.y, p.z);
-        const std::vector<double> in = means * std::span<const double>(c);
-        for (int bin = 0; bin < kSweepBins; ++bin) sources_.at(channel, bin, p.x, p.y, p.z) = in[bin];
-      }
-    });
+      : cascade_(cascade), beyond_(beyond), n_(cascade.grid.n), sources_(in_bins(basis, *cascade.injected)) {
     let_through(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
@@ -87,7 +60,7 @@ class Sweep {
 
  private:
   static std::size_t link_of(const glm::ivec3& offset) {
-    return static_cast<std::size_t>(offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1));
+    return offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1);
   }
 
   void let_through(const std::vector<SweepLink>& links) {
@@ -110,16 +83,11 @@ class Sweep {
       return beyond_.sky[bin * cascade_.parts * cascade_.parts + part][channel] * edge * edge * d.flux;
     }
     const ClpvGrid &fine = cascade_.grid, &coarse = beyond_.cascade->grid;
-    glm::dvec3 at;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double centre = fine.origin[axis] + double{fine.cell} * (cell[axis] + 0.5);
-      at[axis] = (centre - coarse.origin[axis]) / coarse.cell - 0.5;
-    }
     const int parts = beyond_.cascade->parts, from = coarser_part(part, cascade_.parts, parts);
     const SweepBin& of = (*beyond_.bins)[bin];
     const double edge = double{fine.cell} / coarse.cell;
     return edge * edge * d.flux / of.directions[from].flux *
-           sampled((*beyond_.fields)[bin * parts * parts + from], channel, at);
+           sampled((*beyond_.fields)[bin * parts * parts + from], channel, place_in(coarse, fine, cell))[0];
   }
 
   SweptCascade cascade_;
@@ -151,6 +119,33 @@ Volume collect(const std::vector<SweepBin>& bins, const Fields& fields) {
 }
 
 }  // namespace
+
+glm::dvec3 place_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell) {
+  const glm::dvec3 centre = vector(fine.origin) + double{fine.cell} * (glm::dvec3(cell) + 0.5);
+  return (centre - vector(coarse.origin)) / double{coarse.cell} - 0.5;
+}
+
+std::vector<double> sampled(const Volume& volume, int channel, const glm::dvec3& at) {
+  const glm::dvec3 low = glm::floor(at), t = at - low;
+  std::vector<double> sum(volume.coefficients, 0.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::dvec3 weights = glm::mix(1.0 - t, t, glm::dvec3(up));
+    const std::vector<double> there = volume.cell(channel, glm::ivec3(low) + up);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weights.x * weights.y * weights.z * there[i];
+  }
+  return sum;
+}
+
+Volume in_bins(const Basis& basis, const Volume& injected) {
+  const Matrix means = bin_means(basis);
+  Volume light(injected.n, kSweepBins);
+  for_each_cell(light.n, [&](const glm::ivec3& p) {
+    for (int channel = 0; channel < 3; ++channel)
+      light.set_cell(channel, p, means * injected.cell(channel, p));
+  });
+  return light;
+}
 
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
                           const std::vector<SweptCascade>& cascades, const Sky* sky) {

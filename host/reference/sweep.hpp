@@ -20,6 +20,14 @@ struct SweptCascade {
   int parts = 1;                     ///< of its bins (sweep_bins)
 };
 
+/// Injected light [W/sr] as its means over bins.
+Volume in_bins(const Basis& basis, const Volume& injected);
+
+/// The centre of a finer grid's cell, in a coarser grid's cells from the centre of its first one.
+glm::dvec3 place_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell);
+/// All coefficients of a channel there, trilinear between cells' centres, zero beyond them.
+std::vector<double> sampled(const Volume& volume, int channel, const glm::dvec3& at);
+
 /// Light of `bins24`, radiance times s^2, of every cascade: finest first, as `cascades` are. `transport`: TransportKind::sweep.
 /// `sky`: shines into the coarsest; null: none.
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,

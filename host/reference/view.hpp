@@ -15,6 +15,10 @@ inline double cross(const glm::dvec2& a, const glm::dvec2& b) {
 
 /// The surface point [m] at depth [m] behind pixel (px, py); pixel centres at whole numbers.
 glm::dvec3 surface_position(const ClpvView& view, double px, double py, double depth);
+/// The same of the pixel with that number, row by row.
+inline glm::dvec3 surface_position(const ClpvView& view, std::size_t pixel, double depth) {
+  return surface_position(view, pixel % view.width, pixel / view.width, depth);
+}
 
 /// A point as a view sees it: pixel coordinates (pixel centres at whole numbers) and depth [m].
 /// Perspective: meaningful where depth > 0.

@@ -38,8 +38,7 @@ double crossing(const Corners& t, const glm::dvec3& from, const glm::dvec3& to) 
 }
 
 void add(Hidden& hidden, int n, const Corners& t, const glm::ivec3& cube) {
-  const auto first = static_cast<std::size_t>(((cube.z * n + cube.y) * n + cube.x) * kCubePoints *
-                                              kCubePoints * kCubePoints);
+  const std::size_t first = ((cube.z * n + cube.y) * n + cube.x) * kCubePoints * kCubePoints * kCubePoints;
   for (int point = 0; point < kCubePoints * kCubePoints * kCubePoints; ++point) {
     const glm::dvec3 at(point % kCubePoints, point / kCubePoints % kCubePoints,
                         point / kCubePoints / kCubePoints);
@@ -47,7 +46,7 @@ void add(Hidden& hidden, int n, const Corners& t, const glm::ivec3& cube) {
     for (int corner = 0; corner < 8; ++corner) {
       const double sure =
           crossing(t, glm::dvec3(cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), to);
-      const auto bit = static_cast<std::uint8_t>(1u << corner);
+      const std::uint8_t bit = 1u << corner;
       if (sure > kSeeHair) hidden.least[first + static_cast<std::size_t>(point)] |= bit;
       if (sure >= -kSeeHair) hidden.most[first + static_cast<std::size_t>(point)] |= bit;
     }
@@ -57,18 +56,14 @@ void add(Hidden& hidden, int n, const Corners& t, const glm::ivec3& cube) {
 }  // namespace
 
 Hidden see(const Scene& scene, const ClpvGrid& grid) {
-  const int n = static_cast<int>(grid.n);
+  const int n = grid.n;
   const auto bytes = static_cast<std::size_t>(n) * n * n * kCubePoints * kCubePoints * kCubePoints;
   Hidden hidden{std::vector<std::uint8_t>(bytes), std::vector<std::uint8_t>(bytes)};
   for (const Triangle& triangle : scene.triangles) {
     if ((scene.materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) continue;
-    Corners t;
-    glm::dvec3 low(1e300), high(-1e300);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const glm::dvec3 at(position(scene.vertices[triangle.vertex[i]]));
-      t[i] = (at - vector(grid.origin)) / double{grid.cell} - 0.5;
-      low = glm::min(low, t[i]), high = glm::max(high, t[i]);
-    }
+    Corners t = corners_of(scene, triangle);
+    for (glm::dvec3& at : t) at = (at - vector(grid.origin)) / double{grid.cell} - 0.5;
+    const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
     const glm::ivec3 first(glm::clamp(glm::floor(low - kSeeHair), 0.0, n - 1.0)),
         last(glm::clamp(glm::floor(high + kSeeHair), -1.0, n - 2.0));
     for (int z = first.z; z <= last.z; ++z) {

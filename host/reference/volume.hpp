@@ -29,6 +29,15 @@ struct Volume {
   double value(int channel, int i, int x, int y, int z) const {
     return inside(x, y, z) ? values[index(channel, i, x, y, z)] : 0.0;
   }
+  /// All coefficients of a channel at a sample.
+  std::vector<double> cell(int channel, const glm::ivec3& p) const {
+    std::vector<double> c(coefficients);
+    for (int i = 0; i < coefficients; ++i) c[i] = value(channel, i, p.x, p.y, p.z);
+    return c;
+  }
+  void set_cell(int channel, const glm::ivec3& p, const std::vector<double>& c) {
+    for (int i = 0; i < coefficients; ++i) at(channel, i, p.x, p.y, p.z) = c[i];
+  }
 };
 
 /// visit(cell) for each of n^3 cells, x fastest.

@@ -13,6 +13,9 @@ namespace clpv {
 /// texels along each axis). `weigh_by_alpha`: colour is the alpha-weighted mean, for textures with holes.
 std::vector<Texture> mip_chain(const Texture& texture, bool weigh_by_alpha);
 
+/// Which textures of a scene have holes: those that a masked material uses.
+std::vector<bool> textures_with_holes(const Scene& scene);
+
 /// Linear value in 0..1 of an sRGB-encoded byte, and the byte nearest to a linear value (IEC 61966-2-1).
 double linear_from_srgb(unsigned byte);
 unsigned srgb_from_linear(double linear);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace clpv::reference {
 
 Comparison compare_volumes(std::span<const float> found, std::span<const double> expected, int n) {
@@ -15,6 +17,37 @@ Comparison compare_volumes(std::span<const float> found, std::span<const double>
   return {worst.value,
           fmt::format("cell {},{},{} plane {}: {:.7g}, expected {:.7g}", at % side, at / side % side,
                       at / side / side % side, at / side / side / side, found[at], expected[at])};
+}
+
+Comparison compare_functions(std::span<const float> found, std::span<const double> expected,
+                             std::span<const double> other, int n, int numbers,
+                             const std::function<std::vector<double>(const glm::dvec3&)>& weights) {
+  const std::size_t side = n, samples = side * side * side, size = numbers;
+  double largest = 0;
+  WorstError worst;
+  Comparison result;
+  for (int neighbour = 0; neighbour < 27; ++neighbour) {
+    if (neighbour == 13) continue;  // the cell itself
+    const glm::dvec3 w =
+        glm::normalize(glm::dvec3(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1));
+    const std::vector<double> b = weights(w);
+    for (std::size_t at = 0; at < found.size() / size; ++at) {
+      double value = 0, wanted = 0, or_wanted = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        const std::size_t index = (at / samples * size + i) * samples + at % samples;
+        value += b[i] * found[index];
+        wanted += b[i] * expected[index];
+        or_wanted += b[i] * other[index];
+      }
+      largest = std::max(largest, std::abs(wanted));
+      if (!worst.take(std::min(std::abs(value - wanted), std::abs(value - or_wanted)), at)) continue;
+      result.place = fmt::format(
+          "cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, expected {:.7g}", at % side,
+          at / side % side, at / side / side % side, at / samples, w.x, w.y, w.z, value, wanted);
+    }
+  }
+  result.worst = worst.value / largest;
+  return result;
 }
 
 }  // namespace clpv::reference

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace clpv::reference {
 
@@ -40,5 +43,11 @@ struct Comparison {
 
 /// Volumes of n^3 samples in Volume's host order.
 Comparison compare_volumes(std::span<const float> found, std::span<const double> expected, int n);
+
+/// The functions that volumes hold, in 26 directions: where a Gram matrix is ill-conditioned coefficients differ by which
+/// functions hardly do. `numbers` a sample and channel; `weights`: theirs in a direction. `other` is as right as `CPU reference`.
+Comparison compare_functions(std::span<const float> found, std::span<const double> expected,
+                             std::span<const double> other, int n, int numbers,
+                             const std::function<std::vector<double>(const glm::dvec3&)>& weights);
 
 }  // namespace clpv::reference

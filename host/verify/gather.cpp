@@ -36,13 +36,13 @@ struct Variant {
 /// A byte for each point between cells of all cascades: each cell hidden from half of them.
 std::vector<std::uint8_t> random_hidden(std::mt19937& random) {
   std::vector<std::uint8_t> hidden(kCascades * CellVisibility::bytes(kGrid));
-  for (std::uint8_t& bits : hidden) bits = static_cast<std::uint8_t>(random() % 256);
+  for (std::uint8_t& bits : hidden) bits = random() % 256;
   return hidden;
 }
 
 std::string_view compared_as(const Variant& variant) {
   if (variant.gather == Gathering::visible) return "gather-visible";
-  return sampled_by_device(variant.format) && variant.filtered ? "gather-filter" : "gather";
+  return variant.format.layout == Layout::image && variant.filtered ? "gather-filter" : "gather";
 }
 
 CheckResult check_one(Session& session, const Basis& basis, TransportKind transport, const Variant& variant) {
@@ -94,7 +94,7 @@ void check_formats(Session& session, const CheckScope& scope, CheckResults& resu
   for (const VolumeFormat& format :
        other_formats(session.device(), {kGrid, basis->size(), 3}, scope.formats)) {
     Variant variant{.name = format_name(format), .format = format};
-    if (sampled_by_device(format)) {
+    if (format.layout == Layout::image) {
       variant.name += " filter";
       results.push_back(check_one(session, *basis, transport, variant));
       variant.name = format_name(format) + " texels";

@@ -89,49 +89,6 @@ SurfaceImage as_points(SurfaceImage surface) {
   return surface;
 }
 
-/// 26 directions: towards the neighbours of a cell in a cube.
-std::vector<glm::dvec3> directions() {
-  std::vector<glm::dvec3> found;
-  for (int i = 0; i < 27; ++i) {
-    if (i != 13) found.push_back(glm::normalize(glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
-  }
-  return found;
-}
-
-/// The functions, not their coefficients, are compared: where the Gram matrix is ill-conditioned coefficients
-/// differ in directions in which functions hardly do.
-CheckResult compare(const Basis& basis, const InjectOptions& options, const std::vector<float>& device,
-                    const Volume& expected, const std::string& variant) {
-  const bool rotated = options.lobes.kind == LobeKind::rotate;
-  const double allowed = rotated ? tolerance("inject-rotated") : tolerance("inject", options.format.storage);
-  CheckResult result{"inject", variant, 0, allowed, {}};
-  const auto cells = static_cast<std::size_t>(expected.n) * expected.n * expected.n;
-  const std::size_t size = expected.coefficients;
-  const bool areas = expected.channels == 1 && !blocks_by_lobes(options.blocking);
-  double largest = 0;
-  WorstError worst;
-  for (const glm::dvec3& w : directions()) {
-    const std::vector<double> b =
-        areas ? blocking_weights(options.blocking, basis, options.lobes, w) : basis.evaluate(w);
-    for (std::size_t at = 0; at < cells * static_cast<std::size_t>(expected.channels); ++at) {
-      const std::size_t channel = at / cells, cell = at % cells;
-      double found = 0, wanted = 0;
-      for (std::size_t i = 0; i < size; ++i) {
-        found += b[i] * static_cast<double>(device[(channel * size + i) * cells + cell]);
-        wanted += b[i] * expected.values[(channel * size + i) * cells + cell];
-      }
-      largest = std::max(largest, std::abs(wanted));
-      if (!worst.take(std::abs(found - wanted), cell)) continue;
-      const std::size_t n = expected.n;
-      result.place =
-          fmt::format("cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, expected {:.7g}",
-                      cell % n, cell / n % n, cell / n / n, channel, w.x, w.y, w.z, found, wanted);
-    }
-  }
-  result.worst = worst.value / largest;
-  return result;
-}
-
 /// One comparison: light, or geometry with blockers.
 struct InjectCase {
   InjectOptions options = {};
@@ -179,7 +136,14 @@ CheckResult check_one(Session& session, const Basis& basis, InjectCase c) {
     injector.inject_geometry(surface, kCells, volume, c.stride);
     inject_geometry(read_surface(session, surface), kCells, basis, options, expected, c.stride);
   }
-  return compare(basis, options, volume.read(session), expected, c.name(basis));
+  const auto weights = [&](const glm::dvec3& w) {
+    return c.light ? basis.evaluate(w) : blocking_weights(options.blocking, basis, options.lobes, w);
+  };
+  const Comparison apart =
+      compare_functions(volume.read(session), expected.values, expected.values, samples, numbers, weights);
+  const bool rotated = options.lobes.kind == LobeKind::rotate;
+  const double allowed = rotated ? tolerance("inject-rotated") : tolerance("inject", options.format.storage);
+  return {"inject", c.name(basis), apart.worst, allowed, apart.place};
 }
 
 /// What is compared of a basis.

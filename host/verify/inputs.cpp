@@ -70,7 +70,7 @@ bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm:
 CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& expected,
                            unsigned width, std::string_view stage, const std::string& variant) {
   const auto found = [&](std::size_t i) { return static_cast<double>(device[i / 4].s[i % 4]); };
-  const auto wanted = [&](std::size_t i) { return expected[i / 4][static_cast<int>(i % 4)]; };
+  const auto wanted = [&](std::size_t i) { return expected[i / 4][i % 4]; };
   const WorstError worst = worst_difference(4 * expected.size(), found, wanted);
   CheckResult result{std::string(stage), variant, worst.value, tolerance(stage), {}};
   if (worst.value == 0) return result;
@@ -95,7 +95,7 @@ Scene triangle_soup() {
       glm::vec3 p = at + size * direction();
       if (i % 7 == 3) p[i % 3] = at[i % 3];
       if (i == 20) p = at;
-      vertex = static_cast<unsigned>(scene.vertices.size());
+      vertex = scene.vertices.size();
       scene.vertices.push_back({{p.x, p.y, p.z},
                                 {0, 0, 1},
                                 {2 * uniform(random), 2 * uniform(random)},

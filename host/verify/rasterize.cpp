@@ -80,7 +80,7 @@ class SceneMaker {
     Vertex v{{p.x, p.y, p.z}, {n.x, n.y, n.z}, {3 * uniform(), 3 * uniform()}, {}};
     for (int c = 0; c < 4; ++c) v.colour[c] = 0.9f + 0.1f * uniform();
     scene.vertices.push_back(v);
-    return static_cast<unsigned>(scene.vertices.size() - 1);
+    return scene.vertices.size() - 1;
   }
 
   void add(Scene& scene, const std::array<glm::vec3, 3>& p) {
@@ -88,7 +88,7 @@ class SceneMaker {
     const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::vec3(0, 0, 1);
     Triangle triangle{};
     for (std::size_t i = 0; i < 3; ++i) triangle.vertex[i] = vertex(scene, p[i], normal);
-    triangle.material = static_cast<unsigned>(scene.triangles.size() % scene.materials.size());
+    triangle.material = scene.triangles.size() % scene.materials.size();
     scene.triangles.push_back(triangle);
   }
 
@@ -158,7 +158,7 @@ void append(CheckResults& results, const SurfaceImage& device, const Rasterized&
     }
     if (!pixel.passed()) ++differing;
   }
-  const auto pixels = static_cast<double>(expected.doubtful.size());
+  const double pixels = expected.doubtful.size();
   results.push_back(values);
   results.push_back({"rasterize-edges", variant, differing / pixels, tolerance("rasterize-edges"),
                      fmt::format("{} of {} pixels, {} of them doubtful", differing, pixels,

@@ -67,8 +67,8 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
   std::mt19937 random(3);
   const std::unique_ptr<Basis> basis = make_basis(c.basis);
   const Transport transport = make_transport(TransportKind::sweep, *basis, {}, c.blocked_by);
-  const int count = static_cast<int>(c.parts.size());
-  const float cell = static_cast<float>(kEdge / c.grid);
+  const int count = c.parts.size();
+  const float cell = kEdge / c.grid;
   const std::vector<ClpvGrid> grids = cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), count, kEdge, c.grid);
   Sweeper sweeper(session, *basis, transport,
                   {.grid = c.grid,

@@ -18,15 +18,7 @@ ProgramSource source_of(const VolumeShape& shape, Storage storage) {
 }  // namespace
 
 VolumeFormat Accumulator::cells_format(const VolumeFormat& format) {
-  return updates_in_place(format) ? format : planes_format(format.storage);
-}
-
-std::size_t Accumulator::spare_bytes(const VolumeFormat& format, const VolumeShape& shape) {
-  return updates_in_place(format) ? 0 : stored_bytes(format, shape);
-}
-
-std::size_t Accumulator::cells_bytes(const VolumeFormat& format, const VolumeShape& shape) {
-  return updates_in_place(format) ? 0 : stored_bytes(cells_format(format), shape);
+  return format.layout == Layout::image ? VolumeFormat{Layout::soa, format.storage} : format;
 }
 
 Volume& Accumulator::spare_of(const Volume& sum) {
@@ -47,7 +39,7 @@ PlaneStage& Accumulator::planes_of(const Volume& sum) {
 }
 
 PlaneStage::PlaneStage(Session& session, const VolumeShape& shape, Storage storage)
-    : planes_(session, shape, "volume as planes", planes_format(storage)),
+    : planes_(session, shape, "volume as planes", {Layout::soa, storage}),
       from_image_(session, source_of(shape, storage), "image_to_planes"),
       to_image_(session, source_of(shape, storage), "planes_to_image") {}
 

@@ -41,7 +41,7 @@ class Accumulator {
   /// `next`, which is what it then holds.
   template <typename Launch>
   void add(Volume& sum, Launch launch) {
-    if (updates_in_place(sum.format())) {
+    if (sum.format().layout != Layout::image) {
       launch(std::as_const(sum), std::as_const(sum));
       return;
     }
@@ -54,7 +54,7 @@ class Accumulator {
   /// cells; `sum` then holds the same.
   template <typename Launch>
   void add_to_cells(Volume& sum, Launch launch) {
-    if (updates_in_place(sum.format())) {
+    if (sum.format().layout != Layout::image) {
       launch(std::as_const(sum));
       return;
     }
@@ -64,10 +64,6 @@ class Accumulator {
     stage.give(sum);
   }
   static VolumeFormat cells_format(const VolumeFormat& format);
-
-  /// Bytes of device memory that adding takes besides the volumes of one shape and format.
-  static std::size_t spare_bytes(const VolumeFormat& format, const VolumeShape& shape);  ///< add()
-  static std::size_t cells_bytes(const VolumeFormat& format, const VolumeShape& shape);  ///< add_to_cells()
 
  private:
   Volume& spare_of(const Volume& sum);

@@ -23,18 +23,6 @@ void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit
   }
 }
 
-std::size_t host_numbers(const VolumeShape& shape) {
-  const std::size_t n = shape.n;
-  return n * n * n * static_cast<std::size_t>(shape.coefficients) * static_cast<std::size_t>(shape.channels);
-}
-
-Image3D make_image(Session& session, const VolumeShape& shape, Storage storage, std::size_t bytes,
-                   const std::string& what) {
-  const ImageExtent extent = image_extent(shape);
-  const cl::ImageFormat texel(CL_RGBA, storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
-  return session.image(texel, {extent.x, extent.y, extent.z}, bytes, what);
-}
-
 cl::array<cl::size_type, 3> region(const VolumeShape& shape) {
   const ImageExtent extent = image_extent(shape);
   return {extent.x, extent.y, extent.z};
@@ -47,7 +35,8 @@ Volume::Volume(Session& session, const VolumeShape& shape, const std::string& wh
     : shape_(shape), format_(format), bytes_(stored_bytes(format, shape)) {
   require_supported(session.device(), format, shape);
   if (format.layout == Layout::image) {
-    image_ = make_image(session, shape, format.storage, bytes_, what);
+    const cl::ImageFormat texel(CL_RGBA, format.storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
+    image_ = session.image(texel, region(shape), bytes_, what);
   } else {
     buffer_ = session.buffer(bytes_, what);
   }
@@ -101,35 +90,33 @@ void Volume::write_stored(Session& session, const void* numbers) {
 }
 
 std::vector<float> Volume::read(Session& session) const {
-  std::vector<float> values(host_numbers(shape_));
+  const std::size_t n = shape_.n;
+  std::vector<float> values(n * n * n * shape_.coefficients * shape_.channels);
+  const auto take = [&](auto numbers, const auto& widened) {
+    read_stored(session, numbers.data());
+    for_each_number(format_, shape_,
+                    [&](std::size_t from, std::size_t to) { values[to] = widened(numbers[from]); });
+  };
   const std::size_t stored = stored_numbers(format_, shape_);
   if (format_.storage == Storage::float16) {
-    std::vector<std::uint16_t> numbers(stored);
-    read_stored(session, numbers.data());
-    for_each_number(format_, shape_, [&](std::size_t from, std::size_t to) {
-      values[to] = glm::unpackHalf1x16(numbers[from]);
-    });
+    take(std::vector<std::uint16_t>(stored), glm::unpackHalf1x16);
   } else {
-    std::vector<float> numbers(stored);
-    read_stored(session, numbers.data());
-    for_each_number(format_, shape_, [&](std::size_t from, std::size_t to) { values[to] = numbers[from]; });
+    take(std::vector<float>(stored), [](float number) { return number; });
   }
   return values;
 }
 
 void Volume::write(Session& session, const std::vector<float>& values) {
+  const auto give = [&](auto numbers, const auto& narrowed) {
+    for_each_number(format_, shape_,
+                    [&](std::size_t to, std::size_t from) { numbers[to] = narrowed(values.at(from)); });
+    write_stored(session, numbers.data());
+  };
   const std::size_t stored = stored_numbers(format_, shape_);
   if (format_.storage == Storage::float16) {
-    std::vector<std::uint16_t> numbers(stored, 0);
-    for_each_number(format_, shape_, [&](std::size_t to, std::size_t from) {
-      numbers[to] = glm::packHalf1x16(values.at(from));
-    });
-    write_stored(session, numbers.data());
+    give(std::vector<std::uint16_t>(stored), glm::packHalf1x16);
   } else {
-    std::vector<float> numbers(stored, 0.0f);
-    for_each_number(format_, shape_,
-                    [&](std::size_t to, std::size_t from) { numbers[to] = values.at(from); });
-    write_stored(session, numbers.data());
+    give(std::vector<float>(stored), [](float number) { return number; });
   }
 }
 

@@ -29,7 +29,7 @@ void write_volume_vti(const std::filesystem::path& path, const std::vector<float
   }
   VtiGrid place;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    place.cells[axis] = static_cast<int>(grid.n);
+    place.cells[axis] = grid.n;
     place.origin[axis] = grid.origin[axis];
     place.spacing[axis] = grid.cell;
   }

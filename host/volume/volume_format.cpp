@@ -15,26 +15,12 @@ constexpr int kTile = 8;   // samples of a block of layout `tiled`
 constexpr int kTexel = 4;  // coefficients of a texel
 constexpr int kMostLanes = 8;
 
-const char* literal_of(Layout layout) {
-  switch (layout) {
-    case Layout::image:
-      return "CLPV_IMAGE";
-    case Layout::aos:
-      return "CLPV_AOS";
-    case Layout::soa:
-      return "CLPV_SOA";
-    case Layout::tiled:
-      return "CLPV_TILED";
-  }
-  return "";
-}
+/// Beside kNames<Layout>.
+constexpr const char* kLayoutLiterals[] = {"CLPV_IMAGE", "CLPV_AOS", "CLPV_SOA", "CLPV_TILED"};
+static_assert(std::size(kLayoutLiterals) == kNames<Layout>.size());
 
 std::size_t size(int value) {
-  return static_cast<std::size_t>(value);
-}
-
-std::size_t number_bytes(Storage storage) {
-  return storage == Storage::float16 ? 2 : 4;
+  return value;
 }
 
 int texels_per_cell(int coefficients) {
@@ -56,6 +42,10 @@ std::size_t bordered(const VolumeShape& shape) {
 }
 
 }  // namespace
+
+std::size_t number_bytes(Storage storage) {
+  return storage == Storage::float16 ? 2 : 4;
+}
 
 std::string format_name(const VolumeFormat& format) {
   return fmt::format("{}/{}", name_of(format.layout), name_of(format.storage));
@@ -101,33 +91,17 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
   }
 }
 
-bool updates_in_place(const VolumeFormat& format) {
-  return format.layout != Layout::image;
-}
-
-VolumeFormat planes_format(Storage storage) {
-  return {Layout::soa, storage};
-}
-
-bool sampled_by_device(const VolumeFormat& format) {
-  return format.layout == Layout::image;
-}
-
-int most_lanes(const VolumeFormat& format) {
-  return format.layout == Layout::image ? 1 : kMostLanes;
-}
-
 int preferred_lanes(const Device& device, const VolumeFormat& format) {
   const bool across_work_items = format == VolumeFormat{};
   return across_work_items ? 1 : preferred_row_lanes(device, format);
 }
 
 int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
-  return device.type == "cpu" ? most_lanes(format) : 1;
+  return device.type == "cpu" && format.layout != Layout::image ? kMostLanes : 1;
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
-  literals.word("CLPV_LAYOUT", literal_of(format.layout))
+  literals.word("CLPV_LAYOUT", kLayoutLiterals[static_cast<std::size_t>(format.layout)])
       .flag("CLPV_STORAGE_HALF", format.storage == Storage::float16)
       .integer("CLPV_LANES", lanes);
 }

@@ -21,6 +21,7 @@ struct VolumeShape {
   bool operator==(const VolumeShape&) const = default;
 };
 
+std::size_t number_bytes(Storage storage);
 std::string format_name(const VolumeFormat& format);  ///< "soa/float"
 std::vector<VolumeFormat> all_formats();
 
@@ -31,18 +32,6 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
                                        const VolumeShape& shape);
 /// Throws Error(device) "unsupported: ..." where one of them gives a reason.
 void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape);
-
-/// May one launch both read and write such a volume? Not an image, in OpenCL 1.2; Accumulator makes up for it.
-bool updates_in_place(const VolumeFormat& format);
-
-/// What PlaneStage keeps beside such a volume.
-VolumeFormat planes_format(Storage storage);
-
-/// Does the device's filter sample it between cells? Of images alone.
-bool sampled_by_device(const VolumeFormat& format);
-
-/// Cells along x that a work-item of a stencil can serve, or one alone: 8; of images, whose texels are of one cell, 1.
-int most_lanes(const VolumeFormat& format);
 
 /// Cells along x that a work-item of a stencil should serve: 8 on CPU devices where they do not vectorise over
 /// work-items, which is all but soa/float; else 1.
