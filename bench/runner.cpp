@@ -172,7 +172,7 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
     if (options.log != nullptr) options.log->done(row);
   };
   for (Running& done : running) {
-    done.row.device_bytes = session.most_device_bytes();
+    done.row.device_bytes = session.peak_device_bytes();
     if (done.row.status == Status::ok) conclude(done, options);
     keep(done.row);
     if (done.row.status != Status::ok || !done.job.more_rows) continue;

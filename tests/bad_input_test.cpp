@@ -25,14 +25,14 @@ TEST_F(BadInputTest, TextsThatAreNoJson) {
   for (std::uint64_t i = 0; i <= bounds::kJsonValues; ++i) many += ",0";
   const std::string deep = std::string(100000, '[') + std::string(100000, ']'), zeros(4096, '\0');
   const std::pair<std::string, const char*> texts[] = {
-      {"", "no JSON"},
-      {" ", "no JSON"},
-      {zeros, "no JSON"},
-      {"\x89PNG\r\n\x1a\n", "no JSON"},
-      {std::string("\xff\xfe{\0}\0", 6), "no JSON"},
+      {"", "invalid JSON"},
+      {" ", "invalid JSON"},
+      {zeros, "invalid JSON"},
+      {"\x89PNG\r\n\x1a\n", "invalid JSON"},
+      {std::string("\xff\xfe{\0}\0", 6), "invalid JSON"},
       {"{\"asset\": \"\xff\xfe\"}", "UTF-8"},
-      {"{\"asset\": {\"version\":", "no JSON"},
-      {"{}{}", "no JSON"},
+      {"{\"asset\": {\"version\":", "invalid JSON"},
+      {"{}{}", "invalid JSON"},
       {"{\n\"asset\": {,}\n}", "line 2"},
       {"{\"asset\": 1e999}", "1e999"},
       {deep, "nested more than 64"},

@@ -200,7 +200,7 @@ TEST(SearchCentres, TakesAScenesNormals) {
 TEST(LobeAims, OfFilesAreRejectedWithThePlace) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "w.json").string();
-  for (const auto& [text, word] : {std::pair{"{", "no JSON"},
+  for (const auto& [text, word] : {std::pair{"{", "invalid JSON"},
                                    {"[]", "/weights"},
                                    {R"({"weights": []})", "1 to 10000"},
                                    {R"({"weights": [[0, 0, 1, 1], [0, 0, 1]]})", "/weights/1"},

@@ -41,7 +41,7 @@ TEST_F(CentresFile, MakesTheBasis) {
 
 TEST_F(CentresFile, RejectsWithThePlace) {
   const std::pair<std::string, std::string> bad[] = {
-      {"{", "no JSON"},
+      {"{", "invalid JSON"},
       {"[1]", "object"},
       {"{}", "/centres is missing"},
       {R"({"centres": []})", "1 to 64"},
@@ -49,7 +49,7 @@ TEST_F(CentresFile, RejectsWithThePlace) {
       {R"({"centres": [[0, 0, 1], [1, 2]]})", "/centres/1"},
       {R"({"centres": [[0, 0, 0]]})", "/centres/0"},
       {R"({"centres": [[0, 0, "1"]]})", "/centres/0/2"},
-      {R"({"centres": [[0, 0, 1e999]]})", "no JSON"},
+      {R"({"centres": [[0, 0, 1e999]]})", "invalid JSON"},
       {R"({"centres": [[0, 0, 1], [0, 0, 5]]})", "/centres/1"},
       {R"({"centres": [[0, 0, 1]], "lambda": 1})", "/lambda is 1; allowed: a number between 0 and 1"},
       {R"({"centres": [[0, 0, 1]], "lambda": "wide"})", "/lambda is \"wide\""},

@@ -134,7 +134,7 @@ TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
   {
     Session session(device);
     Frame(session, scene, options).render(scene.cameras.front());
-    device.memory_bytes = session.most_device_bytes() * 3 / 2;
+    device.memory_bytes = session.peak_device_bytes() * 3 / 2;
   }
   Session session(device);
   for (const Directions directions : {Directions::of24, Directions::of96}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Teams of threads, which share work as teams of ranks do: every item belongs to one rank, sums do not depend on who adds, and
+// Ranks as threads: every item belongs to one rank, sums do not depend on the order of ranks, and
 // path tracing gives the same bytes on any number of ranks.
 #include "parallel/ranks.hpp"
 
@@ -17,37 +17,38 @@ namespace {
 using ::testing::ElementsAre;
 
 TEST(TeamTest, OneProcessIsATeamToo) {
-  Ranks team;
-  EXPECT_TRUE(team.alone() && team.is_root());
-  EXPECT_GE(team.processors(), 1);
-  EXPECT_TRUE(team.takes(0) && team.takes(7));
+  Ranks ranks;
+  EXPECT_TRUE(ranks.alone() && ranks.is_root());
+  EXPECT_GE(ranks.processors(), 1);
+  EXPECT_TRUE(ranks.takes(0) && ranks.takes(7));
   double value = 2.5;
-  team.sum({&value, 1});
+  ranks.sum({&value, 1});
   EXPECT_EQ(value, 2.5);
-  EXPECT_THAT(team.gather("mine"), ElementsAre("mine"));
-  EXPECT_EQ(team.from_root([] { return "made"; }), "made");
+  EXPECT_THAT(ranks.gather("mine"), ElementsAre("mine"));
+  EXPECT_EQ(ranks.from_root([] { return "made"; }), "made");
 }
 
 TEST(TeamTest, EachItemBelongsToOneRank) {
   for (const int size : {2, 3, 7}) {
     std::vector<std::atomic<int>> counts(100);
-    test::as_team(size, [&](Ranks& team) {
-      for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += team.takes(i);
+    test::run_ranks(size, [&](Ranks& ranks) {
+      for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += ranks.takes(i);
     });
     for (const auto& count : counts) EXPECT_EQ(count, 1) << size << " ranks";
   }
 }
 
 TEST(TeamTest, WhatOneRankMakesAllHave) {
-  test::as_team(4, [](Ranks& team) {
-    EXPECT_EQ(team.name(), "rank " + std::to_string(team.rank()) + " on threads");
-    EXPECT_EQ(team.from_root([&] { return "of rank " + std::to_string(team.rank()); }), "of rank 0");
-    double values[] = {team.rank() == 2 ? 0.1 : 0.0, 1.0};
-    team.sum(values);
+  test::run_ranks(4, [](Ranks& ranks) {
+    EXPECT_EQ(ranks.name(), "rank " + std::to_string(ranks.rank()) + " on threads");
+    EXPECT_EQ(ranks.from_root([&] { return "of rank " + std::to_string(ranks.rank()); }), "of rank 0");
+    double values[] = {ranks.rank() == 2 ? 0.1 : 0.0, 1.0};
+    ranks.sum(values);
     EXPECT_EQ(values[0], 0.1) << "others add nothing to it";
     EXPECT_EQ(values[1], 4);
-    const std::vector<std::string> all = team.gather(std::string(static_cast<std::size_t>(team.rank()), 'x'));
-    if (team.is_root()) {
+    const std::vector<std::string> all =
+        ranks.gather(std::string(static_cast<std::size_t>(ranks.rank()), 'x'));
+    if (ranks.is_root()) {
       EXPECT_THAT(all, ElementsAre("", "x", "xx", "xxx"));
     }
   });
@@ -64,8 +65,9 @@ TEST(TeamTest, PathsOfAnyNumberOfRanksAreTheSame) {
     if (noise > 0) options.noise = noise;
     const test::TracedImage plain = test::trace_paths(scene, view, options);
     for (const int size : {2, 3}) {
-      test::as_team(size, [&](Ranks& team) {
-        const test::TracedImage shared = reference::trace_paths(scene, scene.lights, view, options, {}, team);
+      test::run_ranks(size, [&](Ranks& ranks) {
+        const test::TracedImage shared =
+            reference::trace_paths(scene, scene.lights, view, options, {}, ranks);
         EXPECT_EQ(shared.irradiance, plain.irradiance) << size << " ranks";
         EXPECT_EQ(shared.rays, plain.rays);
         EXPECT_EQ(shared.samples, plain.samples);

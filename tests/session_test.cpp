@@ -53,7 +53,7 @@ TEST(Session, MemoryIsGivenBackWhenABufferGoes) {
     EXPECT_THROW(session.buffer(4u << 20, "beside it"), Error);
   }
   EXPECT_EQ(session.device_bytes(), 0u);
-  EXPECT_EQ(session.most_device_bytes(), 4u << 20);
+  EXPECT_EQ(session.peak_device_bytes(), 4u << 20);
 }
 
 TEST(Session, ABufferGrowsWhereThereIsNoRoomForTwo) {

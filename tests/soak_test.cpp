@@ -63,14 +63,14 @@ TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
   render_some();
   constexpr int kMostRounds = 6;
   std::vector<double> resident{resident_bytes()};
-  const std::size_t device_before = session.device_bytes(), most_before = session.most_device_bytes();
+  const std::size_t device_before = session.device_bytes(), most_before = session.peak_device_bytes();
   do {
     render_some();
     resident.push_back(resident_bytes());
   } while (resident.back() > kFlat * resident.end()[-2] && resident.size() <= kMostRounds);
   EXPECT_LE(resident.back(), kFlat * resident.end()[-2]) << testing::PrintToString(resident);
   EXPECT_EQ(session.device_bytes(), device_before);
-  EXPECT_EQ(session.most_device_bytes(), most_before);
+  EXPECT_EQ(session.peak_device_bytes(), most_before);
 }
 
 /// As many as CLPV_AT_ONCE says: each compiles what it needs where caches are empty.

@@ -213,10 +213,10 @@ TEST(Volume, PlanesBesideAnImageHoldTheSame) {
     Volume image(test_session(), shape, "image", {Layout::image, storage});
     image.write(test_session(), random_values(shape));
     PlaneStage stage(test_session(), shape, storage);
-    stage.take(image);
+    stage.load(image);
     EXPECT_EQ(stage.planes().read(test_session()), image.read(test_session()));
     stage.planes().write(test_session(), std::vector<float>(random_values(shape).size(), 0.25f));
-    stage.give(image);
+    stage.store(image);
     EXPECT_EQ(stage.planes().read(test_session()), image.read(test_session()));
   }
 }

@@ -113,7 +113,7 @@ Case units_case(Session& session, const SuiteOptions& options, const std::string
   result.row = make_row("scaling", name_of(Stage::propagate), variant);
   place(result.row, "units", static_cast<int>(units));
   result.make = [&session, options, variant, units] {
-    const auto part = std::make_shared<Session>(part_of(session.device(), units));
+    const auto part = std::make_shared<Session>(sub_device(session.device(), units));
     RenderOptions settings = options.settings;
     settings.cascades = 1;
     const auto bench = make_bench(*part, options, settings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What include/clpv promises to other programs, by what is inside.
+// Implements the public interface in include/clpv/.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -73,23 +73,23 @@ std::vector<std::string> SceneFile::notes() const {
 
 struct Renderer::State {
   SceneFile file;
-  std::optional<MovingScene> posed;  ///< a copy of its own, where something moves
+  std::optional<MovingScene> posed;  ///< this renderer's copy of a scene that moves
   RenderOptions options;
   Session session;
   Frame frame;
-  std::optional<LightField> light;  ///< of the last frame, once it is asked for
+  std::optional<LightField> light;  ///< light of the last frame, built by irradiance()
 
-  State(const SceneFile& scene, const Options& given, const std::string& device)
-      : file(scene),
-        posed(scene.moves() ? std::optional(scene.contents().moving) : std::nullopt),
-        options(resolve_options(given.given(), shown())),
+  State(const SceneFile& scene_file, const Options& given, const std::string& device)
+      : file(scene_file),
+        posed(scene_file.moves() ? std::optional(scene_file.contents().moving) : std::nullopt),
+        options(resolve_options(given.given(), scene())),
         session(choose_device(device), ProgramCache::of_user()),
-        frame(session, shown(), options) {}
+        frame(session, scene(), options) {}
 
-  const Scene& shown() const { return posed ? posed->scene() : file.contents().moving.scene(); }
+  const Scene& scene() const { return posed ? posed->scene() : file.contents().moving.scene(); }
 
-  void show(double seconds) {
-    if (!(std::abs(seconds) <= bounds::kSeconds)) {  // NaN is not
+  void pose(double seconds) {
+    if (!(std::abs(seconds) <= bounds::kSeconds)) {  // rejects NaN too
       throw Error(ExitCode::usage, "seconds: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
                   bounds::kSeconds);
     }
@@ -106,8 +106,8 @@ Renderer::~Renderer() {
   if (!state_) return;
   try {
     state_->session.store_programs();
-  } catch (const std::exception& error) {  // a cache is never a reason to fail
-    spdlog::debug("compiled programs are not kept: {}", error.what());
+  } catch (const std::exception& error) {  // a cache never makes the program fail
+    spdlog::debug("compiled programs not cached: {}", error.what());
   }
 }
 
@@ -116,16 +116,16 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Image Renderer::render(View view, const std::string& camera, double seconds) {
   if (name_of(view).empty())
-    throw Error(ExitCode::usage, "view {}: allowed: 0..{}", static_cast<int>(view),
+    throw Error(ExitCode::usage, "view: found {}, allowed: 0..{}", static_cast<int>(view),
                 static_cast<int>(View::depth));
   state_->light.reset();
-  state_->show(seconds);
-  const Camera& seen_by = state_->shown().camera(camera);
-  state_->frame.render(seen_by);
+  state_->pose(seconds);
+  const Camera& chosen = state_->scene().camera(camera);
+  state_->frame.render(chosen);
   Image image = view_image(state_->frame, view);
   for (const OptionDescription& option : list_options(state_->options))
     image.metadata[option.name] = option.value;
-  image.metadata["camera"] = seen_by.name;
+  image.metadata["camera"] = chosen.name;
   image.metadata["time"] = fmt::format("{}", seconds);
   return image;
 }
@@ -135,10 +135,10 @@ std::array<double, 3> Renderer::irradiance(const std::array<double, 3>& position
   const glm::dvec3 at(position[0], position[1], position[2]), n(normal[0], normal[1], normal[2]);
   const double length = glm::length(n);
   if (!(length > 0 && std::isfinite(length)) || !std::isfinite(at.x + at.y + at.z)) {
-    throw Error(
-        ExitCode::usage,
-        "irradiance: found ({}, {}, {}) and normal ({}, {}, {}), allowed: finite numbers, and a direction",
-        at.x, at.y, at.z, n.x, n.y, n.z);
+    throw Error(ExitCode::usage,
+                "irradiance: found position ({}, {}, {}) and normal ({}, {}, {}), allowed: finite numbers, a "
+                "nonzero normal",
+                at.x, at.y, at.z, n.x, n.y, n.z);
   }
   if (!state_->light) state_->light.emplace(state_->session, state_->frame);
   const glm::dvec3 e = state_->light->irradiance(at, n / length);

@@ -49,7 +49,7 @@ LobeAims propagation_axes() {
 }
 
 LobeAims load_aims(const std::string& path) {
-  const json file = read_json(path, kMostFileBytes);
+  const json file = read_json(path, kMaxFileBytes);
   const auto found = file.is_object() ? file.find("weights") : file.end();
   if (found == file.end() || !found->is_array() || found->empty() || found->size() > kMostWeights) {
     throw Error(ExitCode::bad_input, "{}: /weights: allowed: an array of 1 to {} [x, y, z, weight]", path,

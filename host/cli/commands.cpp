@@ -27,7 +27,7 @@ constexpr std::size_t kMostEdits = 2;  // of a misspelt command: "rendr" and "qu
 /// Rank 0 logs as asked; the others only what goes wrong, unless asked for more.
 void set_log(const Shared& shared) {
   set_log_level(shared.quiet, shared.verbosity);
-  const std::optional<Launched> started = launched();
+  const std::optional<LauncherRank> started = launcher_rank();
   if (!started) return;
   if (started->rank > 0 && !shared.quiet && shared.verbosity == 0) spdlog::set_level(spdlog::level::warn);
   set_progress_style(started->rank == 0 ? ProgressStyle::lines : ProgressStyle::none);
@@ -39,7 +39,7 @@ void reject_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
     const std::string name = command->get_name();
     if (std::ranges::count(names, name) > 0) continue;
     command->parse_complete_callback([name, names] {
-      const std::optional<Launched> started = launched();
+      const std::optional<LauncherRank> started = launcher_rank();
       if (!started) return;
       throw Error(ExitCode::usage, "{}: not for several processes (found: rank {} of {}); allowed: {}", name,
                   started->rank, started->size ? std::to_string(*started->size) : "some",
@@ -100,8 +100,8 @@ int ended(const Shared& shared, ExitCode code, const char* words) {
 
 }  // namespace
 
-Ranks& Shared::team() {
-  if (!started) started = launched() ? std::make_unique<Ranks>(start_mpi()) : std::make_unique<Ranks>();
+Ranks& Shared::ranks() {
+  if (!started) started = launcher_rank() ? std::make_unique<Ranks>(start_mpi()) : std::make_unique<Ranks>();
   return *started;
 }
 

@@ -17,7 +17,7 @@ struct Shared {
   bool quiet = false;
   int verbosity = 0;
   /// The ranks that a launcher started this process with; the first call starts MPI.
-  Ranks& team();
+  Ranks& ranks();
   std::unique_ptr<Ranks> started;  ///< none before
 };
 

@@ -60,13 +60,13 @@ void Drawing::run(const std::vector<std::string>& arguments) const {
       "clpv_draw",
       kind_};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  Process::Ended ended = Process("/usr/bin/env", words).end();
+  Process::Result ended = Process("/usr/bin/env", words).end();
   if (ended.code == 0) return;
-  while (ended.said.ends_with('\n')) ended.said.pop_back();
+  while (ended.output.ends_with('\n')) ended.output.pop_back();
   if (ended.code == static_cast<int>(ExitCode::bad_input))
-    throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.said);
+    throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.output);
   throw Error(ExitCode::run_time, "{}: python3 -m clpv_draw ended with {}: {}", asked_by_, ended.code,
-              ended.said);
+              ended.output);
 }
 
 }  // namespace clpv

@@ -85,7 +85,7 @@ void write_outputs(const Options& options, const Camera& camera, const reference
 }
 
 void run(const Options& options, Shared& shared) {
-  Ranks& team = shared.team();
+  Ranks& ranks = shared.ranks();
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   check_outputs(options);
   MovingScene moving(options.scene, options.model);
@@ -97,8 +97,8 @@ void run(const Options& options, Shared& shared) {
   Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
-      shown_on(progress), team);
-  if (!team.is_root()) return;
+      shown_on(progress), ranks);
+  if (!ranks.is_root()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,

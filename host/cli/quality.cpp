@@ -119,15 +119,15 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
 }
 
 /// All cells, by group and camera, at rank 0; elsewhere those of this rank.
-std::vector<QualityCell> measure_all(Ranks& team, Session& session, const std::vector<Group>& groups,
+std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::vector<Group>& groups,
                                      const QualityStore& store, const Options& options) {
-  const bool whole = groups.size() >= static_cast<std::size_t>(team.size());
+  const bool whole = groups.size() >= static_cast<std::size_t>(ranks.size());
   const auto each = [&](const auto& action) {
     std::size_t cell = 0;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       std::unique_ptr<Frame> frame;
       for (std::size_t camera = 0; camera < groups[g].subject.cameras.size(); ++camera, ++cell)
-        if (team.takes(whole ? g : cell)) action(frame, groups[g], camera, cell);
+        if (ranks.takes(whole ? g : cell)) action(frame, groups[g], camera, cell);
     }
   };
   std::size_t mine = 0;
@@ -147,7 +147,7 @@ std::vector<QualityCell> measure_all(Ranks& team, Session& session, const std::v
     cells[number] = to_json(*cell);
     progress.advance();
   });
-  for (const std::string& told : team.gather(nlohmann::json(cells).dump()))
+  for (const std::string& told : ranks.gather(nlohmann::json(cells).dump()))
     cells.merge(nlohmann::json::parse(told).get<std::map<std::size_t, nlohmann::json>>());
   std::vector<QualityCell> all;
   for (const auto& [number, cell] : cells) all.push_back(cell_from_json(cell));
@@ -179,7 +179,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
 }
 
 void run(const Options& options, Shared& shared) {
-  Ranks& team = shared.team();
+  Ranks& ranks = shared.ranks();
   const std::vector<Variant> variants = variants_of(options);
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   for (const std::string& output : {options.json, options.csv}) {
@@ -187,15 +187,15 @@ void run(const Options& options, Shared& shared) {
   }
   const std::filesystem::path folder = quality_cache(options.cache);
   const QualityStore store(folder / "cells");
-  Session session(team.device(shared.device));
+  Session session(ranks.device(shared.device));
   std::vector<Subject> subjects = load_subjects(options.subjects);
   const std::vector<Group> groups = groups_of(options, subjects, variants);
   for (Subject& subject : subjects) {
     const RenderOptions frame = with(options, {}, subject.scene);
-    trace_truths(subject, frame.width, frame.height, tracing, folder / "references", team);
+    trace_truths(subject, frame.width, frame.height, tracing, folder / "references", ranks);
   }
-  const std::vector<QualityCell> cells = measure_all(team, session, groups, store, options);
-  if (!team.is_root()) return;
+  const std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
+  if (!ranks.is_root()) return;
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
   if (!options.json.empty()) write_file(options.json, json);
   if (!options.csv.empty()) write_file(options.csv, quality_csv(cells));

@@ -73,11 +73,11 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
 }
 
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
-                  const std::filesystem::path& folder, Ranks& team) {
+                  const std::filesystem::path& folder, Ranks& ranks) {
   for (const Camera& camera : subject.cameras) {
     Progress progress(fmt::format("reference {} {}", subject.scene.name, camera.name), kTraceSteps);
     subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
-                                                         options, shown_on(progress), team));
+                                                         options, shown_on(progress), ranks));
     const reference::Reference& truth = subject.truths.back();
     spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }

@@ -40,6 +40,6 @@ std::vector<Subject> load_subjects(const QualitySubjects& given);
 
 /// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced. By all ranks.
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
-                  const std::filesystem::path& folder, Ranks& team = alone());
+                  const std::filesystem::path& folder, Ranks& ranks = single_rank());
 
 }  // namespace clpv

@@ -80,19 +80,19 @@ bool holds_frame(const fs::path& file, const std::string& key) {
 /// The scene, the device and all that is made for it stay from frame to frame.
 class Sequence {
  public:
-  Sequence(const Options& options, const Shared& shared, Ranks& team)
+  Sequence(const Options& options, const Shared& shared, Ranks& ranks)
       : options_(options),
-        team_(team),
+        ranks_(ranks),
         moving_(options.request.scene, options.request.model),
         resolved_(resolve_options(options.request.frame, moving_.scene())),
-        device_(team.device(shared.device)) {
+        device_(ranks.device(shared.device)) {
     tell_of_scene(moving_.scene(), camera(), resolved_);
     if (!moving_.moves())
       spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
     Fingerprint print;
     print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
     still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
-    if (team.is_root()) times_ = read_times(times_file(), options.frames);
+    if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
   }
 
   /// The frames of this rank that are not there yet; then, at rank 0, the times of all.
@@ -100,10 +100,10 @@ class Sequence {
     const Clock::time_point started = Clock::now();
     double mine = 0, counts[] = {0, 0};
     auto& [rendered, there] = counts;
-    for (int i = 0; i < options_.frames; ++i) mine += team_.takes(static_cast<std::size_t>(i));
+    for (int i = 0; i < options_.frames; ++i) mine += ranks_.takes(static_cast<std::size_t>(i));
     Progress progress("sequence", static_cast<std::uint64_t>(mine));
     for (int i = 0; i < options_.frames; ++i) {
-      if (!team_.takes(static_cast<std::size_t>(i))) continue;
+      if (!ranks_.takes(static_cast<std::size_t>(i))) continue;
       if (interrupted()) {
         write_times();
         throw Interrupted(fmt::format("{} of {} frames are in {}; the same command goes on", rendered + there,
@@ -112,10 +112,10 @@ class Sequence {
       (render(i) ? rendered : there) += 1;
       progress.advance();
     }
-    team_.sum(counts);
+    ranks_.sum(counts);
     if (there > 0) spdlog::info("{} of {} frames were there already", there, options_.frames);
     if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
-    for (const std::string& told : team_.gather(nlohmann::json(times_).dump()))
+    for (const std::string& told : ranks_.gather(nlohmann::json(times_).dump()))
       for (auto& [number, frame] : nlohmann::json::parse(told).get<SequenceTimes>()) times_[number] = frame;
     write_times();
     if (renderer_) renderer_->session.store_programs();
@@ -234,13 +234,13 @@ class Sequence {
   }
 
   void write_times() {
-    if (!team_.is_root()) return;
+    if (!ranks_.is_root()) return;
     write_file(times_file(), times_json(about(), times_).dump(1) + "\n");
     times_written_ = Clock::now();
   }
 
   const Options& options_;
-  Ranks& team_;
+  Ranks& ranks_;
   MovingScene moving_;
   RenderOptions resolved_;
   Device device_;
@@ -271,13 +271,13 @@ void check_outputs(const Options& options) {
 }
 
 void run(const Options& options, Shared& shared) {
-  Ranks& team = shared.team();
+  Ranks& ranks = shared.ranks();
   check_outputs(options);
   std::optional<Video> video;
-  if (!options.video.empty() && team.is_root()) video.emplace(options.video, options.frames_per_second);
-  Sequence sequence(options, shared, team);
+  if (!options.video.empty() && ranks.is_root()) video.emplace(options.video, options.frames_per_second);
+  Sequence sequence(options, shared, ranks);
   sequence.render();
-  if (!team.is_root()) return;
+  if (!ranks.is_root()) return;
   if (options.stability) sequence.measure_stability();
   if (video) sequence.film(*video);
 }

@@ -54,9 +54,9 @@ Video::~Video() {
   fs::remove(part_, ignored);
 }
 
-void Video::fail(const Process::Ended& ended) const {
+void Video::fail(const Process::Result& ended) const {
   throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), kFfmpeg, ended.code,
-              ended.said);
+              ended.output);
 }
 
 void Video::add(const Image& shown) {
@@ -73,7 +73,7 @@ void Video::add(const Image& shown) {
 }
 
 void Video::finish() {
-  const Process::Ended ended = process_->end();
+  const Process::Result ended = process_->end();
   process_.reset();
   if (ended.code != 0) fail(ended);
   std::error_code failed;

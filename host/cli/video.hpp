@@ -26,7 +26,7 @@ class Video {
   void finish();
 
  private:
-  [[noreturn]] void fail(const Process::Ended& ended) const;
+  [[noreturn]] void fail(const Process::Result& ended) const;
 
   std::filesystem::path file_, part_;
   double frames_per_second_;

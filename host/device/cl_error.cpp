@@ -6,7 +6,7 @@
 namespace clpv {
 namespace {
 
-/// What a user can do about a code; empty where the name says all there is.
+/// Hint for the user about a code; empty if the code's name suffices.
 std::string advice(cl_int code) {
   switch (code) {
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenCL's error codes by name, and its exceptions in the user's words.
+// OpenCL error codes by name, and OpenCL exceptions as clpv errors.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -9,12 +9,12 @@
 
 namespace clpv {
 
-/// "CL_OUT_OF_RESOURCES (-5)"; "code -9999" for one that devices and drivers do not give of themselves.
+/// Returns "CL_OUT_OF_RESOURCES (-5)", or "code -9999" for a code that devices and drivers do not return.
 std::string cl_error_name(cl_int code);
 
-/// `error` as an Error: the call that failed, the code's name, what may help. `doing` (may be empty) is what
-/// it was for: "kernel 'gather' on NAME". Exit code: device where the device is not there (any more) or lacks
-/// something, else run_time.
+/// Converts `error` into an Error that names the failed call, the code and a remedy. `doing` names the
+/// purpose of the call and may be empty: "kernel 'gather' on NAME". Exit code: `device` if the device is
+/// missing or lacks a feature, else `run_time`.
 Error cl_error(const cl::Error& error, const std::string& doing = {});
 
 }  // namespace clpv

@@ -31,7 +31,7 @@ std::string type_name(cl_device_type type) {
   return "other";
 }
 
-/// Runs a fill of 1 MiB and asks whether the event's clock moved as a real one would.
+/// Fills 1 MiB and returns true if the event's start and end times are plausible.
 bool profiling_is_plausible(const cl::Device& handle) {
   try {
     cl::Context context(handle);
@@ -49,7 +49,7 @@ bool profiling_is_plausible(const cl::Device& handle) {
   }
 }
 
-/// Asks a device everything; a driver's failure to answer is thrown as cl::Error.
+/// Queries all properties of a device. Throws cl::Error if the driver fails to answer.
 void describe(Device& device) {
   const cl::Device& handle = device.handle;
   device.name = trimmed(handle.getInfo<CL_DEVICE_NAME>());
@@ -105,14 +105,14 @@ DeviceList list_devices() {
   try {
     cl::Platform::get(&platforms);
   } catch (const cl::Error&) {
-    return list;  // the loader found no platform at all
+    return list;  // the loader found no platform
   }
   for (std::size_t p = 0; p < platforms.size(); ++p) {
     std::vector<cl::Device> handles;
     try {
       platforms[p].getDevices(CL_DEVICE_TYPE_ALL, &handles);
     } catch (const cl::Error&) {
-      handles.clear();  // CL_DEVICE_NOT_FOUND: Mesa's platforms commonly have none
+      handles.clear();  // CL_DEVICE_NOT_FOUND: common for Mesa's platforms
     }
     const std::string platform = trimmed(platforms[p].getInfo<CL_PLATFORM_NAME>());
     if (handles.empty()) list.platforms_without_devices.push_back(platform);
@@ -126,9 +126,8 @@ DeviceList list_devices() {
       device.device_index = d;
       try {
         describe(device);
-      } catch (const cl::Error& error) {  // a broken driver must not hide the others' devices
-        device.missing.push_back(
-            fmt::format("an answer to {} ({})", error.what(), cl_error_name(error.err())));
+      } catch (const cl::Error& error) {  // a broken driver must not hide other devices
+        device.missing.push_back(fmt::format("a working {} ({})", error.what(), cl_error_name(error.err())));
       }
       list.devices.push_back(std::move(device));
     }
@@ -138,19 +137,20 @@ DeviceList list_devices() {
 
 namespace {
 
-/// What is meant where nothing is chosen.
-std::string_view or_environment(std::string_view choice) {
+/// `choice`, or CLPV_DEVICE if `choice` is empty.
+std::string_view choice_or_environment(std::string_view choice) {
   const char* environment = std::getenv("CLPV_DEVICE");
   return choice.empty() && environment != nullptr ? environment : choice;
 }
 
-std::vector<Device> devices_there() {
+/// Lists all devices. Throws Error(device) if platforms exist but none has a device.
+std::vector<Device> found_devices() {
   DeviceList list = list_devices();
   if (list.devices.empty() && !list.platforms_without_devices.empty()) {
     throw Error(
         ExitCode::device,
-        "no OpenCL device found; platforms without one: {} (PoCL has none where it cannot write its cache: "
-        "POCL_CACHE_DIR, XDG_CACHE_HOME or HOME says where)",
+        "no OpenCL device found; platforms without one: {} (PoCL has no device if it cannot write its cache, "
+        "set by POCL_CACHE_DIR, XDG_CACHE_HOME or HOME)",
         fmt::join(list.platforms_without_devices, ", "));
   }
   return std::move(list.devices);
@@ -159,12 +159,12 @@ std::vector<Device> devices_there() {
 }  // namespace
 
 Device choose_device(std::string_view choice) {
-  return choose_device(devices_there(), or_environment(choice));
+  return choose_device(found_devices(), choice_or_environment(choice));
 }
 
 std::vector<Device> choose_devices(std::string_view choice) {
-  choice = or_environment(choice);
-  const std::vector<Device> devices = devices_there();
+  choice = choice_or_environment(choice);
+  const std::vector<Device> devices = found_devices();
   std::vector<Device> chosen;
   if (choice.empty()) {
     const Device first = choose_device(devices, choice);
@@ -175,7 +175,8 @@ std::vector<Device> choose_devices(std::string_view choice) {
   }
   std::ranges::copy_if(devices, std::back_inserter(chosen),
                        [&](const Device& d) { return d.supported() && matches(d, choice); });
-  if (chosen.empty()) chosen.push_back(choose_device(devices, choice));  // throws, and says why none fits
+  if (chosen.empty())
+    chosen.push_back(choose_device(devices, choice));  // throws an error that says why none matches
   return chosen;
 }
 
@@ -189,40 +190,40 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
     if (found != devices.end()) return *found;
     throw Error(ExitCode::device, "no supported OpenCL device among:{}", summary(devices));
   }
-  std::vector<Device> fitting;
+  std::vector<Device> matching;
   for (const Device& device : devices) {
-    if (matches(device, choice)) fitting.push_back(device);
+    if (matches(device, choice)) matching.push_back(device);
   }
-  if (fitting.empty()) {
-    throw Error(ExitCode::device, "no OpenCL device fits '{}'; there are:{}", choice, summary(devices));
+  if (matching.empty()) {
+    throw Error(ExitCode::device, "no OpenCL device matches '{}'; available:{}", choice, summary(devices));
   }
-  if (fitting.size() > 1) {
-    throw Error(ExitCode::device, "several OpenCL devices fit '{}':{}", choice, summary(fitting));
+  if (matching.size() > 1) {
+    throw Error(ExitCode::device, "several OpenCL devices match '{}':{}", choice, summary(matching));
   }
-  if (!fitting[0].supported()) {
-    throw Error(ExitCode::device, "device {} ({}) lacks: {}", fitting[0].index, fitting[0].name,
-                fmt::join(fitting[0].missing, ", "));
+  if (!matching[0].supported()) {
+    throw Error(ExitCode::device, "device {} ({}) lacks: {}", matching[0].index, matching[0].name,
+                fmt::join(matching[0].missing, ", "));
   }
-  return fitting[0];
+  return matching[0];
 }
 
-Device part_of(const Device& device, unsigned units, unsigned index) {
-  Device part = device;
-  if (units == device.compute_units) return part;
+Device sub_device(const Device& device, unsigned units, unsigned index) {
+  Device result = device;
+  if (units == device.compute_units) return result;
   std::vector<cl_device_partition_property> by_counts = {CL_DEVICE_PARTITION_BY_COUNTS};
   by_counts.insert(by_counts.end(), index + 1, static_cast<cl_device_partition_property>(units));
   by_counts.insert(by_counts.end(), {CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0});
-  std::vector<cl::Device> parts;
+  std::vector<cl::Device> handles;
   try {
-    part.handle.createSubDevices(by_counts.data(), &parts);
+    result.handle.createSubDevices(by_counts.data(), &handles);
   } catch (const cl::Error&) {
-    parts.clear();
+    handles.clear();
   }
-  if (parts.size() <= index)
+  if (handles.size() <= index)
     throw Error(ExitCode::device, "{} cannot be split into compute units", device.name);
-  part.handle = parts[index];
-  part.compute_units = units;
-  return part;
+  result.handle = handles[index];
+  result.compute_units = units;
+  return result;
 }
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which OpenCL devices there are, what they can do, and choosing one.
+// Lists OpenCL devices and their capabilities, and chooses one.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -10,11 +10,11 @@
 
 namespace clpv {
 
-/// One OpenCL device and the capabilities clpv asks about, each asked once.
+/// One OpenCL device and the capabilities that clpv uses, queried once. Memory sizes are in bytes.
 struct Device {
   cl::Device handle;
   int index = 0;           ///< over all platforms
-  int platform_index = 0;  ///< among all platforms, those without a device counted too
+  int platform_index = 0;  ///< among all platforms, including those without a device
   int device_index = 0;    ///< within its platform
   std::string platform, platform_version, name, driver, version, type;
   unsigned compute_units = 0;
@@ -24,8 +24,8 @@ struct Device {
   bool image3d_writes = false;
   bool int64_atomics = false;
   bool fp64 = false;
-  bool profiling_valid = false;      ///< events tell plausible times (rusticl's say 1 ns)
-  std::vector<std::string> missing;  ///< why clpv cannot use it; empty: supported
+  bool profiling_valid = false;      ///< events report plausible times (rusticl reports 1 ns)
+  std::vector<std::string> missing;  ///< features that clpv needs; empty: supported
 
   bool supported() const { return missing.empty(); }
 };
@@ -35,23 +35,23 @@ struct DeviceList {
   std::vector<std::string> platforms_without_devices;
 };
 
-/// Every device of every platform. No OpenCL at all is an empty list, not an error.
+/// Lists every device of every platform. Without OpenCL the list is empty; that is no error.
 DeviceList list_devices();
 
-/// The device named by `choice`: an index "N", "PLATFORM:DEVICE", or a part of its name or platform (letter
-/// case aside); empty: CLPV_DEVICE, else the first supported one. Throws Error(device) where none fits,
-/// several fit, or the one that fits lacks something (named).
+/// Returns the device that matches `choice`: an index "N", "PLATFORM:DEVICE", or a substring of its name or
+/// platform (case-insensitive). Empty: CLPV_DEVICE, else the first supported device. Throws Error(device) if
+/// no device matches, several match, or the matching one lacks a feature (named).
 Device choose_device(std::string_view choice = {});
 
-/// The same among given devices; CLPV_DEVICE is not asked.
+/// The same among `devices`; ignores CLPV_DEVICE.
 Device choose_device(const std::vector<Device>& devices, std::string_view choice);
 
-/// All that `choice` fits and that are supported, in their order; without one (CLPV_DEVICE is asked too) the first supported
-/// one and those of its name and platform. Throws Error(device) where there is none.
+/// Returns all supported devices that match `choice` (or CLPV_DEVICE), in order. If both are empty: the first supported
+/// device and all with its name and platform. Throws Error(device) if there is none.
 std::vector<Device> choose_devices(std::string_view choice = {});
 
-/// A part of `units` compute units, the `index`-th of such parts; the device itself where that is all it has.
-/// Throws Error(device) where it cannot be split so.
-Device part_of(const Device& device, unsigned units, unsigned index = 0);
+/// Returns the `index`-th sub-device of `units` compute units, or the device itself if it has exactly `units`.
+/// Throws Error(device) if the device cannot be split.
+Device sub_device(const Device& device, unsigned units, unsigned index = 0);
 
 }  // namespace clpv

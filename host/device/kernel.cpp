@@ -12,15 +12,15 @@ Kernel::Kernel(Session& session, const ProgramSource& source, std::string name)
 cl::Kernel& Kernel::built() {
   if (kernel_() == nullptr) {
     kernel_ = session_->kernel(*program_, name_);
-    parameters_ = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
+    parameter_count_ = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
   }
   return kernel_;
 }
 
 void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
-  if (given_ != parameters_) {
-    throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_, given_,
-                parameters_);
+  if (argument_count_ != parameter_count_) {
+    throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_, argument_count_,
+                parameter_count_);
   }
   session_->launch(built(), global, local);
 }

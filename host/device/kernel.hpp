@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A kernel as an object: described when it is made, built when it is first needed, launched with typed arguments.
+// OpenCL kernel, built on first use and launched with typed arguments.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -16,13 +16,13 @@ namespace clpv {
 class Session;
 struct Program;
 
-/// What a kernel takes by value, in exactly the parameter's type: kernels have no parameters of type bool or double, nor
-/// integers of 64 bits.
+/// Kernel argument passed by value, in exactly the parameter's type. Kernels have no parameters of type bool, double or
+/// 64-bit integer.
 template <typename T>
 concept KernelValue = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::same_as<T, bool> &&
                       !std::same_as<T, double> && !(std::integral<T> && sizeof(T) > sizeof(cl_uint));
 
-/// And memory, where a parameter is a pointer or an image.
+/// Kernel argument for a parameter that is a pointer or an image.
 template <typename T>
 concept KernelMemory =
     std::derived_from<T, cl::Memory> || std::same_as<T, Buffer> || std::same_as<T, Image3D>;
@@ -30,25 +30,26 @@ concept KernelMemory =
 template <typename T>
 concept KernelArgument = KernelValue<T> || KernelMemory<T>;
 
+/// One kernel function of a program, with its arguments.
 class Kernel {
  public:
-  /// The kernel `name` of a program that is not built yet: Session::build_described(), or the first arguments, do that.
+  /// Describes the kernel `name`. Session::build_described() or the first set() builds its program.
   Kernel(Session& session, const ProgramSource& source, std::string name);
 
-  /// Sets the arguments from the first one on; add() goes on where they end.
+  /// Sets arguments from the first parameter on.
   template <KernelArgument... Arguments>
   Kernel& set(const Arguments&... arguments) {
-    given_ = 0;
+    argument_count_ = 0;
     return add(arguments...);
   }
-  /// The arguments that follow: those that only some forms of a kernel have come last.
+  /// Sets the arguments that follow. Parameters that only some variants of a kernel have come last.
   template <KernelArgument... Arguments>
   Kernel& add(const Arguments&... arguments) {
-    (built().setArg(given_++, as_cl(arguments)), ...);
+    (built().setArg(argument_count_++, as_cl(arguments)), ...);
     return *this;
   }
 
-  /// Session::launch() with the arguments set since the last set(). Throws Error(run_time) where these are not all.
+  /// Session::launch() with the arguments set so far. Throws Error(run_time) if arguments are missing.
   void launch(const cl::NDRange& global, const cl::NDRange& local);
 
  private:
@@ -66,7 +67,7 @@ class Kernel {
   std::shared_ptr<Program> program_;
   std::string name_;
   cl::Kernel kernel_;
-  cl_uint parameters_ = 0, given_ = 0;
+  cl_uint parameter_count_ = 0, argument_count_ = 0;
 };
 
 }  // namespace clpv

@@ -10,14 +10,14 @@
 namespace clpv {
 namespace {
 
-constexpr int kMaxIncludeDepth = 8;  // deeper than any real nesting; stops a file that includes itself
+constexpr int kMaxIncludeDepth = 8;  // deeper than any kernel nests; stops a file that includes itself
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   return first == std::string_view::npos ? std::string_view{} : text.substr(first);
 }
 
-/// The NAME of a line `#include "NAME"`, or nothing.
+/// Returns NAME of a line `#include "NAME"`; empty for other lines.
 std::string included_name(std::string_view line) {
   line = trim(line);
   if (!line.starts_with("#include")) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a kernel's source is specialised with, each literal by its type.
+// Typed literals (`#define NAME VALUE`) that specialise a kernel's source.
 #pragma once
 
 #include <concepts>
@@ -8,22 +8,22 @@
 
 namespace clpv {
 
-/// Literals, each written as `#define NAME VALUE`; NAME starts with CLPV_ and is defined once: a second definition, or
-/// another name, throws Error(run_time).
+/// Set of literals. Each name starts with CLPV_ and is defined once. Functions throw Error(run_time) for another name or a
+/// second definition.
 class Literals {
  public:
   Literals& flag(const std::string& name, bool value);  ///< 1 or 0
   template <std::integral T>
-  requires(!std::same_as<T, bool>) Literals& integer(const std::string& name, T value) {  ///< an int: "3"
+  requires(!std::same_as<T, bool>) Literals& integer(const std::string& name, T value) {  ///< int: "3"
     return define(name, std::to_string(value));
   }
   template <std::integral T>
-  requires(!std::same_as<T, bool>) Literals& number(const std::string& name, T value) {  ///< a uint: "3u"
+  requires(!std::same_as<T, bool>) Literals& number(const std::string& name, T value) {  ///< uint: "3u"
     return define(name, std::to_string(value) + "u");
   }
-  Literals& real(const std::string& name, double value);  ///< a float: float_literal()
+  Literals& real(const std::string& name, double value);  ///< float: float_literal()
   Literals& word(const std::string& name,
-                 const std::string& word);  ///< a name of the kernels' own: "CLPV_SOA"
+                 const std::string& word);  ///< name defined in the kernels: "CLPV_SOA"
 
   const std::map<std::string, std::string>& defined() const { return defined_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Device memory that counts as in use for as long as someone holds it.
+// Device memory with reference-counted accounting of bytes in use.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -9,17 +9,17 @@
 
 namespace clpv {
 
-/// Bytes of a session's memory in use, and the most there ever were at once.
+/// Bytes of device memory in use by a session: now and at the peak.
 struct MemoryUse {
-  std::size_t now = 0, most = 0;
+  std::size_t now = 0, peak = 0;
 };
 
-/// Bytes in use while this lives. The count is shared: memory may outlive its session.
+/// Counts `bytes` as in use during its lifetime. The counter is shared because memory may outlive its session.
 class MemoryShare {
  public:
   MemoryShare(std::shared_ptr<MemoryUse> use, std::size_t bytes) : use_(std::move(use)), bytes_(bytes) {
     use_->now += bytes_;
-    if (use_->now > use_->most) use_->most = use_->now;
+    if (use_->now > use_->peak) use_->peak = use_->now;
   }
   ~MemoryShare() { use_->now -= bytes_; }
   MemoryShare(const MemoryShare&) = delete;
@@ -32,8 +32,8 @@ class MemoryShare {
   std::size_t bytes_;
 };
 
-/// A buffer or an image, or none. Copies are the same memory, which is given back with the last of them; the device
-/// keeps it until commands that were enqueued with it are done.
+/// A buffer, an image, or empty. Copies share the memory; the last copy releases it. The device keeps it until
+/// enqueued commands that use it are done.
 template <typename Handle>
 class DeviceMemory {
  public:

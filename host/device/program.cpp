@@ -7,11 +7,11 @@
 namespace clpv {
 namespace {
 
-/// Of a build that fails without a word on the text: PoCL 3.1's does now and then where another process compiles the same
-/// text for the first time, since both write to its cache.
-constexpr int kMoreTries = 2;
+/// Retries of a build that fails without an error in the text. PoCL 3.1 fails so occasionally while another process
+/// compiles the same text for the first time, because both write to PoCL's cache.
+constexpr int kRetries = 2;
 
-/// The compiler's words; none where the driver has none either.
+/// The compiler's log, or a note that the driver has none.
 std::string build_log(const cl::Program& program, const Device& device) {
   try {
     return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle);
@@ -33,7 +33,7 @@ std::string program_text(const ProgramSource& source) {
 
 cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
                           const std::string& text) {
-  for (int left = kMoreTries;; --left) {
+  for (int left = kRetries;; --left) {
     cl::Program program(context, text);
     try {
       program.build(device.handle, source.options.c_str());

@@ -17,16 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "clpv", then the version of the layout below: anything else in a file makes it worthless.
+// "clpv" and the version of the file format. Files that start otherwise are ignored.
 constexpr std::string_view kMagic = "clpv program 2\n";
 constexpr std::string_view kSuffix = ".program";
 
-/// Names files and finds damage; telling keys apart is left to comparing them.
+/// Hash for file names and checksums. Keys are compared in full.
 std::uint64_t hash_of(std::string_view bytes) {
   return Fingerprint().add(bytes).value();
 }
 
-/// A file's contents: magic, key, binary, each with its length, then the hash of all before it.
+/// File contents: magic; key and binary, each with its length; hash of all preceding bytes.
 std::string pack(const std::string& key, const ProgramCache::Binary& binary) {
   std::string bytes(kMagic);
   const auto append = [&bytes](const void* data, std::uint64_t size) {
@@ -39,7 +39,7 @@ std::string pack(const std::string& key, const ProgramCache::Binary& binary) {
   return bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
 }
 
-/// Takes `size` bytes off the front of `rest`; false where it is shorter.
+/// Removes `size` bytes from the front of `rest`; returns false if `rest` is shorter.
 bool take(std::string_view& rest, std::uint64_t size, std::string_view& taken) {
   if (size > rest.size()) return false;
   taken = rest.substr(0, size);
@@ -55,7 +55,7 @@ bool take_sized(std::string_view& rest, std::string_view& taken) {
   return take(rest, size, taken);
 }
 
-/// The binary in a file's contents, if they are whole and of this key.
+/// Returns the binary in a file's contents if these are intact and belong to `key`.
 std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::string& key) {
   std::uint64_t hash = 0;
   if (bytes.size() < kMagic.size() + sizeof hash || !bytes.starts_with(kMagic)) return std::nullopt;
@@ -74,10 +74,10 @@ ProgramCache::ProgramCache(fs::path folder, std::uint64_t max_bytes)
     : folder_(std::move(folder)), max_bytes_(max_bytes) {}
 
 std::optional<ProgramCache> ProgramCache::of_user() {
-  const char* wish = std::getenv("CLPV_PROGRAM_CACHE");
-  if (wish && std::string_view(wish) == "off") return std::nullopt;
+  const char* setting = std::getenv("CLPV_PROGRAM_CACHE");
+  if (setting && std::string_view(setting) == "off") return std::nullopt;
   if (const auto folder = user_cache_folder()) return ProgramCache(*folder);
-  spdlog::debug("neither XDG_CACHE_HOME nor HOME is set: compiled programs are not kept");
+  spdlog::debug("neither XDG_CACHE_HOME nor HOME is set: compiled programs are not cached");
   return std::nullopt;
 }
 
@@ -96,34 +96,33 @@ std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) c
   if (!bytes) return std::nullopt;
   std::optional<Binary> binary = unpack(*bytes, key);
   if (!binary) {
-    spdlog::debug("{}: damaged, or of another program; building anew", file.string());
+    spdlog::debug("{}: damaged or of another program; compiling it again", file.string());
     return std::nullopt;
   }
-  std::error_code ignored;  // the time of last use only orders what is dropped first
+  std::error_code ignored;  // the time of last use only orders eviction
   fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
   return binary;
 }
 
 bool ProgramCache::store(const std::string& key, const Binary& binary) const {
-  std::error_code failed;  // told by write_file()
+  std::error_code failed;  // write_file() reports the error
   fs::create_directories(folder_, failed);
   try {
     write_file(file_of(key), pack(key, binary));
   } catch (const Error& error) {
-    spdlog::debug("a compiled program is not kept: {}", error.what());
+    spdlog::debug("compiled program not cached: {}", error.what());
     return false;
   }
-  drop_oldest();
+  evict_oldest();
   return true;
 }
 
 void ProgramCache::remove(const std::string& key) const {
-  std::error_code
-      ignored;  // gone already, or not ours to remove: the next store() replaces it or says why not
+  std::error_code ignored;  // missing or not removable: the next store() replaces it or reports why not
   fs::remove(file_of(key), ignored);
 }
 
-void ProgramCache::drop_oldest() const {
+void ProgramCache::evict_oldest() const {
   struct File {
     fs::file_time_type used;
     std::uint64_t bytes;
@@ -131,7 +130,7 @@ void ProgramCache::drop_oldest() const {
   };
   std::vector<File> files;
   std::uint64_t total = 0;
-  std::error_code error;  // other processes drop files meanwhile: what is gone is simply not counted
+  std::error_code error;  // other processes may evict files meanwhile: missing files are not counted
   for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
     std::error_code gone;
     File file{it->last_write_time(gone), 0, it->path()};

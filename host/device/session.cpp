@@ -20,8 +20,8 @@ ProgramSource words_program() {
   return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
-constexpr double kPatienceMs = 1000;  // who waits longer is told what for
-constexpr int kKeepingPart = 10;      // of the time that a process runs, for programs to be kept in
+constexpr double kNoticeMs = 1000;  // longer waits are explained in the log
+constexpr int kStoreShare = 10;     // store_programs() takes at most 1/10 of the process's run time
 const auto kProcessStart = std::chrono::steady_clock::now();
 
 cl_uint words_of(std::size_t bytes) {
@@ -36,7 +36,7 @@ double mib(std::size_t bytes) {
   return static_cast<double>(bytes) / (1 << 20);
 }
 
-/// A program from a binary made earlier; nothing where the driver will not have it.
+/// Builds a program from a cached binary; returns nothing if the driver rejects it.
 std::optional<cl::Program> load_program(const cl::Context& context, const Device& device,
                                         const std::string& options, const ProgramCache::Binary& binary) {
   try {
@@ -44,13 +44,13 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
     program.build(device.handle, options.c_str());
     return program;
   } catch (const cl::Error& error) {
-    spdlog::debug("{} rejects a compiled program: {}; building anew", device.name,
+    spdlog::debug("{} rejects a cached program: {}; compiling it again", device.name,
                   cl_error_name(error.err()));
     return std::nullopt;
   }
 }
 
-/// Writes a program's text to the folder CLPV_PROGRAM_DUMP names: for other compilers, and for reports on this one.
+/// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug reports.
 void dump(const ProgramSource& source, const std::string& text) {
   const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
   if (folder == nullptr || *folder == '\0') return;
@@ -72,13 +72,13 @@ Session::Session(Device device, std::optional<ProgramCache> cache)
       timeline_(device_.profiling_valid),
       cache_(std::move(cache)) {}
 
-// An error leaves commands behind. PoCL's threads go on with them, and compile their kernels, while the process ends and what
-// they work with is torn down: one run of eight crashed after it had told its error.
+// After an error, commands may be unfinished. Without this wait PoCL's threads continue to run and compile them while the
+// process ends, which crashed 1 of 8 such runs.
 Session::~Session() {
   try {
     queue_.finish();
   } catch (const cl::Error& error) {
-    spdlog::debug("the queue's end: {}", cl_error_name(error.err()));
+    spdlog::debug("finishing the queue: {}", cl_error_name(error.err()));
   }
 }
 
@@ -91,7 +91,7 @@ std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
 }
 
 void Session::build_described() {
-  // What nobody holds any more was described by a stage that is gone, or was never finished.
+  // Programs without another owner belong to stages that no longer exist.
   std::erase_if(programs_, [](const auto& entry) {
     return entry.second->built() == nullptr && entry.second.use_count() == 1;
   });
@@ -111,13 +111,13 @@ void Session::build(Program& program) {
   if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
-  if (!program.stored && before_ms <= kPatienceMs && build_ms_ > kPatienceMs)
-    spdlog::info("compiling kernels for {}, which takes a while the first time", device_.name);
+  if (!program.stored && before_ms <= kNoticeMs && build_ms_ > kNoticeMs)
+    spdlog::info("compiling kernels for {}: slow on the first run only", device_.name);
   spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
                 program.stored ? "from the cache" : "compiled", elapsed.count());
 }
 
-/// Takes a program from the cache; false where it is not there, or the driver will not have it.
+/// Loads a program from the cache; returns false if it is missing or the driver rejects it.
 bool Session::load(Program& program) {
   if (!cache_) return false;
   const auto binary = cache_->load(program.key);
@@ -132,21 +132,21 @@ bool Session::load(Program& program) {
 
 void Session::store_programs() {
   if (!cache_) return;
-  bool told = false;
+  bool logged = false;
   const auto start = std::chrono::steady_clock::now();
-  const auto most = (start - kProcessStart) / kKeepingPart;
+  const auto limit = (start - kProcessStart) / kStoreShare;
   for (auto& [key, program] : programs_) {
     if (program->stored || program->built() == nullptr) continue;
-    if (std::chrono::steady_clock::now() - start > most) return;
-    // Some drivers compile once more for it.
-    if (!std::exchange(told, true) && build_ms_ > kPatienceMs)
-      spdlog::info("keeping the compiled kernels for later starts");
+    if (std::chrono::steady_clock::now() - start > limit) return;
+    // Reading a binary makes some drivers compile again.
+    if (!std::exchange(logged, true) && build_ms_ > kNoticeMs)
+      spdlog::info("caching the compiled kernels for later runs");
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries[0].empty()) {
-      spdlog::debug("{} gives no compiled programs to keep", device_.name);
+      spdlog::debug("{} returns no program binaries to cache", device_.name);
       return;
     }
-    if (!cache_->store(key, binaries[0])) return;  // said why; the next would fail alike
+    if (!cache_->store(key, binaries[0])) return;  // it logged why; the next program would fail too
     program->stored = true;
   }
 }
@@ -159,7 +159,7 @@ std::size_t Session::largest_buffer() const {
 void Session::require_room(std::size_t bytes, const std::string& what) const {
   if (bytes <= largest_buffer()) return;
   throw Error(ExitCode::run_time,
-              "{} needs {:.1f} MiB, but {} has room for a buffer of at most {:.1f} MiB "
+              "{} needs {:.1f} MiB, but a buffer on {} can have at most {:.1f} MiB "
               "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): try a smaller "
               "grid, rsm-size or image",
               what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
@@ -172,8 +172,8 @@ Buffer Session::buffer(std::size_t bytes, const std::string& what) {
   try {
     const Buffer made(cl::Buffer(context_, CL_MEM_READ_WRITE, bytes),
                       std::make_shared<MemoryShare>(use_, bytes));
-    // Oclgrind 21.10's memory checker takes a new buffer in a freed one's place for the old one, of its size.
-    if (oclgrind()) kept_.push_back(made);
+    // Oclgrind 21.10's memory checker confuses a new buffer at a freed address with the old one and its size.
+    if (oclgrind()) retained_.push_back(made);
     return made;
   } catch (const cl::Error& error) {
     throw cl_error(error, fmt::format("{} ({:.1f} MiB) on {}", what, mib(bytes), device_.name));
@@ -182,7 +182,7 @@ Buffer Session::buffer(std::size_t bytes, const std::string& what) {
 
 void Session::reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
   if (buffer.exists() && buffer.bytes() >= bytes) return;
-  buffer = {};  // first of all: there may not be room for both
+  buffer = {};  // first: memory may not suffice for both
   buffer = this->buffer(bytes, what);
 }
 
@@ -199,12 +199,12 @@ Image3D Session::image(const cl::ImageFormat& texel, const std::array<std::size_
 }
 
 const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, const std::string& what) {
-  // PoCL 3.1 gives the buffer's memory back when the image is released, whoever still holds the buffer: no image of a
-  // buffer is released before the session is.
+  // PoCL 3.1 frees the buffer's memory when the image is released, even if the buffer is still in use. The session
+  // therefore keeps every image of a buffer until its end.
   TableImage& table = table_images_[values];
   if (table.image() == nullptr) {
     table.values = upload(values, what);
-    // One channel of 32-bit floats is among the formats that every device with images reads (OpenCL 1.2, 5.3.2.1).
+    // Every device with images reads CL_R, CL_FLOAT (OpenCL 1.2, section 5.3.2.1).
     table.image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
                                     values.size(), table.values.handle());
   }
@@ -230,8 +230,8 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
   timeline_.add(event);
 }
 
-// Oclgrind 21.10 does not take a fill for an initialisation, and a write or a copy to a part of a buffer makes it lose
-// track of the rest: its memory checker would report what is sound. There kernels fill and copy.
+// Oclgrind 21.10's memory checker does not count a fill as initialisation. After a write or copy to a part of a buffer it
+// also loses track of the rest. Either would make it report valid reads, so kernels fill and copy there.
 void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from) {
   if (oclgrind()) {
     const cl_uint words = words_of(bytes), first = words_of(from);
@@ -241,7 +241,7 @@ void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t fro
     return;
   }
   cl::Event event;
-  // By bytes: PoCL then calls memset, and is five times as fast as with words or with a kernel.
+  // A pattern of 1 byte makes PoCL call memset: 5x faster than 4-byte patterns or a kernel.
   queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
   timeline_.add(event);
 }

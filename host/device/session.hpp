@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A device in use: context, in-order queue, programs built so far, memory held and times taken.
+// A session on one device: context, in-order queue, programs, memory use and stage times.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -19,21 +19,21 @@
 
 namespace clpv {
 
-/// A program as a session knows it: described first, built when it is needed.
+/// A program of a session: described first, built on first use.
 struct Program {
   ProgramSource source;
   std::string text, key;  ///< program_text(source), ProgramCache::key
-  cl::Program built;      ///< none yet, until it is
-  bool stored = false;    ///< in the cache: came from there, or was put there
+  cl::Program built;      ///< null until built
+  bool stored = false;    ///< true if the cache has it
 };
 
-/// One device opened for work. Everything is enqueued on one in-order queue. Not thread safe; one a thread.
+/// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.
 class Session {
  public:
-  /// `cache`: where compiled programs are looked for, and where store_programs() keeps them; none: always
+  /// `cache`: source of compiled programs and target of store_programs(). Without one every program is
   /// compiled.
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt);
-  /// Waits for what was enqueued.
+  /// Waits for all enqueued commands.
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -43,37 +43,36 @@ class Session {
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }
 
-  /// The program of this very source, which is built once in a session: by build_described(), or when a kernel of it is
-  /// first asked for.
+  /// Returns the program of this source. build_described() or the first kernel() of it builds it, once per session.
   std::shared_ptr<Program> describe(const ProgramSource& source);
 
-  /// Builds the programs described so far that are not built yet and still wanted by someone.
-  /// Throws Error(run_time) with the compiler's log; so does kernel().
+  /// Builds all described programs that have an owner and are not built yet.
+  /// Throws Error(run_time) with the compiler's log, as does kernel().
   void build_described();
 
-  /// The kernel `name` of a program of describe().
+  /// Returns the kernel `name` of a program of describe(), which it builds if needed.
   cl::Kernel kernel(Program& program, const std::string& name);
 
-  /// Keeps the programs compiled so far in the cache, for a tenth of the time that the process has run: the rest is left to
-  /// later starts. To be called last, when results are out: on PoCL giving a program away costs about as long as its
-  /// first launches, while starts without find its kernels in PoCL's own cache.
+  /// Stores compiled programs in the cache, for at most 1/10 of the process's run time; later runs store the rest.
+  /// Call it last, after results are written: on PoCL reading a program's binary takes about as long as its first
+  /// launches, and PoCL's own cache already holds the kernels.
   void store_programs();
 
-  /// A buffer of `bytes` (at least 4), its contents undefined; zeroed by fill_zero(). `what` names it in errors.
-  /// Throws Error(run_time) before allocating where the device cannot hold it, and says what it could.
+  /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.
+  /// Throws Error(run_time), before allocating, if the device's memory does not suffice; it states the limit.
   Buffer buffer(std::size_t bytes, const std::string& what);
-  /// Makes `buffer` one of at least `bytes`: as it is, where it is so large, else a new one, its contents undefined.
+  /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
   void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
-  /// An image of `bytes` in all, its contents undefined; errors as of buffer().
+  /// Allocates an image of `extent` texels and `bytes` bytes with undefined contents. Throws like buffer().
   Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent, std::size_t bytes,
                 const std::string& what);
 
-  /// Runs `kernel` over at least `global` work-items, rounded up to whole groups of `local` in each dimension
-  /// (non-uniform groups do not exist in OpenCL 1.2; kernels guard their range). Timed under the current
-  /// mark.
+  /// Runs `kernel` over `global` work-items, rounded up to whole work-groups of `local` in each dimension
+  /// (OpenCL 1.2 has no non-uniform work-groups; kernels guard their range). Timed under the current stage.
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
-  /// `bytes` from byte `from` on, both multiples of 4.
+  /// Zeroes `bytes` bytes from byte `from` on; both are multiples of 4.
   void fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from = 0);
+  /// Copies the first `bytes` bytes of `from` to byte `to_byte` of `to`; both are multiples of 4.
   void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte = 0);
 
   template <typename T>
@@ -81,7 +80,7 @@ class Session {
     if (!values.empty())
       queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, 0, values.size() * sizeof(T), values.data());
   }
-  /// Over a part of what is there, from element `first` on.
+  /// Overwrites elements from `first` on.
   template <typename T>
   void write(const Buffer& buffer, std::span<const T> values, std::size_t first) {
     if (!values.empty())
@@ -101,16 +100,16 @@ class Session {
     return values;
   }
 
-  /// A read-only 1-D image of a buffer that holds `values`, as floats of one channel: the same for the same values, and
-  /// alive as long as the session. `what` names it in errors. For devices with images (Device::images).
+  /// Returns a read-only 1-D image of `values` (one channel of float) that lives as long as the session. Equal values
+  /// share one image. `what` names it in errors. Requires Device::images.
   const cl::Image1DBuffer& table_image(const std::vector<float>& values, const std::string& what);
 
-  /// Largest buffer that still fits [bytes]: the device's limit for one, and what is left of its memory.
+  /// Size of the largest buffer that can be allocated now [bytes].
   std::size_t largest_buffer() const;
 
-  std::size_t device_bytes() const { return use_->now; }        ///< in use
-  std::size_t most_device_bytes() const { return use_->most; }  ///< at once, so far
-  double build_ms() const { return build_ms_; }  ///< spent compiling, or loading from the cache, so far
+  std::size_t device_bytes() const { return use_->now; }        ///< device memory in use
+  std::size_t peak_device_bytes() const { return use_->peak; }  ///< maximum so far
+  double build_ms() const { return build_ms_; }  ///< time spent compiling programs or loading them [ms]
 
  private:
   Device device_;
@@ -126,7 +125,7 @@ class Session {
 
   std::optional<ProgramCache> cache_;
   std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key
-  std::vector<Buffer> kept_;                                  ///< see buffer()
+  std::vector<Buffer> retained_;                              ///< for Oclgrind, see buffer()
   struct TableImage {
     Buffer values;
     cl::Image1DBuffer image;
@@ -136,7 +135,7 @@ class Session {
   double build_ms_ = 0;
 };
 
-/// Marks a stage for the timeline while it lives.
+/// Times all launches during its lifetime as one stage of the timeline.
 class StageScope {
  public:
   StageScope(Session& session, StageMark mark) : session_(session) {

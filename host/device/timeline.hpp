@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When each stage ran on the device, and for how long.
+// Device time of each stage.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -11,7 +11,7 @@
 
 namespace clpv {
 
-/// What a launch belongs to. `cascade` counts from 0 (finest); `light` indexes Scene::lights.
+/// Stage that a launch belongs to. `cascade` counts from 0 (finest); `light` indexes Scene::lights.
 struct StageMark {
   Pass pass;
   std::optional<int> cascade = std::nullopt;
@@ -19,22 +19,24 @@ struct StageMark {
   bool operator==(const StageMark&) const = default;
 };
 
+/// Total device time of one stage [ms].
 struct StageTime {
   StageMark mark;
   double ms = 0;
-  bool from_events = true;  ///< false: wall time, where the device's events are implausible
+  bool from_events = true;  ///< false: wall time, since the device's events are implausible
 };
 
-/// Collects the events of launches under the mark in force.
+/// Collects the events of launches, by stage.
 class Timeline {
  public:
-  /// `events_valid`: whether the device's profiling events tell plausible times (Device::profiling_valid).
+  /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid).
   explicit Timeline(bool events_valid) : events_valid_(events_valid) {}
 
-  void begin(StageMark mark);            ///< starts a stage; a stage may be begun again, its times add up
-  void end(cl::CommandQueue& queue);     ///< without valid events, waits for the queue to take the wall time
-  void add(const cl::Event& event);      ///< an event of the stage begun last
-  std::vector<StageTime> times() const;  ///< waits for the events; one entry a mark, in order of first begin
+  void begin(StageMark mark);         ///< starts a stage; times of repeated stages add up
+  void end(cl::CommandQueue& queue);  ///< without valid events, waits for the queue to measure wall time
+  void add(const cl::Event& event);   ///< adds an event to the current stage
+  std::vector<StageTime> times()
+      const;  ///< waits for the events; one entry per stage, in order of first begin
   void clear();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// MPI, in a module that the program loads where a launcher (mpirun, srun) started it: elsewhere it costs nothing.
+// Communicator on MPI: a module that the program loads only if a launcher (mpirun, srun) started it.
 #include <mpi.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 24;  // a reduction's count is an int
+constexpr std::size_t kChunk = std::size_t{1} << 24;  // elements per reduction, whose count is an int
 
 int length_of(const std::string& text) {
   if (text.size() > std::numeric_limits<int>::max())
@@ -50,23 +50,23 @@ class MpiCommunicator : public Communicator {
   }
 
   void sum(double* values, std::size_t count) override {
-    for (std::size_t first = 0; first < count; first += kMostAtOnce) {
-      const int some = static_cast<int>(std::min(kMostAtOnce, count - first));
-      MPI_Allreduce(MPI_IN_PLACE, values + first, some, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    for (std::size_t first = 0; first < count; first += kChunk) {
+      const int elements = static_cast<int>(std::min(kChunk, count - first));
+      MPI_Allreduce(MPI_IN_PLACE, values + first, elements, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     }
   }
 
-  std::vector<std::string> gather(const std::string& mine) override {
-    const int length = length_of(mine);
+  std::vector<std::string> gather(const std::string& text) override {
+    const int length = length_of(text);
     std::vector<int> lengths(rank_ == 0 ? static_cast<std::size_t>(size_) : 0), starts;
     MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
     std::string all;
-    for (const int one : lengths) {
+    for (const int each : lengths) {
       starts.push_back(length_of(all));
-      all.resize(all.size() + static_cast<std::size_t>(one));
+      all.resize(all.size() + static_cast<std::size_t>(each));
     }
-    length_of(all);
-    MPI_Gatherv(mine.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, 0,
+    length_of(all);  // throws if MPI's int counts overflow
+    MPI_Gatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, 0,
                 MPI_COMM_WORLD);
     std::vector<std::string> texts;
     for (std::size_t r = 0; r < lengths.size(); ++r)

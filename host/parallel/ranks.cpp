@@ -17,7 +17,8 @@ namespace {
 
 constexpr const char* kModule = "clpv_mpi.so";  // found by the program's RUNPATH
 
-class Alone : public Communicator {
+/// Communicator of one process, without MPI.
+class SingleProcess : public Communicator {
  public:
   int rank() const override { return 0; }
   int size() const override { return 1; }
@@ -25,24 +26,24 @@ class Alone : public Communicator {
   int local_size() const override { return 1; }
   std::string host() const override { return "this machine"; }
   void sum(double*, std::size_t) override {}
-  std::vector<std::string> gather(const std::string& mine) override { return {mine}; }
+  std::vector<std::string> gather(const std::string& text) override { return {text}; }
   void broadcast(std::string&) override {}
   [[noreturn]] void abort(int code) override { std::_Exit(code); }
 };
 
-/// All of the machine's where the process is bound to none.
+/// Number of processors that the process is bound to; all of the machine's if it is not bound.
 int bound_processors() {
   cpu_set_t bound;
   if (::sched_getaffinity(0, sizeof bound, &bound) == 0) return CPU_COUNT(&bound);
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// The part of a device for one of several ranks that share it.
+/// Sub-device for the `index`-th of `ranks` ranks that share a device; the whole device if it cannot be split.
 Device share_of(const Device& device, unsigned ranks, unsigned index) {
   const unsigned units = std::max(1u, device.compute_units / ranks);
-  const unsigned parts = std::max(1u, device.compute_units / units);  // fewer than ranks: some share one
+  const unsigned count = std::max(1u, device.compute_units / units);  // if fewer than ranks, some share one
   try {
-    return part_of(device, units, index % parts);
+    return sub_device(device, units, index % count);
   } catch (const Error& error) {
     spdlog::debug("{}; {} ranks share it", error.what(), ranks);
     return device;
@@ -51,15 +52,15 @@ Device share_of(const Device& device, unsigned ranks, unsigned index) {
 
 }  // namespace
 
-Ranks::Ranks() : Ranks(std::make_unique<Alone>()) {}
+Ranks::Ranks() : Ranks(std::make_unique<SingleProcess>()) {}
 
 std::string Ranks::name() const {
   return fmt::format("rank {} on {}", rank(), communicator_->host());
 }
 
 int Ranks::processors() const {
-  const int bound = bound_processors(), there = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN));
-  return bound < there ? bound : std::max(1, there / communicator_->local_size());
+  const int bound = bound_processors(), online = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN));
+  return bound < online ? bound : std::max(1, online / communicator_->local_size());
 }
 
 Device Ranks::device(const std::string& choice) const {
@@ -75,7 +76,7 @@ Device Ranks::device(const std::string& choice) const {
                device.compute_units);
   if (device.type == "cpu" && bound_processors() < static_cast<int>(device.compute_units)) {
     spdlog::warn(
-        "{} is bound to fewer processors than its device has: mpirun --bind-to none lets it take all",
+        "{} is bound to fewer processors than its device has: mpirun --bind-to none allows it all of them",
         name());
   }
   return device;
@@ -88,30 +89,31 @@ std::string Ranks::from_root(const std::function<std::string()>& make) {
   return text;
 }
 
-Ranks& alone() {
-  static Ranks team;
-  return team;
+Ranks& single_rank() {
+  static Ranks ranks;
+  return ranks;
 }
 
-std::optional<Launched> launched() {
+std::optional<LauncherRank> launcher_rank() {
   for (const auto& [rank, size] : {std::pair{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                    {"PMI_RANK", "PMI_SIZE"},
                                    {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}}) {
-    const char *my_rank = std::getenv(rank), *ranks = std::getenv(size);
-    if (my_rank == nullptr) continue;
-    const Launched found{std::atoi(my_rank), ranks ? std::optional(std::atoi(ranks)) : std::nullopt};
+    const char *rank_text = std::getenv(rank), *size_text = std::getenv(size);
+    if (rank_text == nullptr) continue;
+    const LauncherRank found{std::atoi(rank_text),
+                             size_text ? std::optional(std::atoi(size_text)) : std::nullopt};
     return found.size == 1 ? std::nullopt : std::optional(found);
   }
   return std::nullopt;
 }
 
 std::unique_ptr<Communicator> start_mpi() {
-  // MPI's own modules look for its symbols among the global ones.
+  // RTLD_GLOBAL: MPI's plug-ins look up MPI's symbols among the global ones.
   void* module = ::dlopen(kModule, RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr) {
     throw Error(ExitCode::run_time,
-                "started as one of several processes, but without MPI: {}; build with CLPV_MPI where MPI is "
-                "(Debian: libopenmpi-dev)",
+                "started as one of several processes, but built without MPI: {}; install MPI (Debian: "
+                "libopenmpi-dev) and build with CLPV_MPI",
                 ::dlerror());
   }
   const auto make = reinterpret_cast<MakeCommunicator*>(::dlsym(module, kMakeCommunicator));

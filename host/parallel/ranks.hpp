@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ranks that share one job: each takes every size()-th item of it. A process without a launcher is a team of one.
+// Ranks (processes) that share a job: each processes every size()-th item. Without a launcher there is one rank.
 #pragma once
 
 #include <cstdlib>
@@ -17,10 +17,10 @@ namespace clpv {
 
 struct Device;
 
-/// A rank that fails ends all others by abort(): no function below waits for a rank that will not come.
+/// This process among all ranks. A rank that fails ends all others by abort(), so no collective function waits forever.
 class Ranks {
  public:
-  Ranks();  ///< this process alone
+  Ranks();  ///< a single rank, without MPI
   explicit Ranks(std::unique_ptr<Communicator> communicator) : communicator_(std::move(communicator)) {}
 
   int rank() const { return communicator_->rank(); }
@@ -28,27 +28,29 @@ class Ranks {
   bool alone() const { return size() == 1; }
   bool is_root() const { return rank() == 0; }
   std::string name() const;  ///< "rank 3 on node7"
-  /// Processors for this rank: those it is bound to; where it is not bound, its part of the machine's.
+  /// Number of processors for this rank: those it is bound to, else an equal share of the machine's.
   int processors() const;
 
-  /// Whether this rank does that item of a job.
+  /// Returns true if this rank processes item `item` of a job.
   bool takes(std::size_t item) const {
     return item % static_cast<std::size_t>(size()) == static_cast<std::size_t>(rank());
   }
 
-  /// The device for this rank. Alone, choose_device(choice). Else the ranks of a machine take the devices that `choice` fits
-  /// in turn; ranks that share one take equal parts of it, or all of it where it cannot be split. Logs what it is, and warns
-  /// where the rank is bound to fewer processors. Throws what choose_devices throws.
+  /// Returns the device for this rank: choose_device(choice) for a single rank. Else the ranks of a machine take the devices
+  /// that match `choice` in turn. Ranks that share a device get equal sub-devices, or all of it if it cannot be split.
+  /// Logs the device; warns if the rank is bound to fewer processors than it has. Throws like choose_devices().
   Device device(const std::string& choice) const;
 
-  // Collective: all ranks call them in the same order, each from one thread.
+  // Collective functions: all ranks call them in the same order, each from one thread.
+
+  /// Sums `values` over all ranks, element by element, in place.
   void sum(std::span<double> values) { communicator_->sum(values.data(), values.size()); }
-  /// By rank, at rank 0; elsewhere empty.
-  std::vector<std::string> gather(const std::string& mine) { return communicator_->gather(mine); }
-  /// What `make` returns at rank 0, on all ranks.
+  /// Returns every rank's `text`, indexed by rank, at rank 0; empty elsewhere.
+  std::vector<std::string> gather(const std::string& text) { return communicator_->gather(text); }
+  /// Calls `make` at rank 0 and returns its result on all ranks.
   std::string from_root(const std::function<std::string()>& make);
 
-  /// Ends all ranks with that exit code.
+  /// Ends all ranks with exit code `code`.
   [[noreturn]] void abort(ExitCode code) {
     communicator_->abort(static_cast<int>(code));
     std::abort();  // never reached
@@ -58,19 +60,19 @@ class Ranks {
   std::unique_ptr<Communicator> communicator_;
 };
 
-/// A team of one, for work that nobody shares.
-Ranks& alone();
+/// The single rank of a job that is not shared.
+Ranks& single_rank();
 
-/// What the environment says of a launcher: Open MPI's variables (OMPI_COMM_WORLD_*), those of PMI (PMI_*) or of PMIx
+/// Rank and size as a launcher sets them in the environment: Open MPI (OMPI_COMM_WORLD_*), PMI (PMI_*) or PMIx
 /// (PMIX_RANK, with the size of Slurm's step).
-struct Launched {
+struct LauncherRank {
   int rank = 0;
-  std::optional<int> size;  ///< not every launcher tells
+  std::optional<int> size;  ///< not every launcher sets it
 };
-/// Nothing where this process works alone.
-std::optional<Launched> launched();
+/// Returns nothing if no launcher started this process, or only one.
+std::optional<LauncherRank> launcher_rank();
 
-/// Starts MPI, from a module beside the program or where the installation puts it. Throws Error(run_time) without it.
+/// Loads the MPI module (clpv_mpi.so, found by RUNPATH) and starts MPI. Throws Error(run_time) if the module is missing.
 std::unique_ptr<Communicator> start_mpi();
 
 }  // namespace clpv

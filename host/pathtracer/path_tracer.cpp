@@ -34,19 +34,19 @@ glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py
 class Work {
  public:
   Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-       const PathTracerOptions& options, const TraceProgress& progress, Ranks& team)
+       const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
         sky_(scene.sky.get()),
         lights_(lights),
         options_(options),
         progress_(progress),
-        team_(team),
+        ranks_(ranks),
         hits_(std::size_t{view.width} * view.height),
         mine_(2 * hits_.size(), glm::dvec3(0)) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
-    threads_ = options.threads > 0 ? options.threads : team.processors();
+    threads_ = options.threads > 0 ? options.threads : ranks.processors();
   }
 
   /// Everything that needs one ray a pixel: what is seen, and its direct light. Each rank does it whole, to go on from there
@@ -60,13 +60,14 @@ class Work {
     by_threads({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
       each_pixel(tile, [&](std::size_t i, std::uint32_t x, std::uint32_t y) { look(sampler, i, x, y); });
     });
-    if (!team_.is_root()) image_.rays = 0;  // they are counted once
+    if (!ranks_.is_root()) image_.rays = 0;  // they are counted once
   }
 
   /// Paths until there are `samples` a pixel, half of them in each half (the first takes an odd one).
   void trace(std::uint32_t samples) {
-    const auto rank = static_cast<std::size_t>(team_.rank()), ranks = static_cast<std::size_t>(team_.size());
-    const Items items{rank, ranks, 2 * std::size_t{tiles()}};
+    const auto rank = static_cast<std::size_t>(ranks_.rank()),
+               count = static_cast<std::size_t>(ranks_.size());
+    const Items items{rank, count, 2 * std::size_t{tiles()}};
     std::size_t done = 0;
     by_threads(items, [&](PathSampler& sampler, std::size_t item) {
       const auto half = static_cast<std::uint32_t>(item % 2);
@@ -77,12 +78,12 @@ class Work {
           mine_[2 * i + half] += sampler.indirect(*hits_[i], s, stream);
       });
       const std::lock_guard lock(mutex_);
-      done += ranks;
-      if (progress_ && team_.is_root())
+      done += count;
+      if (progress_ && ranks_.is_root())
         progress_(before_ + (after_ - before_) * std::min(1.0, static_cast<double>(done) / items.end));
     });
     sums_ = mine_;  // each sum is made by one rank; the others add zero
-    team_.sum({&sums_[0].x, 3 * sums_.size()});
+    ranks_.sum({&sums_[0].x, 3 * sums_.size()});
     image_.samples = samples;
     image_.noise = noise();
   }
@@ -92,7 +93,7 @@ class Work {
       image_.irradiance[i] = glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
     }
     auto rays = static_cast<double>(image_.rays);
-    team_.sum({&rays, 1});
+    ranks_.sum({&rays, 1});
     image_.rays = static_cast<std::uint64_t>(rays);
     return std::move(image_);
   }
@@ -179,7 +180,7 @@ class Work {
   const std::vector<Light>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
-  Ranks& team_;
+  Ranks& ranks_;
   std::vector<std::optional<Hit>> hits_;  // a pixel
   // Irradiance [W/m^2], summed over paths: two independent halves of each pixel's estimate, of this rank and of all.
   std::vector<glm::dvec3> mine_, sums_;
@@ -217,9 +218,9 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 }  // namespace
 
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-                        const PathTracerOptions& options, const TraceProgress& progress, Ranks& team) {
+                        const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, options);
-  Work work(scene, lights, view, options, progress, team);
+  Work work(scene, lights, view, options, progress, ranks);
   work.look();
   if (options.samples > 0) {
     work.expect(0, 1);

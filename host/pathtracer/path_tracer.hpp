@@ -54,12 +54,12 @@ struct TracedImage {
 using TraceProgress = std::function<void(double)>;
 
 /// `lights` shine, whatever Scene::lights holds (Scene::lights_for).
-/// By all ranks of `team`, each of which has the image then: they share the tiles, and the two halves of their paths.
+/// By all `ranks`, each of which has the image then: they share the tiles, and the two halves of their paths.
 /// The same bytes for the same scene, lights, view, options and seed, whatever the number of threads and ranks.
 /// Throws Error(bad_input) for a scene without surface or without light;
 /// Error(usage) for options out of range.
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
-                        Ranks& team = alone());
+                        Ranks& ranks = single_rank());
 
 }  // namespace clpv::reference

@@ -91,7 +91,7 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.build_ms()},
           {"startup_ms", startup_ms_},
-          {"device_bytes", session.most_device_bytes()},
+          {"device_bytes", session.peak_device_bytes()},
           {"energy", energy}};
 }
 

@@ -108,22 +108,22 @@ void check_place(const std::filesystem::path& file) {
 
 Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
                            int width, int height, const PathTracerOptions& options,
-                           const TraceProgress& progress, Ranks& team) {
+                           const TraceProgress& progress, Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const std::filesystem::path file =
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
                            key(scene, camera, view, options));
   std::optional<Reference> kept;
-  const std::string found = team.from_root([&] {
+  const std::string found = ranks.from_root([&] {
     kept = kept_reference(file);
     if (!kept) check_place(file);
     return kept ? "there" : "";
   });
   if (!found.empty()) return kept ? *std::move(kept) : read_reference(file);
-  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, team);
+  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
   Reference reference{all_views(traced), file, true, traced.samples, traced.noise};
   describe(reference.image, scene, camera, traced, options);
-  if (team.is_root()) write_exr(file, reference.image);
+  if (ranks.is_root()) write_exr(file, reference.image);
   return reference;
 }
 

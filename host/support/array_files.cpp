@@ -13,11 +13,11 @@
 namespace clpv {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "arrays are written in memory order");
 
 constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
-constexpr std::size_t kPreamble = kMagic.size() + 2;  // then the header's length, 16 bits
-constexpr std::size_t kAlignment = 64;                // of the data, asked by the format
+constexpr std::size_t kPreamble = kMagic.size() + 2;  // magic, then the header's length in 16 bits
+constexpr std::size_t kAlignment = 64;                // of the data, required by the format
 
 }  // namespace
 
@@ -25,8 +25,8 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
                std::span<const std::size_t> shape) {
   std::size_t count = 1;
   for (const std::size_t extent : shape) count *= extent;
-  if (count != values.size()) throw std::logic_error("write_npy: the shape does not fit the values");
-  // A tuple of one needs its comma.
+  if (count != values.size()) throw std::logic_error("write_npy: shape and number of values differ");
+  // A Python tuple of one element needs a comma.
   std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}{}), }}",
                                    fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
   const std::size_t used = kPreamble + header.size() + 1;
@@ -52,7 +52,7 @@ void write_vti(const std::filesystem::path& path, const VtiGrid& grid, std::span
   std::string data;
   for (const VtiArray& array : arrays) {
     if (array.values.size() != cells * std::size_t(array.components)) {
-      throw std::logic_error("write_vti: an array does not fit the grid");
+      throw std::logic_error("write_vti: array size and grid differ");
     }
     file += fmt::format(
         "<DataArray type=\"Float32\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrays of float32 as files: NumPy's .npy, and VTK image data (.vti) for ParaView.
+// Writes arrays of float32 as NumPy .npy and as VTK image data (.vti) for ParaView.
 #pragma once
 
 #include <array>
@@ -9,27 +9,27 @@
 
 namespace clpv {
 
-/// Writes a .npy of version 1.0, little endian, in C order: the last index varies fastest. `values` has as many elements as
-/// the shape's product. Throws Error(run_time).
+/// Writes a .npy file of version 1.0, little endian, in C order (last index fastest). The product of `shape` equals
+/// values.size(). Throws Error(run_time) if the file cannot be written.
 void write_npy(const std::filesystem::path& path, std::span<const float> values,
                std::span<const std::size_t> shape);
 
-/// One array of values, one tuple a cell: values[cell * components + k], cells with x varying fastest, then
-/// y, z.
+/// Array of one tuple per cell: values[cell * components + k], cells with x fastest, then y, z.
 struct VtiArray {
   std::string name;
   int components = 1;
   std::span<const float> values;
 };
 
+/// Regular grid of cells.
 struct VtiGrid {
-  std::array<int, 3> cells{};       ///< along x, y, z
-  std::array<double, 3> origin{};   ///< the grid's lower corner [m]
-  std::array<double, 3> spacing{};  ///< a cell's edges [m]
+  std::array<int, 3> cells{};       ///< number along x, y, z
+  std::array<double, 3> origin{};   ///< lower corner of the grid [m]
+  std::array<double, 3> spacing{};  ///< edge lengths of a cell [m]
 };
 
-/// Writes ImageData with appended raw float32, little endian. Each array has components x cells values.
-/// Throws Error(run_time) where the file cannot be written.
+/// Writes VTK ImageData with appended raw float32, little endian. Each array has components x cells values.
+/// Throws Error(run_time) if the file cannot be written.
 void write_vti(const std::filesystem::path& path, const VtiGrid& grid, std::span<const VtiArray> arrays);
 
 }  // namespace clpv

@@ -5,7 +5,7 @@
 
 namespace clpv {
 
-// Here, where all messages pass: many have words of files, names and keys that a stranger chose.
+// Every message passes here. Many quote names and keys of untrusted files, hence printable().
 Error::Error(ExitCode code, const std::string& message)
     : std::runtime_error(printable(message)), code_(code) {}
 

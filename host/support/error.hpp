@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One exception type for everything a user can meet: it is part of the library's door.
+// Error, the exception type of the public interface, and reject() for invalid input.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace clpv {
 
-/// Throws Error(bad_input): "FILE: PLACE: found FOUND; allowed: ALLOWED". PLACE is a JSON pointer or empty.
+/// Throws Error(bad_input) "FILE: PLACE: found FOUND; allowed: ALLOWED". `place` is a JSON pointer, or empty.
 [[noreturn]] void reject(const std::string& file, std::string_view place, std::string_view found,
                          std::string_view allowed);
 

@@ -11,7 +11,7 @@
 namespace clpv {
 namespace {
 
-/// The finaliser of SplitMix64: every bit of x reaches every bit of the result.
+/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of x affects every bit of the result.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -40,7 +40,7 @@ std::string program_fingerprint() {
   std::ifstream file(kSelf, std::ios::binary | std::ios::ate);
   std::vector<char> bytes(file ? static_cast<std::size_t>(file.tellg()) : 0);
   file.seekg(0).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file) throw Error(ExitCode::run_time, "{}: the program cannot read its own file", kSelf);
+  if (!file) throw Error(ExitCode::run_time, "{}: cannot read the program's own file", kSelf);
   return Fingerprint().add(bytes).hex();
 }
 

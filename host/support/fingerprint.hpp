@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A short name for a lot of content: the key of what a cache keeps. Not cryptographic.
+// 64-bit content hash used as a cache key. Not cryptographic.
 #pragma once
 
 #include <cstddef>
@@ -12,31 +12,29 @@
 
 namespace clpv {
 
-/// Takes in content piece by piece. Each piece carries its length, so that "ab","c" and "a","bc" differ.
+/// Incremental hash. Each add() includes the length, so that "ab","c" and "a","bc" differ.
 class Fingerprint {
  public:
   Fingerprint& add(std::span<const std::byte> bytes);
   Fingerprint& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
-  /// By its bytes: T has no padding.
+  /// Adds the bytes of a vector or value. T has no padding.
   template <typename T>
   requires std::is_trivially_copyable_v<T> Fingerprint& add(const std::vector<T>& values) {
     return add(std::as_bytes(std::span(values)));
   }
-  /// The same.
   template <typename T>
   requires(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>) Fingerprint& add(const T& value) {
     return add(std::as_bytes(std::span(&value, 1)));
   }
 
   std::uint64_t value() const { return state_; }
-  /// The same as 16 hexadecimal digits.
-  std::string hex() const;
+  std::string hex() const;  ///< value() as 16 hexadecimal digits
 
  private:
   std::uint64_t state_ = 0;
 };
 
-/// Of the running program's own file, so of everything compiled into it. Throws Error(run_time) where it cannot be read.
+/// Returns the hash of the running program's executable file. Throws Error(run_time) if it cannot be read.
 std::string program_fingerprint();
 
 }  // namespace clpv

@@ -10,11 +10,11 @@ namespace clpv {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t most) {
+std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t limit) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) return std::nullopt;
   const std::uintmax_t size = fs::file_size(path, failed);
-  if (failed || size > most) return std::nullopt;
+  if (failed || size > limit) return std::nullopt;
   std::ifstream in(path, std::ios::binary);
   std::string bytes(static_cast<std::size_t>(size), '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) return std::nullopt;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small files read whole, and only where they are files: a folder of that name opens like one, and then throws a
-// library's words.
+// Reads whole regular files of bounded size. Folders and devices are rejected first, since streams open them too.
 #pragma once
 
 #include <cstddef>
@@ -14,24 +13,23 @@
 
 namespace clpv {
 
-inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{1}
-                                                 << 28;  ///< of caches and reports: far more than any has
+inline constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 28;  ///< more than any cache or report
 
-/// A regular file's bytes. Nothing where there is none, where it cannot be read, or where it is longer than `most`.
+/// Returns a regular file's bytes; nothing if it is missing, unreadable or longer than `limit` bytes.
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
-                                      std::uintmax_t most = kMostFileBytes);
+                                      std::uintmax_t limit = kMaxFileBytes);
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A regular file's contents. `place` names who asked for it. Throws Error(bad_input) where it is missing, no
-/// regular file, unreadable, or longer than `limit` bytes.
+/// Returns a regular file's bytes. `file` and `place` name the document that refers to it, for errors. Throws
+/// Error(bad_input) if it is missing, not a regular file, unreadable or longer than `limit` bytes.
 Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const std::string& file,
                 std::string_view place = {});
 
-/// $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv; nothing where neither variable is set. Not created.
+/// Returns $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv; nothing if neither is set. Does not create the folder.
 std::optional<std::filesystem::path> user_cache_folder();
 
-/// The four bytes from `at` on, which must be there.
+/// Returns the 32-bit little-endian word at byte `at`. Requires at + 4 <= bytes.size().
 inline std::uint32_t little_endian_word(std::span<const std::uint8_t> bytes, std::size_t at) {
   return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 | std::uint32_t{bytes[at + 3]} << 24;
 }

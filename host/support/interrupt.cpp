@@ -8,25 +8,25 @@
 namespace clpv {
 namespace {
 
-std::atomic<int> came{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal may come in the middle of its use");
+std::atomic<int> pending_signal{0};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may write only lock-free atomics");
 
-extern "C" void remember(int signal) {
-  came = signal;
-  std::signal(signal, SIG_DFL);  // the next one is not asked
+extern "C" void on_signal(int signal) {
+  pending_signal = signal;
+  std::signal(signal, SIG_DFL);  // a second signal ends the process at once
 }
 
 }  // namespace
 
 void catch_interrupts() {
   for (const int signal : {SIGINT, SIGTERM}) {
-    // Where a shell runs it in the background, SIGINT is ignored, and stays so.
-    if (std::signal(signal, remember) == SIG_IGN) std::signal(signal, SIG_IGN);
+    // A shell ignores SIGINT for background processes; keep that.
+    if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }
 
 bool interrupted() {
-  return came != 0;
+  return pending_signal != 0;
 }
 
 void stop_if_interrupted(const std::string& kept) {
@@ -34,10 +34,10 @@ void stop_if_interrupted(const std::string& kept) {
 }
 
 void end_as_interrupted() {
-  const int asked = came, signal = asked != 0 ? asked : SIGINT;
+  const int pending = pending_signal, signal = pending != 0 ? pending : SIGINT;
   std::signal(signal, SIG_DFL);
   std::raise(signal);
-  std::abort();  // does not come to pass
+  std::abort();  // never reached
 }
 
 }  // namespace clpv

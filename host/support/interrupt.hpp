@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C: long work ends at its next step, says what of it is kept, and leaves things as they should be.
+// SIGINT and SIGTERM: long work ends cleanly at its next step.
 #pragma once
 
 #include <stdexcept>
@@ -7,23 +7,22 @@
 
 namespace clpv {
 
-/// Thrown where work was asked to end. what(): what became of it, in the user's words.
+/// Thrown when a signal ends work. what() tells the user which results were kept.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// From now on the first SIGINT or SIGTERM only asks work to end; a second one ends the process at once, as they do by
-/// themselves.
+/// Installs the handler: the first SIGINT or SIGTERM sets interrupted(), a second one ends the process at once.
 void catch_interrupts();
 
-/// Whether one came. For loops that do not throw, such as those of other threads.
+/// Returns true after a signal. For loops that must not throw, such as those of other threads.
 bool interrupted();
 
-/// Throws Interrupted if one came: "nothing was written", or what `kept` says.
+/// Throws Interrupted(kept) after a signal.
 void stop_if_interrupted(const std::string& kept = "nothing was written");
 
-/// Ends the process as the signal that came does by itself, so that whoever started it knows.
+/// Ends the process by the pending signal's default action, so that its parent sees the signal.
 [[noreturn]] void end_as_interrupted();
 
 }  // namespace clpv

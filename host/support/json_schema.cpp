@@ -123,7 +123,7 @@ std::vector<std::string> segments_of(const std::string& place) {
   return segments;
 }
 
-/// Follows one rule's place down the document and checks whatever stands there.
+/// Checks all values of a document that match one rule's place.
 class Checker {
  public:
   Checker(const json& document, const Rule& rule, const std::string& file)
@@ -152,7 +152,7 @@ class Checker {
     }
   }
 
-  /// One step down: a key, or an index where there is none. Spelt out only in a rejection; documents are large.
+  /// One level of a path: a key, or an index if `key` is null. Formatted only for errors, since documents are large.
   struct Step {
     const std::string* key;
     std::size_t index;
@@ -186,11 +186,11 @@ class Checker {
   const Rule& rule_;
   const std::string& file_;
   std::vector<std::string> segments_;
-  std::size_t into_size_;  ///< of the list that an index points into
+  std::size_t into_size_;  ///< size of the list that an index points into
   std::vector<Step> steps_;
 };
 
-/// `pattern` is the rule place that led to `value`, `place` its pointer.
+/// Rejects keys of `value` without a rule. `pattern` is the value's place in rules, `place` its JSON pointer.
 void check_keys(const json& value, const std::string& pattern, const std::string& place,
                 std::span<const Rule> rules, const std::string& file) {
   if (value.is_array()) {
@@ -213,8 +213,7 @@ void check_keys(const json& value, const std::string& pattern, const std::string
   }
 }
 
-/// Bounds the depth of brackets and the number of values, without recursion and before a parser allocates for
-/// them.
+/// Rejects JSON nested too deep or with too many values, without recursion and before a parser allocates.
 void check_extent(std::string_view text, const std::string& file) {
   int depth = 0;
   std::uint64_t values = 0;
@@ -234,7 +233,8 @@ void check_extent(std::string_view text, const std::string& file) {
     } else if (c == ']' || c == '}') {
       --depth;
     } else if (c == ',' && ++values > bounds::kJsonValues) {
-      reject(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues), "at most as many");
+      reject(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues),
+             fmt::format("at most {}", bounds::kJsonValues));
     }
   }
 }
@@ -257,15 +257,15 @@ json parse_json(std::string_view text, const std::string& file) {
   check_extent(text, file);
   try {
     return json::parse(text);
-  } catch (const json::exception& error) {  // its text carries line and column
+  } catch (const json::exception& error) {  // its text has line and column
     std::string what = error.what();
     std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
-    reject(file, {}, "no JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
+    reject(file, {}, "invalid JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
   }
 }
 
-json read_json(const std::filesystem::path& path, std::uint64_t most) {
-  const Bytes bytes = read_file(path, most, path.string());
+json read_json(const std::filesystem::path& path, std::uint64_t limit) {
+  const Bytes bytes = read_file(path, limit, path.string());
   return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
 }
 

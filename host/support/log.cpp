@@ -9,7 +9,7 @@
 namespace clpv {
 namespace {
 
-/// What is told, without control characters: scenes have their say in it, by names.
+/// The message without control characters, since it may quote names of untrusted scenes.
 struct PrintableText : spdlog::custom_flag_formatter {
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
     const std::string text = printable({message.payload.data(), message.payload.size()});

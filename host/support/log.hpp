@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Talk: stderr, through spdlog. stdout is for data.
+// Logging to stderr through spdlog; stdout carries data only.
 #pragma once
 
 #include <spdlog/spdlog.h>
 
 namespace clpv {
 
-/// quiet: errors only; 0: what a user should know; 1: choices made; 2: everything.
+/// Sets the log level. quiet: errors only; verbosity 0: info, 1: debug, 2: trace.
 void set_log_level(bool quiet, int verbosity);
 
 }  // namespace clpv

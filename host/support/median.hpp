@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The middle of a series of measurements, which a few outliers do not move.
+// Median of measurements: robust against a few outliers.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace clpv {
 
-/// The middle value, or the mean of the two middle ones; 0 of none.
+/// Returns the middle value, or the mean of the two middle values; 0 if `values` is empty.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0;
   std::ranges::sort(values);

@@ -9,7 +9,7 @@
 
 namespace clpv {
 
-std::size_t place_of_name(std::string_view what, std::string_view name,
+std::size_t index_of_name(std::string_view what, std::string_view name,
                           std::span<const std::string_view> allowed) {
   const auto found = std::ranges::find(allowed, name);
   if (found == allowed.end())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Enumerations whose values have names: the one place where text becomes such a value, and a value text.
+// Conversion between enumeration values and their names.
 //
-// An enumeration counts from 0 without gaps and has beside it its names in their order:
+// A named enumeration counts from 0 without gaps; its names follow it in the same order:
 //   template <>
 //   inline constexpr auto kNames<Layout> = name_list("image", "aos", "soa", "tiled");
 #pragma once
@@ -26,14 +26,14 @@ constexpr auto name_list(const Names&... names) {
 template <typename E>
 concept NamedEnum = std::is_enum_v<E> &&(kNames<E>.size() > 0);
 
-/// Empty for what is no value.
+/// Returns the name of `value`; empty if out of range.
 template <NamedEnum E>
 constexpr std::string_view name_of(E value) {
   const auto i = static_cast<std::size_t>(value);
   return i < kNames<E>.size() ? kNames<E>[i] : std::string_view{};
 }
 
-/// All values, in their order.
+/// Returns all values in order.
 template <NamedEnum E>
 constexpr auto values_of() {
   std::array<E, kNames<E>.size()> values{};
@@ -41,21 +41,21 @@ constexpr auto values_of() {
   return values;
 }
 
-/// Their names, in the same order.
+/// Returns all names in order.
 template <NamedEnum E>
 std::vector<std::string> names_of() {
   return {kNames<E>.begin(), kNames<E>.end()};
 }
 
-/// The place of a name in a list. Throws Error(usage) where it is not there: "layout: found 'planes', allowed:
+/// Returns the index of `name` in `allowed`. Throws Error(usage) if it is missing: "layout: found 'planes', allowed:
 /// image|aos|soa|tiled".
-std::size_t place_of_name(std::string_view what, std::string_view name,
+std::size_t index_of_name(std::string_view what, std::string_view name,
                           std::span<const std::string_view> allowed);
 
-/// The value of that name; throws as place_of_name().
+/// Returns the value named `name`. Throws like index_of_name().
 template <NamedEnum E>
 E named(std::string_view what, std::string_view name) {
-  return static_cast<E>(place_of_name(what, name, kNames<E>));
+  return static_cast<E>(index_of_name(what, name, kNames<E>));
 }
 
 }  // namespace clpv

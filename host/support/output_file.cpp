@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;  // one after the other, as Linux follows
-constexpr int kMostNames = 1000;
+constexpr int kMaxLinks = 40;  // symbolic links in a row, as Linux allows
+constexpr int kMaxNames = 1000;
 
 std::string reason(int code) {
   return std::generic_category().message(code);
@@ -26,13 +26,13 @@ std::string reason(int code) {
   throw Error(ExitCode::run_time, "{}: cannot be written: {}", path.string(), why);
 }
 
-/// A new file in the folder of its target, removed unless it was renamed into place.
+/// Temporary file in the folder of its target; the destructor removes it unless it was renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) : target_(target) {
     static std::atomic<unsigned> count{0};
-    // A process of that number may have been killed here, or be another machine's.
-    for (int tries = 0; descriptor_ < 0 && tries < kMostNames && (tries == 0 || errno == EEXIST); ++tries) {
+    // The name may exist: of a killed process, or of a process on another machine.
+    for (int tries = 0; descriptor_ < 0 && tries < kMaxNames && (tries == 0 || errno == EEXIST); ++tries) {
       path_ = target.parent_path() /
               fmt::format(".{}.{}-{}.part", target.filename().string(), ::getpid(), count++);
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -68,16 +68,16 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-/// Where the bytes go: `path` with its symbolic links followed. Rejects what is not a place for a file.
+/// Returns `path` with its symbolic links resolved. Throws Error(run_time) if no file can be written there.
 fs::path resolve(const fs::path& path) {
-  if (path.filename().empty()) reject_output(path, "that names no file");
+  if (path.filename().empty()) reject_output(path, "the path names no file");
   std::error_code error;
-  // Absolute first: of a relative path that does not exist yet, weakly_canonical would leave the folder out.
+  // Absolute first: weakly_canonical drops the folder of a relative path that does not exist yet.
   fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
   if (error) reject_output(path, error.message());
-  // What is a link still leads to what is not there yet.
+  // A remaining link points to a file that does not exist yet.
   for (int hops = 0; fs::is_symlink(fs::symlink_status(target, error)); ++hops) {
-    if (hops == kMostLinks) reject_output(path, "too many links");
+    if (hops == kMaxLinks) reject_output(path, fmt::format("more than {} symbolic links", kMaxLinks));
     const fs::path next = fs::read_symlink(target, error);
     if (!error) target = fs::weakly_canonical(target.parent_path() / next, error);
     if (error) reject_output(path, error.message());
@@ -86,9 +86,8 @@ fs::path resolve(const fs::path& path) {
     reject_output(path, fmt::format("there is no folder {}", target.parent_path().string()));
   }
   const fs::file_status status = fs::status(target, error);
-  if (fs::is_directory(status)) reject_output(path, "a folder of that name is in the way");
-  if (fs::exists(status) && !fs::is_regular_file(status))
-    reject_output(path, "what is there is not a regular file");
+  if (fs::is_directory(status)) reject_output(path, "it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) reject_output(path, "it is not a regular file");
   if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) reject_output(path, reason(errno));
   return target;
 }

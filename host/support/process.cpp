@@ -16,7 +16,7 @@ extern char** environ;
 namespace clpv {
 namespace {
 
-std::vector<char*> words_of(std::string& program, std::vector<std::string>& arguments) {
+std::vector<char*> argument_pointers(std::string& program, std::vector<std::string>& arguments) {
   std::vector<char*> words{program.data()};
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
@@ -26,38 +26,38 @@ std::vector<char*> words_of(std::string& program, std::vector<std::string>& argu
 std::string contents(std::FILE* file) {
   std::string text;
   std::rewind(file);
-  char part[4096];
-  for (std::size_t read; (read = std::fread(part, 1, sizeof part, file)) > 0;) text.append(part, read);
+  char buffer[4096];
+  for (std::size_t read; (read = std::fread(buffer, 1, sizeof buffer, file)) > 0;) text.append(buffer, read);
   return text;
 }
 
 }  // namespace
 
-Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool fed)
-    : said_(std::tmpfile()) {
-  // A pair of sockets and no pipe: writing to a reader that is gone is then an error and not a signal.
+Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool with_input)
+    : output_(std::tmpfile()) {
+  // Sockets instead of a pipe: writing to a closed reader is then an error, not SIGPIPE.
   int ends[2] = {-1, -1};
-  if (said_ == nullptr || (fed && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)) {
-    failed_ = errno;
+  if (output_ == nullptr || (with_input && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)) {
+    start_error_ = errno;
     return;
   }
   input_ = ends[0];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  if (fed) {
+  if (with_input) {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
   } else {
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   }
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(said_.get()), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(said_.get()), STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(output_.get()), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(output_.get()), STDERR_FILENO);
   std::string name = program;
-  std::vector<std::string> given = arguments;
-  failed_ =
-      ::posix_spawnp(&child_, program.c_str(), &actions, nullptr, words_of(name, given).data(), environ);
+  std::vector<std::string> words = arguments;
+  start_error_ = ::posix_spawnp(&child_, program.c_str(), &actions, nullptr,
+                                argument_pointers(name, words).data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (fed) ::close(ends[1]);
-  if (failed_ != 0) child_ = -1;
+  if (with_input) ::close(ends[1]);
+  if (start_error_ != 0) child_ = -1;
 }
 
 Process::~Process() {
@@ -74,14 +74,14 @@ bool Process::feed(std::span<const std::byte> bytes) {
   return true;
 }
 
-Process::Ended Process::end() {
+Process::Result Process::end() {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
-  if (child_ < 0) return {-1, std::strerror(failed_)};
+  if (child_ < 0) return {-1, std::strerror(start_error_)};
   int status = 0;
   while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(said_.get())};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(output_.get())};
 }
 
 }  // namespace clpv

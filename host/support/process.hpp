@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Another program, run beside this one.
+// A child process with optional input and captured output.
 #pragma once
 
 #include <sys/types.h>
@@ -13,33 +13,35 @@
 
 namespace clpv {
 
+/// A child process, started without a shell.
 class Process {
  public:
-  struct Ended {
-    int code = -1;     ///< 128 + signal where one ended it; -1: could not be started
-    std::string said;  ///< on stdout and stderr
+  struct Result {
+    int code = -1;       ///< exit status; 128 + signal; -1 if the program could not be started
+    std::string output;  ///< stdout and stderr, or the reason why it did not start
   };
 
-  /// Starts it, without a shell; looked up in the path where its name has no '/'. `fed`: it reads what feed() gives it; else it has nothing to read.
-  Process(const std::string& program, const std::vector<std::string>& arguments, bool fed = false);
-  ~Process();  ///< ends the input, and waits
+  /// Starts `program`, searched for in PATH if the name has no '/'. `with_input`: its stdin reads the bytes of feed(); else
+  /// stdin is empty. end() reports a failure to start.
+  Process(const std::string& program, const std::vector<std::string>& arguments, bool with_input = false);
+  ~Process();  ///< closes its input and waits for it to exit
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Waits where it reads slowly. False: it reads no more; end() tells why.
+  /// Writes `bytes` to its stdin; blocks while it reads slowly. Returns false if it has closed stdin.
   bool feed(std::span<const std::byte> bytes);
 
-  /// Ends its input, and waits for it.
-  Ended end();
+  /// Closes its stdin and waits for it to exit.
+  Result end();
 
  private:
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  std::unique_ptr<std::FILE, Close> said_;  ///< a file without a name
+  std::unique_ptr<std::FILE, Close> output_;  ///< an unnamed temporary file
   int input_ = -1;
   pid_t child_ = -1;
-  int failed_ = 0;  ///< errno of starting it
+  int start_error_ = 0;  ///< errno of a failure to start
 };
 
 }  // namespace clpv

@@ -14,11 +14,11 @@ namespace clpv {
 namespace {
 
 constexpr std::chrono::milliseconds kFirstDraw{1000};  // shorter work needs no bar
-constexpr std::chrono::milliseconds kRedraw{100};      // faster than the eye reads would only cost time
-constexpr std::chrono::seconds kNextLine{10};          // a job of hours fills no log
+constexpr std::chrono::milliseconds kRedraw{100};      // fast enough to read
+constexpr std::chrono::seconds kNextLine{10};          // few enough lines for jobs of hours
 constexpr int kBarColumns = 30;
 
-ProgressStyle chosen = ProgressStyle::bar;
+ProgressStyle requested_style = ProgressStyle::bar;
 
 int terminal_columns() {
   winsize size{};
@@ -35,34 +35,35 @@ double share_of(std::uint64_t done, std::uint64_t total) {
   return total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
 }
 
-std::string left_of(double share, double elapsed_seconds) {
+std::string time_left(double share, double elapsed_seconds) {
   return share > 0 ? duration(elapsed_seconds * (1 - share) / share) + " left" : "";
 }
 
-ProgressStyle possible(ProgressStyle wish) {
-  const bool heard = spdlog::should_log(spdlog::level::info);
-  const bool drawn = wish != ProgressStyle::bar || ::isatty(STDERR_FILENO) == 1;
-  return heard && drawn ? wish : ProgressStyle::none;
+/// The requested style, or `none` if the log is quiet or a bar has no terminal.
+ProgressStyle effective_style() {
+  const bool logged = spdlog::should_log(spdlog::level::info);
+  const bool drawable = requested_style != ProgressStyle::bar || ::isatty(STDERR_FILENO) == 1;
+  return logged && drawable ? requested_style : ProgressStyle::none;
 }
 
 }  // namespace
 
 void set_progress_style(ProgressStyle style) {
-  chosen = style;
+  requested_style = style;
 }
 
 std::string progress_words(const std::string& title, std::uint64_t done, std::uint64_t total,
                            double elapsed_seconds) {
   const double share = share_of(done, total);
   return fmt::format("{}: {} of {}, {:.0f} %, {}", title, done, total, 100 * share,
-                     left_of(share, elapsed_seconds));
+                     time_left(share, elapsed_seconds));
 }
 
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,
                           double elapsed_seconds, int columns) {
   const double share = share_of(done, total);
   const int filled = static_cast<int>(share * kBarColumns);
-  const std::string left = left_of(share, elapsed_seconds);
+  const std::string left = time_left(share, elapsed_seconds);
   const std::string bar = std::string(filled, '#') + std::string(kBarColumns - filled, '.');
   std::string line = fmt::format("{} [{}] {:3.0f} % {}", title, bar, 100 * share, left);
   return line.substr(0, static_cast<std::size_t>(std::max(columns, 0)));
@@ -71,7 +72,7 @@ std::string progress_line(const std::string& title, std::uint64_t done, std::uin
 Progress::Progress(std::string title, std::uint64_t total)
     : title_(std::move(title)),
       total_(total),
-      style_(possible(chosen)),
+      style_(effective_style()),
       started_(Clock::now()),
       next_draw_(started_ + (style_ == ProgressStyle::lines ? kNextLine : kFirstDraw)) {}
 
@@ -100,7 +101,7 @@ void Progress::show() {
     next_draw_ = now + kNextLine;
     return;
   }
-  // One column short: a full last column makes some terminals start a new line.
+  // One column less: some terminals wrap after the last column.
   const std::string line = progress_line(title_, done_, total_, elapsed, terminal_columns() - 1);
   std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
   std::fflush(stderr);

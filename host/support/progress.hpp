@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A progress bar on stderr for work that takes over a second.
+// Progress of work that takes over 1 s, as a bar on stderr or as log lines.
 #pragma once
 
 #include <chrono>
@@ -9,24 +9,23 @@
 
 namespace clpv {
 
-/// How progress is told, by every Progress made after: a bar where stderr is a terminal; a line of the log now and then, for jobs
-/// whose stderr never is one; nothing.
+/// bar: on stderr, if it is a terminal; lines: a log line every 10 s, for batch jobs; none.
 enum class ProgressStyle { bar, lines, none };
+/// Sets the style of every Progress constructed later.
 void set_progress_style(ProgressStyle style);
 
-/// Counts work done out of a known total. A bar is not drawn during the first second, when stderr is no terminal,
-/// or when the log is quiet (set_log_level); it wipes its line at the end, so that what was said before still
-/// stands. `advance` and `reach` may be called from several threads.
+/// Counts work done out of a known total. Draws no bar during the first second, if stderr is no terminal or if the log is
+/// quiet (set_log_level). The destructor erases the bar. advance() and reach() are thread safe.
 class Progress {
  public:
-  /// `title`: what is being done ("path tracing"); `total`: in the caller's units, 0 is drawn as done.
+  /// `title` names the work ("path tracing"); `total` is in the caller's units; a total of 0 counts as done.
   Progress(std::string title, std::uint64_t total);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void advance(std::uint64_t amount = 1);
-  void reach(std::uint64_t done);  ///< in all, where others count too
+  void advance(std::uint64_t amount = 1);  ///< adds to the work done
+  void reach(std::uint64_t done);          ///< sets the work done to at least `done`
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -40,12 +39,11 @@ class Progress {
   std::mutex mutex_;
 };
 
-/// "quality: 118 of 360, 33 %, 2:10 left"
+/// Returns the log line of a Progress: "quality: 118 of 360, 33 %, 2:10 left".
 std::string progress_words(const std::string& title, std::uint64_t done, std::uint64_t total,
                            double elapsed_seconds);
 
-/// The line a Progress draws: title, bar, per cent, and the time left at the pace so far. At most `columns`
-/// wide.
+/// Returns the bar of a Progress: title, bar, percentage and estimated time left, at most `columns` wide.
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,
                           double elapsed_seconds, int columns);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text from numbers and numbers from text; and text of strangers as it may be shown.
+// Conversions between numbers and text, and sanitising of untrusted text.
 #pragma once
 
 #include <charconv>
@@ -9,18 +9,18 @@
 
 namespace clpv {
 
-/// `text` (UTF-8) without what moves a terminal's cursor, or more: control characters, U+0000 to U+009F, become '?', but for
-/// newline and tab.
+/// Returns `text` (UTF-8) with control characters (U+0000 to U+001F, U+007F to U+009F) replaced by '?', except newline and
+/// tab: untrusted text must not control a terminal.
 std::string printable(std::string_view text);
 
-/// printable() text for an element or attribute of XML.
+/// Returns printable() text, escaped for an XML element or attribute.
 std::string xml_escaped(const std::string& text);
 
-/// A float literal of the kernel language that reads back as float(value): "0.25f", "1e-05f", "(-0.5f)".
-/// Throws Error(run_time) for a value that a float cannot hold.
+/// Returns an OpenCL C float literal that reads back as float(value): "0.25f", "1e-05f", "(-0.5f)".
+/// Throws Error(run_time) if float(value) is not finite.
 std::string float_literal(double value);
 
-/// The number that all of `text` says; nothing where it says none, or one out of range.
+/// Parses all of `text` as a number; returns nothing if it is none or out of range.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number value{};

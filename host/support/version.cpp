@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Version of the library and the program.
 #include "clpv/version.hpp"
 
 namespace clpv {

@@ -6,7 +6,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kLocalX = 64;  // texels of a row; an image is not faster by blocks on a CPU
+constexpr std::size_t kLocalX = 64;  // texels of a row; on a CPU, images are no faster with 3-D work-groups
 
 ProgramSource source_of(const VolumeShape& shape, Storage storage) {
   ProgramSource source{"convert.cl", {}, coefficient_macros(shape.coefficients)};
@@ -49,11 +49,11 @@ void PlaneStage::launch(Kernel& kernel, const Volume& from, const Volume& to) co
   kernel.set(from.memory(), to.memory()).launch({n, n, n * channels}, {kLocalX, 1, 1});
 }
 
-void PlaneStage::take(const Volume& image) {
+void PlaneStage::load(const Volume& image) {
   launch(from_image_, image, planes_);
 }
 
-void PlaneStage::give(Volume& image) {
+void PlaneStage::store(Volume& image) {
   launch(to_image_, planes_, image);
 }
 

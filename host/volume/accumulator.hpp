@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adding to volumes, whatever their layout.
+// Adds to volumes of any layout, including images, which a launch cannot both read and write.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace clpv {
 
-/// Planes (`soa`, the image's own storage) beside image volumes of one shape.
+/// A buffer volume of layout `soa` that image volumes of one shape are copied to and from.
 class PlaneStage {
  public:
   PlaneStage(Session& session, const VolumeShape& shape, Storage storage);
 
   Volume& planes() { return planes_; }
-  void take(const Volume& image);  ///< planes become what the image holds
-  void give(Volume& image);        ///< and the other way round
+  void load(const Volume& image);  ///< copies the image to the planes
+  void store(Volume& image);       ///< copies the planes to the image
 
  private:
   void launch(Kernel& kernel, const Volume& from, const Volume& to) const;
@@ -29,16 +29,15 @@ class PlaneStage {
   Kernel from_image_, to_image_;
 };
 
-/// Lets launches add to what volumes hold. Buffers are added to in place. An image cannot be both read and written by
-/// one launch (OpenCL 1.2): what adds to all its cells writes a spare image, which then changes places with it, and what
-/// adds to some cells does so to planes in a buffer, which it is copied to and from. Spares and planes are made when
-/// first needed, one for all volumes of a shape and format.
+/// Lets launches add to volumes. Buffers are updated in place. OpenCL 1.2 cannot read and write an image in one launch.
+/// add() therefore writes a spare image and swaps the two; add_to_cells() copies the image to a PlaneStage and back.
+/// Spares and planes are allocated on first use and shared by all volumes of a shape and format.
 class Accumulator {
  public:
   explicit Accumulator(Session& session) : session_(session) {}
 
-  /// Calls launch(so_far, next): from every cell of `so_far`, which is what `sum` holds, a kernel writes that cell of
-  /// `next`, which is what it then holds.
+  /// Calls launch(current, next), whose kernel reads every cell of `current` = `sum` and writes that cell of `next`.
+  /// `sum` then holds `next`.
   template <typename Launch>
   void add(Volume& sum, Launch launch) {
     if (sum.format().layout != Layout::image) {
@@ -50,8 +49,8 @@ class Accumulator {
     std::swap(sum, spare);
   }
 
-  /// Calls launch(cells) with a volume of cells_format() that holds what `sum` does, of which a kernel changes any
-  /// cells; `sum` then holds the same.
+  /// Calls launch(cells) with a copy of `sum` in cells_format(), of which a kernel may change any cells. `sum` then holds
+  /// the result.
   template <typename Launch>
   void add_to_cells(Volume& sum, Launch launch) {
     if (sum.format().layout != Layout::image) {
@@ -59,10 +58,11 @@ class Accumulator {
       return;
     }
     PlaneStage& stage = planes_of(sum);
-    stage.take(sum);
+    stage.load(sum);
     launch(std::as_const(stage.planes()));
-    stage.give(sum);
+    stage.store(sum);
   }
+  /// Format of the volume that add_to_cells() passes to its launch.
   static VolumeFormat cells_format(const VolumeFormat& format);
 
  private:

@@ -8,7 +8,7 @@
 namespace clpv {
 namespace {
 
-/// Calls visit(index among the stored numbers, index in host order) for every coefficient of every sample.
+/// Calls visit(index of the stored number, index in host order) for every coefficient of every cell.
 template <typename Visit>
 void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit visit) {
   std::size_t host = 0;
@@ -61,7 +61,7 @@ void Volume::clear(Session& session) {
 
 void Volume::copy_from(Session& session, const Volume& from) {
   if (from.shape_ != shape_ || from.format_ != format_) {
-    throw Error(ExitCode::run_time, "a copy between volumes of different shapes or formats");
+    throw Error(ExitCode::run_time, "cannot copy between volumes of different shapes or formats");
   }
   if (format_.layout != Layout::image) {
     session.copy(from.buffer_, buffer_, bytes_);
@@ -123,14 +123,14 @@ void Volume::write(Session& session, const std::vector<float>& values) {
 void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFormat& format,
                  const char* what) {
   if (volume.format() != format) {
-    throw Error(ExitCode::run_time, "{} is made for volumes of {}, not {}", what, format_name(format),
-                format_name(volume.format()));
+    throw Error(ExitCode::run_time, "{}: found a volume of {}, allowed: {}", what,
+                format_name(volume.format()), format_name(format));
   }
   const VolumeShape& found = volume.shape();
   if (found != shape) {
-    throw Error(ExitCode::run_time, "{} is made for volumes of {}^3 x {} x {} values, not {}^3 x {} x {}",
-                what, shape.n, shape.coefficients, shape.channels, found.n, found.coefficients,
-                found.channels);
+    throw Error(ExitCode::run_time, "{}: found a volume of {}^3 x {} x {} values, allowed: {}^3 x {} x {}",
+                what, found.n, found.coefficients, found.channels, shape.n, shape.coefficients,
+                shape.channels);
   }
 }
 

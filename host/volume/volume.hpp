@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A volume on the device: N coefficients a cell and channel, in one buffer or one image.
+// A volume on the device: N coefficients per cell and channel, in one buffer or one image.
 #pragma once
 
 #include <string>
@@ -10,26 +10,27 @@
 
 namespace clpv {
 
-/// Every layout has zeros round the samples of each channel, so that neighbours need no bounds checks. Made
-/// zero.
+/// Volume of n^3 cells with zeros around each channel in every layout, so that stencils need no bounds checks.
+/// Initially zero.
 class Volume {
  public:
-  /// Throws Error(device) "unsupported: ..." where the device cannot hold such a volume, Error(run_time) where its
-  /// memory does not suffice.
+  /// Throws Error(device) "unsupported: ..." if the device cannot hold such a volume, Error(run_time) if its memory does
+  /// not suffice. `what` names the volume in errors.
   Volume(Session& session, const VolumeShape& shape, const std::string& what,
          const VolumeFormat& format = {});
 
   const VolumeShape& shape() const { return shape_; }
   const VolumeFormat& format() const { return format_; }
   std::size_t bytes() const { return bytes_; }
-  /// For a kernel's argument of type CLPV_VOLUME_IN or CLPV_VOLUME_OUT.
+  /// Kernel argument for a parameter of type CLPV_VOLUME_IN or CLPV_VOLUME_OUT.
   const cl::Memory& memory() const;
 
   void clear(Session& session);
-  /// `from`: the same shape and format.
+  /// Copies `from`. Throws Error(run_time) unless it has the same shape and format.
   void copy_from(Session& session, const Volume& from);
-  /// Host order: [channel][coefficient][z][y][x], as in a .npy of shape (channels, N, z, y, x).
+  /// Returns all numbers in host order: [channel][coefficient][z][y][x], as in a .npy of shape (channels, N, z, y, x).
   std::vector<float> read(Session& session) const;
+  /// Writes all numbers from host order.
   void write(Session& session, const std::vector<float>& values);
 
  private:
@@ -39,11 +40,11 @@ class Volume {
   VolumeShape shape_;
   VolumeFormat format_;
   std::size_t bytes_ = 0;
-  Buffer buffer_;  ///< one of the two is none
-  Image3D image_;
+  Buffer buffer_;  ///< empty if the layout is `image`
+  Image3D image_;  ///< empty otherwise
 };
 
-/// Throws Error(run_time) where `volume` is of another shape or format than `what` is made for.
+/// Throws Error(run_time) unless `volume` has the shape and format that the stage `what` is built for.
 void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFormat& format,
                  const char* what);
 

@@ -18,7 +18,7 @@ void write_volume_vti(const std::filesystem::path& path, const std::vector<float
                       const ClpvGrid& grid, int coefficients) {
   const std::size_t cells = static_cast<std::size_t>(grid.n) * grid.n * grid.n;
   const std::size_t components = coefficients;
-  // A .vti keeps a cell's components together; volumes keep a component's cells together.
+  // A .vti stores all components of a cell together; volumes store all cells of a component together.
   std::array<std::vector<float>, 3> channels;
   for (std::size_t c = 0; c < 3; ++c) {
     channels[c].resize(cells * components);
@@ -27,16 +27,16 @@ void write_volume_vti(const std::filesystem::path& path, const std::vector<float
         channels[c][p * components + i] = values[(c * components + i) * cells + p];
     }
   }
-  VtiGrid place;
+  VtiGrid vti_grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    place.cells[axis] = grid.n;
-    place.origin[axis] = grid.origin[axis];
-    place.spacing[axis] = grid.cell;
+    vti_grid.cells[axis] = grid.n;
+    vti_grid.origin[axis] = grid.origin[axis];
+    vti_grid.spacing[axis] = grid.cell;
   }
   const std::array<VtiArray, 3> arrays{VtiArray{"red", coefficients, channels[0]},
                                        VtiArray{"green", coefficients, channels[1]},
                                        VtiArray{"blue", coefficients, channels[2]}};
-  write_vti(path, place, arrays);
+  write_vti(path, vti_grid, arrays);
 }
 
 }  // namespace clpv

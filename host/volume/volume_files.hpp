@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light volumes as files: .npy for scripts, .vti for ParaView.
+// Writes light volumes to files: .npy for scripts, .vti for ParaView.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,12 @@
 
 namespace clpv {
 
-/// Accumulated radiant intensity [W/sr] as .npy: float32, shape (3, N, z, y, x). `values` in that order.
+/// Writes accumulated radiant intensity [W/sr] as .npy: float32, shape (3, N, z, y, x), `values` in that order.
+/// Throws Error(run_time) if the file cannot be written.
 void write_volume_npy(const std::filesystem::path& path, const std::vector<float>& values, int cells,
                       int coefficients);
 
-/// The same as .vti: point in space by `grid`, and per channel (red, green, blue) one array of N components a cell.
+/// Writes the same as .vti: positions from `grid`, one array of N components per cell for each of red, green, blue.
 void write_volume_vti(const std::filesystem::path& path, const std::vector<float>& values,
                       const ClpvGrid& grid, int coefficients);
 

@@ -11,9 +11,9 @@
 namespace clpv {
 namespace {
 
-constexpr int kTile = 8;   // samples of a block of layout `tiled`
+constexpr int kTile = 8;   // cells of a block of layout `tiled`
 constexpr int kTexel = 4;  // coefficients of a texel
-constexpr int kMostLanes = 8;
+constexpr int kMaxLanes = 8;
 
 /// Beside kNames<Layout>.
 constexpr const char* kLayoutLiterals[] = {"CLPV_IMAGE", "CLPV_AOS", "CLPV_SOA", "CLPV_TILED"};
@@ -31,13 +31,13 @@ std::size_t blocks_per_row(const VolumeShape& shape) {
   return size((shape.n + kTile - 1) / kTile + 1);
 }
 
-/// Samples from a row to the next one: eight lanes never reach into it.
+/// Cells from one row to the next, so that 8 lanes never reach the next row.
 std::size_t row_pitch(const VolumeShape& shape) {
-  return size((shape.n + kMostLanes - 1) / kMostLanes * kMostLanes + 2);
+  return size((shape.n + kMaxLanes - 1) / kMaxLanes * kMaxLanes + 2);
 }
 
-/// Samples of a channel with the border all round.
-std::size_t bordered(const VolumeShape& shape) {
+/// Cells of a channel, including its border.
+std::size_t bordered_cells(const VolumeShape& shape) {
   return size(shape.n + 2) * size(shape.n + 2) * row_pitch(shape);
 }
 
@@ -71,16 +71,16 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
   if (const auto reason = unsupported(device, format)) return reason;
   if (format.layout == Layout::image) {
     const ImageExtent extent = image_extent(shape);
-    const std::size_t most_x = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_WIDTH>(),
-                      most_y = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_HEIGHT>(),
-                      most_z = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_DEPTH>();
-    if (extent.x <= most_x && extent.y <= most_y && extent.z <= most_z) return std::nullopt;
+    const std::size_t max_x = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_WIDTH>(),
+                      max_y = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_HEIGHT>(),
+                      max_z = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_DEPTH>();
+    if (extent.x <= max_x && extent.y <= max_y && extent.z <= max_z) return std::nullopt;
     return fmt::format("an image of {} x {} x {} texels; at most {} x {} x {}", extent.x, extent.y, extent.z,
-                       most_x, most_y, most_z);
+                       max_x, max_y, max_z);
   }
-  const std::size_t most = std::numeric_limits<std::int32_t>::max(), numbers = stored_numbers(format, shape);
-  if (numbers > most) {
-    return fmt::format("a volume of {} numbers; kernels address at most {}", numbers, most);
+  const std::size_t limit = std::numeric_limits<std::int32_t>::max(), numbers = stored_numbers(format, shape);
+  if (numbers > limit) {
+    return fmt::format("a volume of {} numbers; kernels address at most {}", numbers, limit);
   }
   return std::nullopt;
 }
@@ -92,12 +92,12 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
 }
 
 int preferred_lanes(const Device& device, const VolumeFormat& format) {
-  const bool across_work_items = format == VolumeFormat{};
-  return across_work_items ? 1 : preferred_row_lanes(device, format);
+  const bool vectorised_over_work_items = format == VolumeFormat{};
+  return vectorised_over_work_items ? 1 : preferred_row_lanes(device, format);
 }
 
 int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
-  return device.type == "cpu" && format.layout != Layout::image ? kMostLanes : 1;
+  return device.type == "cpu" && format.layout != Layout::image ? kMaxLanes : 1;
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
@@ -116,13 +116,13 @@ std::size_t bytes_per_cell(const VolumeFormat& format, int coefficients) {
 }
 
 ImageExtent image_extent(const VolumeShape& shape) {
-  const auto stacked = [&](int parts) { return size(parts) * size(shape.n + 1) - 1; };
+  const auto stacked = [&](int slabs) { return size(slabs) * size(shape.n + 1) - 1; };
   return {size(shape.n), stacked(shape.channels), stacked(texels_per_cell(shape.coefficients))};
 }
 
 std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape) {
   const std::size_t n = size(shape.coefficients), channels = size(shape.channels);
-  // An even number of halves can be filled four bytes at a time.
+  // Buffers are zeroed in units of 4 bytes, so the number of halves is even.
   const auto padded = [](std::size_t numbers) { return (numbers + 1) / 2 * 2; };
   switch (format.layout) {
     case Layout::image: {
@@ -132,11 +132,11 @@ std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape)
     case Layout::tiled:
       return (channels * size(shape.n + 2) * size(shape.n + 2) * blocks_per_row(shape) + 1) * kTile * n;
     case Layout::aos:
-      return padded(channels * bordered(shape) * n);
+      return padded(channels * bordered_cells(shape) * n);
     case Layout::soa:
       break;
   }
-  return padded(channels * n * bordered(shape));
+  return padded(channels * n * bordered_cells(shape));
 }
 
 std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape) {
@@ -161,7 +161,7 @@ std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, i
     case Layout::soa:
       break;
   }
-  return (size(channel) * n + i) * bordered(shape) + (size(z + 1) * rows + size(y + 1)) * row_pitch(shape) +
+  return (size(channel) * n + i) * bordered_cells(shape) + (size(z + 1) * rows + size(y + 1)) * row_pitch(shape) +
          size(x + 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a volume lies in memory: layout and storage; what a device lacks for either, and what a cell costs to reach.
+// Memory formats of volumes (layout and storage): device support, lanes, sizes and addresses.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace clpv {
 
-/// Shape of a volume. `n` samples along each axis, `coefficients` a sample and channel.
+/// Shape of a volume: n^3 cells with `coefficients` numbers per cell and channel.
 struct VolumeShape {
   int n = 0;
   int coefficients = 0;
@@ -23,41 +23,42 @@ struct VolumeShape {
 
 std::size_t number_bytes(Storage storage);
 std::string format_name(const VolumeFormat& format);  ///< "soa/float"
-std::vector<VolumeFormat> all_formats();
+std::vector<VolumeFormat> all_formats();               ///< every layout with every storage
 
-/// Why the device cannot hold volumes of this format at all: "no 3-D image writes (cl_khr_3d_image_writes)".
+/// Returns the reason why the device cannot hold volumes of this format: "no 3-D image writes (cl_khr_3d_image_writes)".
+/// Nothing if it can.
 std::optional<std::string> unsupported(const Device& device, const VolumeFormat& format);
-/// The same of a volume of this shape: "an image of 33 x 98 x 2100 texels; at most 2048 along z".
+/// The same for a volume of this shape: "an image of 33 x 98 x 2100 texels; at most 2048 x 2048 x 2048".
 std::optional<std::string> unsupported(const Device& device, const VolumeFormat& format,
                                        const VolumeShape& shape);
-/// Throws Error(device) "unsupported: ..." where one of them gives a reason.
+/// Throws Error(device) "unsupported: ..." if either function returns a reason.
 void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape);
 
-/// Cells along x that a work-item of a stencil should serve: 8 on CPU devices where they do not vectorise over
-/// work-items, which is all but soa/float; else 1.
+/// Preferred number of cells along x per work-item of a stencil: 1 or 8. It is 8 on CPU devices for buffers other than
+/// soa/float, since only soa/float vectorises over work-items there.
 int preferred_lanes(const Device& device, const VolumeFormat& format);
 
-/// The same where work-items do not vectorise whatever the format: 8 in buffers on CPU devices.
+/// The same for kernels that never vectorise over work-items: 8 for buffers on CPU devices.
 int preferred_row_lanes(const Device& device, const VolumeFormat& format);
 
-/// What kernels/volume/instance.h wants to know.
+/// Adds the literals that kernels/volume/instance.h needs.
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes = 1);
 
-/// Loads, or stores, that one cell of one channel takes: texels of images, numbers of buffers.
+/// Number of loads or stores for one cell of one channel: texels for images, numbers for buffers.
 int accesses_per_cell(const VolumeFormat& format, int coefficients);
-/// Bytes these move.
+/// Bytes moved by accesses_per_cell().
 std::size_t bytes_per_cell(const VolumeFormat& format, int coefficients);
 
-/// Texels of the image that holds a volume: kernels/volume/image.h.
+/// Extent in texels of the image that holds a volume, as in kernels/volume/image.h.
 struct ImageExtent {
   std::size_t x, y, z;
 };
 ImageExtent image_extent(const VolumeShape& shape);
-/// Numbers a volume takes in memory, borders and padding included.
+/// Count of numbers of a volume in memory, including borders and padding.
 std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape);
 std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape);
 
-/// Where a coefficient of a sample is among the stored numbers; the one mirror of the address functions in
+/// Index of a cell's coefficient among the stored numbers; the host's counterpart of the address functions in
 /// kernels/volume/.
 std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel, int coefficient,
                          int x, int y, int z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A team of threads in one process, to test without MPI what teams do.
+// Ranks as threads of one process, to test without MPI.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace clpv::test {
 
-/// What the threads of a team have in common.
+/// State that the threads share.
 struct Meeting {
   explicit Meeting(int size) : size(size), texts(static_cast<std::size_t>(size)), all(size) {}
   int size;
@@ -65,14 +65,14 @@ class ThreadCommunicator : public Communicator {
   int rank_;
 };
 
-/// Runs `work` as each rank of a team of that size, to its end.
-inline void as_team(int size, const std::function<void(Ranks&)>& work) {
+/// Runs `work` on `size` ranks, one thread each, and waits for all of them.
+inline void run_ranks(int size, const std::function<void(Ranks&)>& work) {
   Meeting meeting(size);
   std::vector<std::jthread> threads;
   for (int rank = 0; rank < size; ++rank) {
     threads.emplace_back([&meeting, &work, rank] {
-      Ranks team(std::make_unique<ThreadCommunicator>(meeting, rank));
-      work(team);
+      Ranks ranks(std::make_unique<ThreadCommunicator>(meeting, rank));
+      work(ranks);
     });
   }
 }
