@@ -37,7 +37,7 @@ Transport swept() {
 }
 
 TEST(Bounce, AllThatLeavesASideLeaves) {
-  const Matrix light = leaving_light();
+  const Matrix light = reflected_intensity();
   for (int side = 0; side < kReflectingSides; ++side) {
     double flux = 0, along = 0;
     for (int b = 0; b < kSweepBins; ++b) {
@@ -55,7 +55,7 @@ TEST(Bounce, AllThatLeavesASideLeaves) {
 
 // Under the same light from everywhere a white wall sends back the light that falls on it.
 TEST(Bounce, WhatFallsOnASideIsWhatItWouldSend) {
-  const Matrix flux = arriving_flux(), light = leaving_light();
+  const Matrix flux = incident_flux(), light = reflected_intensity();
   const std::vector<double> even(kSweepBins, 1.0);
   const std::vector<double> arriving = flux * std::span<const double>(even);
   for (int side = 0; side < kReflectingSides; ++side) {
@@ -105,7 +105,7 @@ struct Room {
   explicit Room(float albedo) : scene(room_scene(albedo, grid)) {
     blockers = reference::block(scene, grid).least;
     reflectors = reference::reflect(scene, grid).areas;
-    const Matrix leaving = leaving_light();
+    const Matrix leaving = reflected_intensity();
     for_each_cell([&](const glm::ivec3& p) {
       if (!inside(p)) return;
       for (int side = 0; side < kReflectingSides; ++side) {

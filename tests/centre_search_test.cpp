@@ -50,21 +50,21 @@ TEST(LambdaOfEachCentre, GramMatrixIsThatOfTheFunctions) {
 
 TEST(LambdaOfEachCentre, TablesAreOneForEachProductOfLambdas) {
   const auto basis = basis_of(uneven_set());
-  EXPECT_EQ(gram_tables(*basis, 16).each.size(), 21u);
-  EXPECT_EQ(function_tables(*basis, 16).each.size(), 6u);
-  EXPECT_EQ(gram_tables(*make_basis("srbf8v2"), 16).each.size(), 1u);
+  EXPECT_EQ(gram_tables(*basis, 16).tables.size(), 21u);
+  EXPECT_EQ(function_tables(*basis, 16).tables.size(), 6u);
+  EXPECT_EQ(gram_tables(*make_basis("srbf8v2"), 16).tables.size(), 1u);
 }
 
 TEST(LobeAims, LeastErrorsAreThoseOfTheHarmonics) {
   // Of 4 and of 9 functions none are better than sh2 and sh3, of 8 none than sh2 with four of the next five.
   for (const auto& [functions, name] : {std::pair{4, "sh2"}, {9, "sh3"}}) {
-    EXPECT_NEAR(least_error_of(functions), error_over(*make_basis(name), all_directions()), 1e-9);
+    EXPECT_NEAR(minimum_error(functions), error_over(*make_basis(name), all_directions()), 1e-9);
   }
-  EXPECT_NEAR(least_error_of(8), std::sqrt(1.0 / 8 - 4 * 3.0 / 128), 1e-12);
-  EXPECT_NEAR(least_error_of(0), 1, 1e-12);
+  EXPECT_NEAR(minimum_error(8), std::sqrt(1.0 / 8 - 4 * 3.0 / 128), 1e-12);
+  EXPECT_NEAR(minimum_error(0), 1, 1e-12);
   for (const char* name : {"srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24"}) {
     const auto basis = make_basis(name);
-    EXPECT_GT(error_over(*basis, all_directions()), least_error_of(basis->size())) << name;
+    EXPECT_GT(error_over(*basis, all_directions()), minimum_error(basis->size())) << name;
   }
 }
 
@@ -120,7 +120,7 @@ CentreSearch quick(int centres) {
 TEST(SearchCentres, FindsTheSameSetForTheSameSeed) {
   CentreSearch search = quick(8);
   search.lambdas = SearchedLambdas::each;
-  const FoundCentres one = search_centres(search), again = search_centres(search);
+  const CentreSearchResult one = search_centres(search), again = search_centres(search);
   EXPECT_EQ(one.set.centres, again.set.centres);
   EXPECT_EQ(one.set.lambdas, again.set.lambdas);
   search.seed = 2;
@@ -128,11 +128,11 @@ TEST(SearchCentres, FindsTheSameSetForTheSameSeed) {
 }
 
 TEST(SearchCentres, IsBetterThanTheNamedSetsAndNeverBeatsTheLeastError) {
-  const FoundCentres found = search_centres(quick(8));
+  const CentreSearchResult found = search_centres(quick(8));
   const auto basis = basis_of(found.set);
   EXPECT_NEAR(found.error, error_over(*basis, all_directions()), kSpiral);
   EXPECT_LE(basis->condition(), 2e4 * (1 + 1e-5));
-  EXPECT_GT(found.error, least_error_of(8));
+  EXPECT_GT(found.error, minimum_error(8));
   EXPECT_LT(found.error, 0.19) << "srbf8v1 and srbf8v2 have .233";
   CentreSearch axes = quick(6);
   axes.aims = propagation_axes(), axes.lambdas = SearchedLambdas::none;
@@ -153,9 +153,9 @@ TEST(SearchCentres, RejectsWithTheBound) {
     change(search);
     EXPECT_THAT(test::error_of(ExitCode::usage, [&] { search_centres(search); }), HasSubstr(word));
   };
-  rejected([](CentreSearch& s) { s.centres = 65; }, "--search 65: allowed: 1 to 64");
-  rejected([](CentreSearch& s) { s.centres = 0; }, "--search 0");
-  rejected([](CentreSearch& s) { s.lambda = 1; }, "lambda is 1");
+  rejected([](CentreSearch& s) { s.centres = 65; }, "--search: found 65, allowed: 1 to 64");
+  rejected([](CentreSearch& s) { s.centres = 0; }, "--search: found 0");
+  rejected([](CentreSearch& s) { s.lambda = 1; }, "lambda: found 1");
   rejected([](CentreSearch& s) { s.most_condition = 1e8; }, "1e+07");
 }
 

@@ -71,8 +71,8 @@ TEST(SkyLight, EachDirectionLiesInItsOwnPart) {
     const std::vector<SweepBin> bins = sweep_bins(parts);
     for (int b = 0; b < kSweepBins; ++b) {
       for (int part = 0; part < parts * parts; ++part) {
-        const BinPart found =
-            part_along(bins[static_cast<std::size_t>(b)].directions[static_cast<std::size_t>(part)].w, parts);
+        const SubBin found = sub_bin_along(
+            bins[static_cast<std::size_t>(b)].directions[static_cast<std::size_t>(part)].w, parts);
         EXPECT_EQ(found.bin, b);
         EXPECT_EQ(found.part, part);
       }

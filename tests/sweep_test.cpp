@@ -35,7 +35,7 @@ Transport swept_by(const Basis& basis) {
 }
 
 class EachPartition : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Sweep, EachPartition, ::testing::Range(1, kMostSweepParts + 1));
+INSTANTIATE_TEST_SUITE_P(Sweep, EachPartition, ::testing::Range(1, kMaxSweepParts + 1));
 
 TEST_P(EachPartition, DirectionsAreAQuadratureOfTheSphere) {
   double whole = 0, isotropic = 0;

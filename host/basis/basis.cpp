@@ -15,18 +15,19 @@
 namespace clpv {
 namespace {
 
-constexpr int kLeastBands = 2, kMostBands = 5;
-constexpr int kBinSides[] = {2, 4};  // bins along each edge of a cube's face
+constexpr int kMinBands = 2, kMaxBands = 5;
+constexpr int kBinSides[] = {2, 4};  // bins along each edge of a cube face
 
 }  // namespace
 
 void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
   condition_ = condition_number(gram);
-  if (!(condition_ <= kLargestCondition)) {
-    throw Error(ExitCode::usage,
-                "{} with lambda {}: the Gram matrix has condition number {:.3g}, at most {:.0e} is allowed; "
-                "take a larger lambda",
-                name_, lambda_text(), condition_, kLargestCondition);
+  if (!(condition_ <= kMaxCondition)) {
+    throw Error(
+        ExitCode::usage,
+        "{} with lambda {}: condition number of the Gram matrix: found {:.3g}, allowed: at most {:.0e}; "
+        "use a larger lambda",
+        name_, lambda_text(), condition_, kMaxCondition);
   }
   gram_inverse_ = inverse(gram);
   gram_ = std::move(gram);
@@ -41,8 +42,8 @@ double Basis::lambda() const {
 
 std::string Basis::lambda_text() const {
   if (lambda() != 0 || lambdas_.empty()) return fmt::format("{}", lambda());
-  const auto [least, most] = std::ranges::minmax(lambdas_);
-  return fmt::format("{:.3g} to {:.3g}", least, most);
+  const auto [smallest, largest] = std::ranges::minmax(lambdas_);
+  return fmt::format("{:.3g} to {:.3g}", smallest, largest);
 }
 
 std::vector<double> Basis::evaluate(const glm::dvec3& w) const {
@@ -70,7 +71,7 @@ std::vector<double> Basis::constant() const {
 }
 
 std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
-  for (int bands = kLeastBands; bands <= kMostBands; ++bands) {
+  for (int bands = kMinBands; bands <= kMaxBands; ++bands) {
     if (name == fmt::format("sh{}", bands)) return std::make_unique<SphericalHarmonics>(bands);
   }
   for (const SrbfSet& set : srbf_sets()) {
@@ -79,7 +80,7 @@ std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
   for (const int side : kBinSides) {
     if (name == fmt::format("bins{}", 6 * side * side)) return std::make_unique<DirectionBins>(side);
   }
-  throw Error(ExitCode::usage, "there is no basis '{}'; there are {}", name, fmt::join(basis_names(), ", "));
+  throw Error(ExitCode::usage, "basis: found '{}', allowed: {}", name, fmt::join(basis_names(), ", "));
 }
 
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
@@ -95,7 +96,7 @@ std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
 
 std::vector<std::string> basis_names() {
   std::vector<std::string> names;
-  for (int bands = kLeastBands; bands <= kMostBands; ++bands) names.push_back(fmt::format("sh{}", bands));
+  for (int bands = kMinBands; bands <= kMaxBands; ++bands) names.push_back(fmt::format("sh{}", bands));
   for (const SrbfSet& set : srbf_sets()) names.push_back(set.name);
   for (const int side : kBinSides) names.push_back(fmt::format("bins{}", 6 * side * side));
   return names;

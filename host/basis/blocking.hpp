@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What blocks light: what a surfel adds to a sample of the geometry volume, and how much of the light along a direction
-// such a sample keeps back (MATH section 4). Knows no OpenCL.
+// Representations of blockers in the geometry volume, and the blocking potential along a direction (docs/method.md,
+// 'Blockers'). Without OpenCL.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,25 +12,24 @@
 
 namespace clpv {
 
-/// A surfel that covers the share A of a cell's cross-section, its normal n.
+/// Representation of a surfel of normal n whose area is the share A of a cell's cross-section.
 enum class Blocking {
-  /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, which is what it covers of a face across each axis.
+  /// 3 numbers: A |n_x|, A |n_y|, A |n_z|, the covered share of a face across each axis.
   areas,
-  one_sided,  ///< N coefficients: A times the clamped cosine round n; blocks what meets its front (the paper)
+  one_sided,  ///< N coefficients: A times the clamped cosine about n; blocks light against n only (the paper)
 };
 
 template <>
 inline constexpr auto kNames<Blocking> = name_list("areas", "one-sided");
 
-/// Whether a surfel is a lobe in the basis, or else numbers of its own.
+/// Returns true if surfels are lobes in the light's basis.
 bool blocks_by_lobes(Blocking blocking);
 
-/// Numbers a sample of the geometry volume has.
+/// Returns the number of coefficients per sample of the geometry volume.
 int blocking_size(Blocking blocking, const Basis& basis);
 
-/// Weights of those numbers whose sum is the share B of light travelling along `direction` (unit) that is blocked: a
-/// basis looked up against it, b(-direction); areas by |direction_a|, exact for light along an axis, and for surfels
-/// across one whatever the light.
+/// Returns the weights of these coefficients in the blocking potential B of light along the unit vector `direction`.
+/// one-sided: b_i(-direction); areas: |direction_a|, exact for light along an axis and for surfels across an axis.
 std::vector<double> blocking_weights(Blocking blocking, const Basis& basis, const LobeOptions& lobes,
                                      const glm::dvec3& direction);
 

@@ -8,51 +8,51 @@
 namespace clpv {
 namespace {
 
-/// Cosine between a side's normal and a bin's light, as it leaves the side; 0 for what does not.
+/// Cosine between a face's normal and a bin's direction; 0 if light of the bin does not leave the face.
 double cosine(const SweepBin& bin, int side) {
   const int axis = side / 2;
   return std::max(0.0, (side % 2 == 0 ? 1 : -1) * bin.directions.front().w[axis]);
 }
 
-double lost_at_edges() {
-  double both = 0, one = 0;  // of light that leaves up x, and up y too
+double compute_edge_loss() {
+  double both = 0, one = 0;  // flux through +x and +y, flux through +x
   for (const SweepBin& bin : sweep_bins(1)) {
     const double x = cosine(bin, 0), y = cosine(bin, 2), flux = bin.directions.front().flux;
     one += bin.solid_angle * x;
-    both += bin.solid_angle * x * y /
-            flux;  // of the light across a plane, the share aside along x, along y, and along both
+    both += bin.solid_angle * x * y / flux;
   }
   return both / (2 * one);
 }
 
 }  // namespace
 
-Matrix arriving_flux() {
+Matrix incident_flux() {
   const std::vector<SweepBin> bins = sweep_bins(1);
   Matrix flux(kReflectingSides, kSweepBins);
   for (int side = 0; side < kReflectingSides; ++side) {
-    const int from = side ^ 1;  // light arrives the way that it would leave the opposite side
+    const int opposite =
+        side ^ 1;  // light arrives here in the directions in which it leaves the opposite face
     for (int b = 0; b < kSweepBins; ++b) {
       const SweepBin& bin = bins[b];
-      flux(side, b) = bin.solid_angle * cosine(bin, from);
+      flux(side, b) = bin.solid_angle * cosine(bin, opposite);
     }
   }
   return flux;
 }
 
-Matrix leaving_light() {
+Matrix reflected_intensity() {
   const std::vector<SweepBin> bins = sweep_bins(1);
   Matrix light(kSweepBins, kReflectingSides);
   for (int side = 0; side < kReflectingSides; ++side) {
-    double all = 0;
-    for (const SweepBin& bin : bins) all += bin.solid_angle * cosine(bin, side);
-    for (int b = 0; b < kSweepBins; ++b) light(b, side) = cosine(bins[b], side) / all;
+    double total = 0;
+    for (const SweepBin& bin : bins) total += bin.solid_angle * cosine(bin, side);
+    for (int b = 0; b < kSweepBins; ++b) light(b, side) = cosine(bins[b], side) / total;
   }
   return light;
 }
 
 double edge_loss() {
-  static const double loss = lost_at_edges();  // a quadrature, and the CPU reference asks in every cell
+  static const double loss = compute_edge_loss();  // cached: the CPU reference calls this for every cell
   return loss;
 }
 

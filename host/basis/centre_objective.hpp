@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a search for centres makes small, and how well-conditioned a set is: both with their slopes by centres and lambdas.
+// Objective and condition bound of the search for SRBF centres, with gradients by centres and lambdas (docs/bases.md,
+// 'Searched centres').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,33 +12,33 @@
 
 namespace clpv {
 
-/// A set of centres on its way; numbers as in make_basis_from_centres.
+/// Candidate set of SRBF centres, as for make_basis_from_centres().
 struct CentreSet {
   std::vector<glm::dvec3> centres;  ///< unit
-  std::vector<double> lambdas;      ///< one a centre
+  std::vector<double> lambdas;      ///< one per centre
 };
 
-/// A number that depends on a set, and its slopes. Those by centres are in space, not on the sphere.
+/// Value of a function of a set, and its gradient. Gradients by centres are in R^3, not projected on the sphere.
 struct SetValue {
   double value = 0;
   std::vector<glm::dvec3> by_centre;
   std::vector<double> by_lambda;
 };
 
-/// With alpha_i(d) = Int b_i(w) max(0, w . d) dw, M = <alpha alpha^T> over the aims, and A the Gram matrix:
+/// Functions of a set, with alpha_i(d) = Int b_i(w) max(0, w . d) dw, M = <alpha alpha^T> over the aims, Gram matrix A.
 class CentreObjective {
  public:
   explicit CentreObjective(LobeAims aims);
 
-  /// error_over() squared: 1 - tr(A^-1 M) / (2 pi/3). Throws Error(run_time) where A is singular.
+  /// Square of error_over(): 1 - tr(A^-1 M) / (2 pi/3). Throws Error(run_time) if A is singular.
   SetValue square_error(const CentreSet& set) const;
-  /// ln(tr A tr A^-1): a bound of the logarithm of A's condition number, from above. Throws the same.
+  /// ln(tr A tr A^-1), an upper bound on the logarithm of A's condition number. Throws Error(run_time) if A is singular.
   SetValue log_condition(const CentreSet& set) const;
 
  private:
   LobeAims aims_;
-  ZonalSeries cosine_;         ///< alpha_i(d) of t = xi_i . d and lambda_i
-  ZonalSeries second_moment_;  ///< M_ij over all directions, of t = xi_i . xi_j and lambda_i lambda_j
+  ZonalSeries cosine_;         ///< alpha_i(d) by t = xi_i . d and lambda_i
+  ZonalSeries second_moment_;  ///< M_ij over all directions, by t = xi_i . xi_j and lambda_i lambda_j
 };
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A search for the centres of an SRBF set that hold clamped cosines best (`clpv basis --search`).
+// Search for the SRBF centres that best represent clamped cosines (`clpv basis --search`; docs/bases.md, 'Searched centres').
 #pragma once
 
 #include <cstdint>
@@ -10,32 +10,32 @@
 
 namespace clpv {
 
-/// How many lambdas a search finds.
+/// Number of lambdas that a search optimises: none, one for all centres, or one per centre.
 enum class SearchedLambdas { none, one, each };
 template <>
 inline constexpr auto kNames<SearchedLambdas> = name_list("none", "one", "each");
 
+/// Parameters of a search.
 struct CentreSearch {
-  int centres = 8;  ///< 1 to kMostCentres
+  int centres = 8;  ///< 1 to kMaxCentres
   LobeAims aims;
   SearchedLambdas lambdas = SearchedLambdas::one;
-  double lambda =
-      kDefaultLambda;  ///< of all centres where none is searched for; else where the search begins
-  /// Coefficients grow with the root of it and take as much off the last digits: halves still bear srbf14's 1.8e4.
+  double lambda = kDefaultLambda;  ///< lambda of all centres, or the start value if lambdas are optimised
+  /// Bound on the condition number. Rounding errors grow with its root; half precision tolerates srbf14's 1.8e4.
   double most_condition = 2e4;
-  int starts = 64;  ///< from random centres
+  int starts = 64;  ///< number of descents from random centres
   std::uint64_t seed = 1;
 };
 
-struct FoundCentres {
+/// Best set found.
+struct CentreSearchResult {
   CentreSet set;
   double error;  ///< error_over() the aims
-  int valid;     ///< of how many starts the end was a set within the bounds
+  int valid;     ///< number of starts that ended in a set within the bounds
 };
 
-/// The best of all starts; the same for the same arguments. `after_start` hears of each start's end.
-/// Throws Error(usage) for a number out of range, and where no start ends within the bounds, telling how near the best
-/// one came.
-FoundCentres search_centres(const CentreSearch& search, const std::function<void()>& after_start = {});
+/// Returns the best set of all starts; deterministic. Calls `after_start` after each start. Throws Error(usage) for a
+/// parameter out of range, and if no start ends within the bounds (with the smallest condition bound found).
+CentreSearchResult search_centres(const CentreSearch& search, const std::function<void()>& after_start = {});
 
 }  // namespace clpv

@@ -13,12 +13,11 @@
 namespace clpv {
 namespace {
 
-// The line between the inner and the outer bins of a face of bins96. Equal angles make the least lobe error
-// (mean .1447; the most equal areas, at .40, .1448; .38 or .45, .146).
+// Boundary between the inner and outer bins of a face of bins96. Equal angles minimise the mean lobe error.
 const double kLine = std::tan(std::numbers::pi / 8);
 constexpr int kPatchesAlongFace = 4;
 
-// 1 where s > 0, 0 where s < 0, a half on the boundary.
+// Heaviside step: 1 for s > 0, 0 for s < 0, 1/2 on the boundary.
 double step(double s) {
   return s > 0 ? 1 : (s < 0 ? 0 : 0.5);
 }
@@ -35,15 +34,15 @@ DirectionBins::DirectionBins(int side) : side_(side), lines_(inner_lines(side)) 
   std::vector<double> corners = inner_lines(kPatchesAlongFace);
   corners.insert(corners.begin(), -1);
   corners.push_back(1);
-  const int patches_a_bin = kPatchesAlongFace / side;
+  const int patches_per_bin = kPatchesAlongFace / side;
   std::vector<double> solid_angles(size_, 0.0);
   for (int face = 0; face < 6; ++face) {
     for (std::size_t v = 0; v < kPatchesAlongFace; ++v) {
       for (std::size_t u = 0; u < kPatchesAlongFace; ++u) {
         const SphericalPolygon polygon =
             face_region(face, {corners[u], corners[u + 1]}, {corners[v], corners[v + 1]});
-        const int bin =
-            (face * side + static_cast<int>(v) / patches_a_bin) * side + static_cast<int>(u) / patches_a_bin;
+        const int bin = (face * side + static_cast<int>(v) / patches_per_bin) * side +
+                        static_cast<int>(u) / patches_per_bin;
         solid_angles[bin] += solid_angle(polygon);
         add_patch(bin, polygon);
       }
@@ -79,8 +78,8 @@ void DirectionBins::add_patch(int bin, const SphericalPolygon& polygon) {
     total += node.weight;
     area += node.weight * node.w;
   }
-  // Mean square distance from the patch's middle across its direction, halved: along one axis. An even spread
-  // of the same variance is sqrt(12) times the root of that wide.
+  // Variance along one axis: half the mean square distance from the patch's middle. A uniform distribution of
+  // that variance has a width of sqrt(12 variance).
   const glm::dvec3 middle = glm::normalize(area);
   double across = 0;
   for (const QuadratureNode& node : nodes_of(polygon)) {
@@ -116,7 +115,7 @@ void DirectionBins::evaluate(const glm::dvec3& w, std::span<double> b) const {
     return above - (i + 1 == side ? 0 : step(t - lines_[i] * n));
   };
   std::array<double, 6> of_face{};
-  double sum = 0;  // 1, but 3/4 in a corner of the cube
+  double sum = 0;  // 1, or 3/4 in a corner of the cube
   for (int face = 0; face < 6; ++face) {
     const FaceAxes axes = axes_of(face);
     const double n = axes.sign * w[axes.n];
@@ -137,11 +136,10 @@ void DirectionBins::cosine_integrals(const glm::dvec3& d, std::span<double> alph
   double sum = 0;
   for (const Patch& patch : patches_) {
     const double t = glm::dot(patch.area, d);
-    const double lit =
-        std::clamp(t / patch.width + 0.5, 0.0, 1.0);  // the share of the patch above the horizon
-    const double part = 0.5 * patch.width * lit * lit + std::max(0.0, t - 0.5 * patch.width);
-    alpha[patch.bin] += part;
-    sum += part;
+    const double above = std::clamp(t / patch.width + 0.5, 0.0, 1.0);  // share above the horizon
+    const double integral = 0.5 * patch.width * above * above + std::max(0.0, t - 0.5 * patch.width);
+    alpha[patch.bin] += integral;
+    sum += integral;
   }
   for (double& value : alpha) value *= std::numbers::pi / sum;
 }
@@ -182,7 +180,7 @@ std::string DirectionBins::kernel_basis() const {
   return text + "  return r;\n}\n";
 }
 
-// Eight bins at a time: a patch of each in turn. Evaluated one by one, patches take most of injection's time.
+// Evaluates one patch of each of 8 bins at a time: scalar code would take most of injection's time.
 std::string DirectionBins::kernel_cosine() const {
   constexpr int kLanes = 8;
   std::vector<std::vector<Patch>> of_bin(size_);

@@ -19,13 +19,13 @@ std::string opening(const char* function, const TableName& name) {
       function, name.macro);
 }
 
-/// "centre . (x, y, z)" with the names of those three.
+/// Expression of centre . (x, y, z); `names`: names of x, y, z.
 std::string height(const glm::dvec3& centre, const std::vector<std::string>& names) {
   const double factors[] = {centre.x, centre.y, centre.z};
   return sum_of_products(factors, names);
 }
 
-/// What the table of that number, one after the other, holds for the height t, an expression.
+/// Expression that reads table number `table` at the expression `t`.
 std::string entry(const std::string& t, std::size_t table, int table_size, const TableName& name) {
   const double half = (table_size - 1) / 2.0;
   const std::size_t first = table * static_cast<std::size_t>(table_size);
@@ -34,7 +34,7 @@ std::string entry(const std::string& t, std::size_t table, int table_size, const
                      float_literal(half + ZonalTable::kIndexBias), table_size - 1);
 }
 
-/// The rotation that takes +z to (x, y, z): rotation_to(), straight-line.
+/// Statements of rotation_to(): the rotation of +z to (x, y, z).
 constexpr const char* kRotation = R"(  const float square = fma(x, x, y * y);
   const float k = z < 0.0f ? (1.0f - z) / square : 1.0f / (1.0f + z);
   const int down = z < 0.0f && square == 0.0f;
@@ -67,7 +67,7 @@ std::string horner(std::span<const double> coefficients, const std::string& x) {
 }
 
 std::string rotated_integrals_source(const Basis& basis, int table_size) {
-  const std::vector<double> upwards = basis.clamped_cosine({0, 0, 1});
+  const std::vector<double> up_lobe = basis.clamped_cosine({0, 0, 1});
   const Parameters products = gram_parameters(basis);
   std::string text = opening("clpv_rotated_integrals", {}) + kRotation;
   for (int j = 0; j < basis.size(); ++j) {
@@ -80,8 +80,8 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
     for (int j = 0; j < basis.size(); ++j) {
       const std::string t =
           height(basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
-      const std::size_t table = products.of[i * basis.size() + j];
-      const std::string weight = float_literal(upwards[j]), value = entry(t, table, table_size, {});
+      const std::size_t table = products.index[i * basis.size() + j];
+      const std::string weight = float_literal(up_lobe[j]), value = entry(t, table, table_size, {});
       text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
                      : fmt::format("  r.c{0} = fma({1}, {2}, r.c{0});\n", i, weight, value);
     }
@@ -94,7 +94,7 @@ std::string table_basis_source(const Basis& basis, int table_size, const TableNa
   std::string text = opening("clpv_table_basis", name);
   for (int i = 0; i < basis.size(); ++i) {
     const std::string t = height(basis.centres()[i], {"x", "y", "z"});
-    text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.of[i], table_size, name));
+    text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.index[i], table_size, name));
   }
   return text + "  return r;\n}\n";
 }

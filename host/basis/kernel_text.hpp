@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pieces of straight-line OpenCL C with literal constants, for Basis::kernel_source() and the transports.
+// Writers of straight-line OpenCL C with literal constants, for Basis::kernel_source() and the transports.
 #pragma once
 
 #include <span>
@@ -10,27 +10,27 @@
 
 namespace clpv {
 
-/// "fma(0.5f, x, fma(0.25f, y, 2.0f * z))": sum of factors[i] * names[i]. Factors below 1e-13 of the largest
-/// are rounding errors of exact zeros and left out; "0.0f" where nothing remains.
+/// Returns sum_i factors[i] * names[i] as an expression: "fma(0.5f, x, fma(0.25f, y, 2.0f * z))". Omits factors below
+/// 1e-13 of the largest, which are rounding errors of zeros. Returns "0.0f" for an empty sum.
 std::string sum_of_products(std::span<const double> factors, const std::vector<std::string>& names);
 
-/// Horner's form of sum_i coefficients[i] x^i, `x` a name.
+/// Returns sum_i coefficients[i] x^i in Horner's form, for the variable named `x`.
 std::string horner(std::span<const double> coefficients, const std::string& x);
 
-/// How texts call the table that they take: as the macros CLPV_AND_TABLE and CLPV_PASS_TABLE of
-/// pipeline/lookup_table.hpp have it, or for a second table beside it CLPV_AND_FUNCTIONS and CLPV_PASS_FUNCTIONS.
+/// Name of a table parameter in kernel text: suffix of the macros CLPV_AND_* and CLPV_PASS_* of
+/// pipeline/lookup_table.hpp, and the parameter's name.
 struct TableName {
   std::string macro = "TABLE", argument = "table";
 };
 inline const TableName kFunctionsTable{"FUNCTIONS", "functions"};
 
-/// Both texts need a basis with centres, and the macros of pipeline/lookup_table.hpp before them. Tables of
-/// `table_size` entries, one after the other, are read as ZonalTables are.
-///
-///   Coefficients clpv_rotated_integrals(x, y, z, table)   R c: integrals times b_i of the lobe towards +z, turned to
-///                                                         the unit direction; the tables are gram_tables()'
+// Both functions require a basis with centres, and return text that requires the macros of pipeline/lookup_table.hpp.
+// `table_size`: entries per table; tables lie one after the other, as in ZonalTables::values().
+
+/// Returns the function `Coefficients clpv_rotated_integrals(x, y, z, table)`: R c, the integrals of b_i times the lobe
+/// rotated from +z to the unit direction (x, y, z), by gram_tables().
 std::string rotated_integrals_source(const Basis& basis, int table_size);
-///   Coefficients clpv_table_basis(x, y, z, table)         b_i of a unit direction; the tables are function_tables()'
+/// Returns the function `Coefficients clpv_table_basis(x, y, z, table)`: b_i of a unit direction, by function_tables().
 std::string table_basis_source(const Basis& basis, int table_size, const TableName& name = {});
 
 }  // namespace clpv

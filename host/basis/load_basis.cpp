@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A user's own SRBF set from a JSON file; every fault is told by its JSON pointer.
+// Loads a user's SRBF set from a JSON file. Errors name the JSON pointer of the invalid value.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uintmax_t kMostBytes = 1 << 20;
+constexpr std::uintmax_t kMaxBytes = 1 << 20;
 
 glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t index) {
   const auto reject = [&](const std::string& place, const json& found) {
@@ -31,22 +31,22 @@ glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t i
     largest = std::max(largest, std::abs(v[i]));
   }
   if (!std::isfinite(largest) || largest == 0) throw reject("", value);
-  return glm::normalize(v / largest);  // the square of a large number would overflow
+  return glm::normalize(v / largest);  // scaled first: squares of large numbers overflow
 }
 
 std::vector<glm::dvec3> centres_of(const json& value, const std::string& path) {
-  if (!value.is_array() || value.empty() || value.size() > kMostCentres) {
+  if (!value.is_array() || value.empty() || value.size() > kMaxCentres) {
     throw Error(ExitCode::bad_input, "{}: /centres is {}; allowed: an array of 1 to {} directions [x, y, z]",
-                path, quoted(value), kMostCentres);
+                path, quoted(value), kMaxCentres);
   }
   std::vector<glm::dvec3> centres;
   for (const json& entry : value) {
     const glm::dvec3 centre = unit_vector(entry, path, centres.size());
     for (std::size_t j = 0; j < centres.size(); ++j) {
-      if (glm::length(centres[j] - centre) < kLeastCentreDistance) {
+      if (glm::length(centres[j] - centre) < kMinCentreDistance) {
         throw Error(ExitCode::bad_input,
-                    "{}: /centres/{} is the direction of /centres/{}; allowed: {} radians apart", path,
-                    centres.size(), j, kLeastCentreDistance);
+                    "{}: /centres/{} has the direction of /centres/{}; allowed: {} rad apart", path,
+                    centres.size(), j, kMinCentreDistance);
       }
     }
     centres.push_back(centre);
@@ -61,7 +61,7 @@ double lambda_of(const json& value, const std::string& path, const std::string& 
               place, quoted(value));
 }
 
-// One for each of so many centres.
+// One lambda for each of `count` centres.
 std::vector<double> lambdas_of(const json& value, const std::string& path, std::size_t count) {
   if (!value.is_array()) return std::vector<double>(count, lambda_of(value, path, "/lambda"));
   if (value.size() != count) {
@@ -77,20 +77,20 @@ std::vector<double> lambdas_of(const json& value, const std::string& path, std::
 
 std::string name_of(const json& file, const std::string& path) {
   if (!file.contains("name")) return std::filesystem::path(path).stem().string();
-  const json& given = file["name"];
-  if (!given.is_string() || given.get_ref<const std::string&>().empty()) {
-    throw Error(ExitCode::bad_input, "{}: /name is {}; allowed: a text that is not empty", path,
-                quoted(given));
+  const json& name = file["name"];
+  if (!name.is_string() || name.get_ref<const std::string&>().empty()) {
+    throw Error(ExitCode::bad_input, "{}: /name is {}; allowed: a string that is not empty", path,
+                quoted(name));
   }
-  return given.get<std::string>();
+  return name.get<std::string>();
 }
 
 }  // namespace
 
 std::unique_ptr<Basis> load_basis(const std::string& path, double lambda) {
-  const json file = read_json(path, kMostBytes);
+  const json file = read_json(path, kMaxBytes);
   if (!file.is_object()) {
-    throw Error(ExitCode::bad_input, "{}: holds {}; allowed: an object", path, quoted(file));
+    throw Error(ExitCode::bad_input, "{}: found {}; allowed: an object", path, quoted(file));
   }
   for (const auto& [key, value] : file.items()) {
     if (key != "name" && key != "lambda" && key != "centres") {

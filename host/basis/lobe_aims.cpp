@@ -18,8 +18,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kNorm = 2 * kPi / 3;        // Int max(0, w . d)^2 dw
-constexpr std::size_t kMostWeights = 10000;  // what a search still bears
+constexpr double kNorm = 2 * kPi / 3;       // Int max(0, w . d)^2 dw
+constexpr std::size_t kMaxWeights = 10000;  // bounds a search's run time
 
 WeightedDirection weighted_direction(const json& entry, const std::string& path, std::size_t index) {
   const bool four = entry.is_array() && entry.size() == 4 &&
@@ -31,7 +31,7 @@ WeightedDirection weighted_direction(const json& entry, const std::string& path,
       return {v / length, weight};
   }
   throw Error(ExitCode::bad_input,
-              "{}: /weights/{} is {}; allowed: [x, y, z, weight], a direction and a weight above 0", path,
+              "{}: /weights/{}: found {}; allowed: [x, y, z, weight], a direction and a weight above 0", path,
               index, quoted(entry));
 }
 
@@ -51,9 +51,9 @@ LobeAims propagation_axes() {
 LobeAims load_aims(const std::string& path) {
   const json file = read_json(path, kMaxFileBytes);
   const auto found = file.is_object() ? file.find("weights") : file.end();
-  if (found == file.end() || !found->is_array() || found->empty() || found->size() > kMostWeights) {
-    throw Error(ExitCode::bad_input, "{}: /weights: allowed: an array of 1 to {} [x, y, z, weight]", path,
-                kMostWeights);
+  if (found == file.end() || !found->is_array() || found->empty() || found->size() > kMaxWeights) {
+    throw Error(ExitCode::bad_input, "{}: /weights: allowed: an array of 1 to {} entries [x, y, z, weight]",
+                path, kMaxWeights);
   }
   LobeAims aims{path, {}};
   double sum = 0;
@@ -61,7 +61,8 @@ LobeAims load_aims(const std::string& path) {
     aims.directions.push_back(weighted_direction(entry, path, aims.directions.size()));
     sum += aims.directions.back().weight;
   }
-  if (!std::isfinite(sum)) throw Error(ExitCode::bad_input, "{}: /weights add up to {}", path, sum);
+  if (!std::isfinite(sum))
+    throw Error(ExitCode::bad_input, "{}: /weights: found a sum of {}; allowed: a finite sum", path, sum);
   for (WeightedDirection& direction : aims.directions) direction.weight /= sum;
   return aims;
 }
@@ -94,17 +95,17 @@ double error_over(const Basis& basis, const LobeAims& aims) {
   return std::sqrt(sum);
 }
 
-double least_error_of(int functions) {
-  // Each of the 2 l + 1 functions of band l holds A_l^2 / 4 pi of the square; those are less with every band.
-  double left = kNorm;
+double minimum_error(int functions) {
+  // Each of the 2 l + 1 functions of band l represents A_l^2 / 4 pi of the square norm, which decreases with l.
+  double rest = kNorm;
   for (int band = 0; functions > 0; ++band) {
     const double each = std::pow(cosine_band(band), 2) / (4 * kPi);
-    if (each == 0) continue;  // odd bands above the first hold nothing
+    if (each == 0) continue;  // odd bands above 1 contribute nothing
     const int taken = std::min(functions, 2 * band + 1);
-    left -= taken * each;
+    rest -= taken * each;
     functions -= taken;
   }
-  return std::sqrt(std::max(0.0, left) / kNorm);
+  return std::sqrt(std::max(0.0, rest) / kNorm);
 }
 
 }  // namespace clpv

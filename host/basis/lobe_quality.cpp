@@ -13,11 +13,11 @@ namespace clpv {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSpacing = kPi / 90;  // between starting points: finer than any lobe's bumps
-constexpr double kResolution = 1e-7;   // rad: where the search stops
+constexpr double kSpacing = kPi / 90;  // between start points: finer than any lobe's features
+constexpr double kResolution = 1e-7;   // [rad] of the maximum's direction
 
-// Unit direction of the largest f: the best of a grid of directions, then steps across it, ever smaller.
-glm::dvec3 highest(const std::function<double(const glm::dvec3&)>& f) {
+// Unit direction of f's maximum: the best of a grid of directions, refined by pattern search with shrinking steps.
+glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
   glm::dvec3 best(0, 0, 1);
   double value = f(best);
   const auto improve = [&](const glm::dvec3& w) {
@@ -48,8 +48,8 @@ LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const gl
     basis.evaluate(w, b);
     return dot(c, b);
   };
-  const glm::dvec3 peak = highest(value), pit = highest([&](const glm::dvec3&w) { return -value(w); });
-  return {relative_l2(basis, c, d), value(pit), basis.energy(c),
+  const glm::dvec3 peak = argmax(value), minimum = argmax([&](const glm::dvec3&w) { return -value(w); });
+  return {relative_l2(basis, c, d), value(minimum), basis.energy(c),
           std::atan2(glm::length(glm::cross(peak, d)), glm::dot(peak, d)) * 180 / kPi};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How well a lobe stands for the clamped cosine, and how a basis keeps energy: what `clpv basis` tells.
+// Error of a lobe against the clamped cosine, and energy conservation of a basis, as `clpv basis` reports them.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,21 +10,22 @@
 
 namespace clpv {
 
+/// Deviation of a lobe f from the clamped cosine about d.
 struct LobeQuality {
   double relative_l2;         ///< |f - max(0, w . d)| / |max(0, w . d)|, L2 norms over the sphere
-  double minimum;             ///< least f(w)
-  double flux;                ///< Int f dw; of the clamped cosine pi
-  double peak_error_degrees;  ///< between the direction of the largest f and d
+  double minimum;             ///< minimum of f
+  double flux;                ///< Int f dw; pi for the clamped cosine
+  double peak_error_degrees;  ///< angle between the maximum of f and d
 };
 
-/// Of the coefficients c as a clamped cosine along the unit vector d.
+/// Returns the quality of coefficients c (N) as a clamped cosine about the unit vector d.
 LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const glm::dvec3& d);
 
-/// The mean of that error over 2000 axes, spread evenly on a golden spiral.
+/// Returns the mean relative_l2 over 2000 evenly distributed axes.
 double mean_relative_l2(const Basis& basis, const Lobes& lobes);
 
-/// Energy after that many steps of an isotropic source in free space, over what it was; nothing clamped, and
-/// no border. Total coefficients obey a linear map, so there is no grid.
+/// Returns the energy after `steps` steps of an isotropic source in free space, relative to its initial energy. Nothing
+/// is clamped and there is no border, so the coefficients summed over all cells obey a linear map without a grid.
 double energy_after(const Basis& basis, const FaceTransport& transport, int steps);
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A small dense matrix in double, row by row.
+// A small dense matrix in double, in row-major order.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 namespace clpv {
 
+/// Dense matrix; zero after construction.
 class Matrix {
  public:
   Matrix() = default;
@@ -26,7 +27,7 @@ class Matrix {
   }
   std::span<double> row(int r) { return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)}; }
 
-  Matrix operator*(const Matrix& other) const;  ///< sizes must fit
+  Matrix operator*(const Matrix& other) const;  ///< requires columns() == other.rows()
   std::vector<double> operator*(std::span<const double> vector) const;
 
  private:
@@ -38,13 +39,13 @@ class Matrix {
   std::vector<double> values_;
 };
 
-/// Sum of a_i b_i, as many as `a` has.
+/// Returns sum_i a_i b_i over the elements of `a`; `b` has at least as many.
 double dot(std::span<const double> a, std::span<const double> b);
 
-/// Inverse of a symmetric positive definite matrix, in extended precision: relative error 1e-19 times its condition number
-/// plus a rounding. Throws Error(run_time) where it is not one.
+/// Returns the inverse of a symmetric positive definite matrix, computed in extended precision. Throws Error(run_time) if
+/// `a` is not positive definite.
 Matrix inverse(const Matrix& a);
-/// Ratio of the largest to the smallest eigenvalue of a symmetric positive definite matrix.
+/// Returns the ratio of the largest to the smallest eigenvalue of a symmetric positive definite matrix.
 double condition_number(const Matrix& a);
 
 }  // namespace clpv

@@ -11,9 +11,9 @@ namespace clpv {
 namespace {
 
 constexpr int kOrder = 12;            // Gauss points along each side of a triangle
-constexpr double kTolerance = 4e-15;  // of a test function's integral over the sphere
-constexpr int kMostRefinements = 14;  // halvings of a triangle: resolves peaks 1e-4 rad wide
-constexpr double kOnPlane = 1e-12;    // a corner this near a plane lies on it
+constexpr double kTolerance = 4e-15;  // relative to a test function's integral over the sphere
+constexpr int kMaxRefinements = 14;   // bisections of a triangle's edges: resolves peaks 1e-4 rad wide
+constexpr double kOnPlane = 1e-12;    // a corner closer than this lies on a plane
 
 using Triangle = std::array<glm::dvec3, 3>;
 
@@ -42,7 +42,7 @@ GaussRule gauss_rule() {
   return rule;
 }
 
-// Product rule collapsed onto the flat triangle, projected onto the sphere: dw = (a . n) / |p|^3 dA.
+// Collapsed product rule on the flat triangle, projected onto the sphere: dw = (a . n) / |p|^3 dA.
 std::vector<QuadratureNode> nodes_of(const Triangle& t) {
   static const GaussRule rule = gauss_rule();
   const double volume = std::abs(glm::dot(t[0], glm::cross(t[1], t[2])));
@@ -59,7 +59,7 @@ std::vector<QuadratureNode> nodes_of(const Triangle& t) {
   return nodes;
 }
 
-// Integrals of what must come out right: b_i, b_i^2, and 1 / |w|_1.
+// Integrals of the test functions: b_i, b_i^2 and 1 / |w|_1.
 std::vector<double> probe(const Basis& basis, const std::vector<QuadratureNode>& nodes) {
   const std::size_t n = basis.size();
   std::vector<double> sums(2 * n + 1, 0.0), b(n);
@@ -74,11 +74,12 @@ std::vector<double> probe(const Basis& basis, const std::vector<QuadratureNode>&
   return sums;
 }
 
+// Adaptive subdivision of triangles until integrals of the test functions agree.
 class Refinement {
  public:
   explicit Refinement(const Basis& basis) : basis_(basis) {}
 
-  void add(const Triangle& t) { refine(t, nodes_of(t), kMostRefinements); }
+  void add(const Triangle& t) { refine(t, nodes_of(t), kMaxRefinements); }
   std::vector<QuadratureNode> take() { return std::move(nodes_); }
 
  private:
@@ -92,8 +93,8 @@ class Refinement {
     std::vector<double> fine(coarse.size(), 0.0);
     for (std::size_t i = 0; i < children.size(); ++i) {
       finer[i] = nodes_of(children[i]);
-      const std::vector<double> part = probe(basis_, finer[i]);
-      for (std::size_t k = 0; k < fine.size(); ++k) fine[k] += part[k];
+      const std::vector<double> integrals = probe(basis_, finer[i]);
+      for (std::size_t k = 0; k < fine.size(); ++k) fine[k] += integrals[k];
     }
     if (agree(coarse, fine)) {
       nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
@@ -119,8 +120,8 @@ class Refinement {
   std::vector<QuadratureNode> nodes_;
 };
 
-// The part of a polygon on the side that `normal` points to.
-SphericalPolygon part(const SphericalPolygon& polygon, const glm::dvec3& normal) {
+// Clips a polygon to the half-space that `normal` points into.
+SphericalPolygon clipped(const SphericalPolygon& polygon, const glm::dvec3& normal) {
   SphericalPolygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
@@ -158,7 +159,7 @@ std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
     std::vector<SphericalPolygon> next;
     for (const SphericalPolygon& polygon : polygons) {
       for (const glm::dvec3& side : {normal, -normal}) {
-        if (reaches(polygon, side)) next.push_back(part(polygon, side));
+        if (reaches(polygon, side)) next.push_back(clipped(polygon, side));
       }
     }
     polygons = std::move(next);
@@ -169,14 +170,14 @@ std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
 std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon) {
   std::vector<QuadratureNode> nodes;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const std::vector<QuadratureNode> part = nodes_of(Triangle{polygon[0], polygon[i], polygon[i + 1]});
-    nodes.insert(nodes.end(), part.begin(), part.end());
+    const std::vector<QuadratureNode> more = nodes_of(Triangle{polygon[0], polygon[i], polygon[i + 1]});
+    nodes.insert(nodes.end(), more.begin(), more.end());
   }
   return nodes;
 }
 
 double solid_angle(const SphericalPolygon& polygon) {
-  // Van Oosterom and Strackee, triangle by triangle of a fan.
+  // tan(Omega / 2) = |a . (b x c)| / (1 + a . b + b . c + c . a) for each triangle of a fan.
   double sum = 0;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     const glm::dvec3 &a = polygon[0], &b = polygon[i], &c = polygon[i + 1];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Integrals over the sphere and parts of it, split where the integrand has kinks or jumps.
+// Quadrature on the sphere and on spherical polygons, split where the integrand is not smooth.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,31 +10,31 @@
 
 namespace clpv {
 
-/// A convex region bounded by great circles: its corners, unit vectors in order, all within one hemisphere.
+/// Convex spherical polygon bounded by great circles: corners as unit vectors in order, within one hemisphere.
 using SphericalPolygon = std::vector<glm::dvec3>;
 
-/// A direction and its share of solid angle [sr].
+/// A unit direction and its weight [sr].
 struct QuadratureNode {
   glm::dvec3 w;
   double weight;
 };
 
-/// The whole sphere, as its eight octants.
+/// Returns the eight octants of the sphere.
 std::vector<SphericalPolygon> octants();
 
-/// The polygons cut along planes through the origin, given by their unit normals.
+/// Splits polygons along planes through the origin with the unit normals `planes`.
 std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
                                     std::span<const glm::dvec3> planes);
 
-/// Solid angle of a polygon [sr].
+/// Returns the solid angle of a polygon [sr] (Van Oosterom and Strackee 1983).
 double solid_angle(const SphericalPolygon& polygon);
 
-/// 144 nodes a triangle of the polygon's fan: integrates a smooth function over a small polygon to rounding.
+/// Returns 144 nodes per triangle of the polygon's fan: exact to rounding for smooth functions on a small polygon.
 std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon);
 
-/// Nodes over the polygons, fine enough that products of two basis functions and of powers of |w_x|, |w_y|,
-/// |w_z| and |w|_1 integrate to 1e-14 of their size: none crosses a coordinate plane or a crease of the
-/// basis. Throws Error(run_time) where the basis is too peaked (lambda very near 1).
+/// Returns nodes over the polygons that integrate products of two basis functions, and of powers of |w_x|,
+/// |w_y|, |w_z| and |w|_1, with a relative error of 1e-14. Splits at coordinate planes and at the basis's
+/// creases. Throws Error(run_time) if the basis is too peaked (lambda very near 1).
 std::vector<QuadratureNode> quadrature(const Basis& basis, const std::vector<SphericalPolygon>& polygons);
 
 }  // namespace clpv

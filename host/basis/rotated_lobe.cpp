@@ -11,18 +11,18 @@
 namespace clpv {
 namespace {
 
-constexpr int kLargestTable = 1 << 20;
-constexpr std::size_t kMostEntries = std::size_t{1} << 24;  // of all tables: 64 MiB on a device
+constexpr int kMaxTableSize = 1 << 20;
+constexpr std::size_t kMaxEntries = std::size_t{1} << 24;  // of all tables together: 64 MiB
 
 double gram_function(double t, double product) {
   return 4 * std::numbers::pi * abel_poisson(t, product);
 }
 
-Parameters each_once(const std::vector<double>& all) {
+Parameters distinct(const std::vector<double>& all) {
   Parameters parameters;
   for (const double value : all) {
     const auto found = std::ranges::find(parameters.values, value);
-    parameters.of.push_back(static_cast<std::size_t>(found - parameters.values.begin()));
+    parameters.index.push_back(static_cast<std::size_t>(found - parameters.values.begin()));
     if (found == parameters.values.end()) parameters.values.push_back(value);
   }
   return parameters;
@@ -30,35 +30,36 @@ Parameters each_once(const std::vector<double>& all) {
 
 ZonalTables tables_of(const Parameters& parameters, int size,
                       double (*function)(double t, double parameter)) {
-  if (static_cast<std::size_t>(std::max(0, size)) * parameters.values.size() > kMostEntries) {
-    throw Error(ExitCode::usage, "table size is {}: {} tables of it have more than {} entries", size,
-                parameters.values.size(), kMostEntries);
+  if (static_cast<std::size_t>(std::max(0, size)) * parameters.values.size() > kMaxEntries) {
+    throw Error(ExitCode::usage,
+                "table size: found {}, with which {} tables have more than {} entries in total", size,
+                parameters.values.size(), kMaxEntries);
   }
-  ZonalTables tables{{}, parameters.of};
+  ZonalTables tables{{}, parameters.index};
   for (const double value : parameters.values)
-    tables.each.emplace_back(size, [&](double t) { return function(t, value); });
+    tables.tables.emplace_back(size, [&](double t) { return function(t, value); });
   return tables;
 }
 
 }  // namespace
 
 ZonalTable::ZonalTable(int size, const std::function<double(double)>& function) {
-  if (size < 2 || size > kLargestTable) {
-    throw Error(ExitCode::usage, "table size is {}; allowed: 2..{}", size, kLargestTable);
+  if (size < 2 || size > kMaxTableSize) {
+    throw Error(ExitCode::usage, "table size: found {}, allowed: 2..{}", size, kMaxTableSize);
   }
   for (int i = 0; i < size; ++i) values_.push_back(function(-1 + 2.0 * i / (size - 1)));
 }
 
-double ZonalTable::place(double t) const {
+double ZonalTable::position(double t) const {
   return (t + 1) / 2 * (size() - 1) + kIndexBias;
 }
 
 double ZonalTable::operator()(double t) const {
-  return values_[std::clamp(std::floor(place(t)), 0.0, size() - 1.0)];
+  return values_[std::clamp(std::floor(position(t)), 0.0, size() - 1.0)];
 }
 
 double ZonalTable::to_step(double t) const {
-  return std::abs(place(t) - std::round(place(t)));
+  return std::abs(position(t) - std::round(position(t)));
 }
 
 Parameters gram_parameters(const Basis& basis) {
@@ -66,16 +67,16 @@ Parameters gram_parameters(const Basis& basis) {
   for (const double a : basis.lambdas()) {
     for (const double b : basis.lambdas()) products.push_back(a * b);
   }
-  return each_once(products);
+  return distinct(products);
 }
 
 Parameters function_parameters(const Basis& basis) {
-  return each_once(basis.lambdas());
+  return distinct(basis.lambdas());
 }
 
 std::vector<float> ZonalTables::values() const {
   std::vector<float> all;
-  for (const ZonalTable& table : each) {
+  for (const ZonalTable& table : tables) {
     const std::vector<float> values = table.values();
     all.insert(all.end(), values.begin(), values.end());
   }
@@ -108,14 +109,14 @@ glm::dmat3 rotation_to(const glm::dvec3& axis) {
   const glm::dvec3 v(-axis.y, axis.x, 0);
   const double square = glm::dot(v, v);  // (1 - c) (1 + c)
   if (c < 0 && square == 0) return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-  const double k = c < 0 ? (1 - c) / square : 1 / (1 + c);  // 1 + c loses its digits near -z
+  const double k = c < 0 ? (1 - c) / square : 1 / (1 + c);  // 1 + c is inaccurate near -z
   return {{c + k * v.x * v.x, k * v.x * v.y, -v.y}, {k * v.x * v.y, c + k * v.y * v.y, v.x}, axis};
 }
 
 Lobes::Lobes(const Basis& basis, const LobeOptions& options)
     : basis_(basis),
       rotate_(options.kind == LobeKind::rotate && !basis.centres().empty()),
-      upwards_(basis.clamped_cosine({0, 0, 1})) {
+      up_lobe_(basis.clamped_cosine({0, 0, 1})) {
   if (rotate_ && options.table_size != 0) tables_ = gram_tables(basis, options.table_size);
 }
 
@@ -128,13 +129,13 @@ std::vector<double> Lobes::operator()(const glm::dvec3& axis) const {
   if (!rotate_) return basis_.clamped_cosine(axis);
   const glm::dmat3 rotation = rotation_to(axis);
   const std::vector<glm::dvec3>& centres = basis_.centres();
-  std::vector<double> turned(centres.size(), 0.0);  // R c: integrals of the turned lobe times b_i
+  std::vector<double> rotated(centres.size(), 0.0);  // R c: integrals of the rotated lobe times b_i
   for (std::size_t j = 0; j < centres.size(); ++j) {
-    const glm::dvec3 moved = rotation * centres[j];
+    const glm::dvec3 centre = rotation * centres[j];
     for (std::size_t i = 0; i < centres.size(); ++i)
-      turned[i] += gram(i, j, glm::dot(centres[i], moved)) * upwards_[j];
+      rotated[i] += gram(i, j, glm::dot(centres[i], centre)) * up_lobe_[j];
   }
-  return basis_.gram_inverse() * turned;
+  return basis_.gram_inverse() * rotated;
 }
 
 }  // namespace clpv

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The paper's cosine lobes (Appendix 2): the lobe towards +z is projected once and turned to each axis by
-// c~ = A^-1 R c, R_ij = H_ij(xi_i . Rot xi_j), H_ij(t) = 4 pi G(t; lambda_i lambda_j) read from a table. An option, for
-// comparison: the exact projection (Basis::clamped_cosine) costs less and is nowhere worse.
+// The paper's cosine lobes (its Appendix 2; docs/method.md, 'The paper's lobes and look-up tables'). The lobe about +z is
+// projected once and rotated to each axis: c~ = A^-1 R c, R_ij = H_ij(xi_i . Rot xi_j), H_ij(t) = 4 pi G(t; lambda_i lambda_j)
+// from a table. For comparison only: the exact projection (Basis::clamped_cosine) costs less and is never less accurate.
 #pragma once
 
 #include <functional>
@@ -15,78 +15,79 @@
 namespace clpv {
 
 enum class LobeKind {
-  exact,   ///< projected for each axis
-  rotate,  ///< projected towards +z, turned to the axis
+  exact,   ///< exact projection for each axis
+  rotate,  ///< projection about +z, rotated to the axis
 };
 
 template <>
 inline constexpr auto kNames<LobeKind> = name_list("exact", "rotate");
 
-/// How lobes and basis functions are come by. Matters to bases with centres alone.
+/// Evaluation of lobes and basis functions. Has an effect only on bases with centres.
 struct LobeOptions {
   LobeKind kind = LobeKind::exact;
-  int table_size = 256;          ///< entries of the tables of H and G; 0: H itself
-  bool table_functions = false;  ///< basis functions are read from G's table where stages evaluate them
+  int table_size = 256;          ///< entries of the tables of H and G; 0: computes H
+  bool table_functions = false;  ///< true: stages read basis functions from G's table
 };
 
-/// A function of t in [-1, 1] as a table of `size` entries, the first for t = -1 and the last for t = 1, read without
-/// interpolation: entry floor((t + 1)/2 (size - 1) + 1/1024). The 1/1024 keeps a t that lies on an entry but for rounding
-/// (the cube's 1/3) on it, in float as in double.
+/// Table of a function of t in [-1, 1]. The first entry is for t = -1, the last for t = 1. Reads without interpolation: entry
+/// floor((t + 1)/2 (size - 1) + 1/1024). The 1/1024 absorbs rounding of a t on an entry (the cube's 1/3), so that float and
+/// double read the same entry.
 class ZonalTable {
  public:
   static constexpr double kIndexBias = 1.0 / 1024;
 
-  /// Throws Error(usage) for less than 2 or more than 2^20 entries.
+  /// Throws Error(usage) for fewer than 2 or more than 2^20 entries.
   ZonalTable(int size, const std::function<double(double)>& function);
 
   double operator()(double t) const;
-  double to_step(double t) const;  ///< how far t is from where another entry is read, in entries
+  double to_step(double t) const;  ///< distance from t to the next change of entry [entries]
   int size() const { return static_cast<int>(values_.size()); }
-  std::vector<float> values() const { return {values_.begin(), values_.end()}; }  ///< for a device
+  std::vector<float> values() const { return {values_.begin(), values_.end()}; }  ///< entries for a device
 
  private:
-  double place(double t) const;
+  double position(double t) const;  ///< fractional index of t
 
   std::vector<double> values_;
 };
 
-/// Parameters of a function of t, each once, and which of them a centre (or a pair of centres) takes.
+/// Distinct parameters of a family of functions of t, and the index of the one that each member uses.
 struct Parameters {
-  std::vector<double> values;
-  std::vector<std::size_t> of;
+  std::vector<double> values;      ///< distinct
+  std::vector<std::size_t> index;  ///< into `values`, one per centre or pair of centres
 };
-/// H's lambda_i lambda_j, pair (i, j) at i N + j; and G's lambda_i.
-Parameters gram_parameters(const Basis& basis);
-Parameters function_parameters(const Basis& basis);
+Parameters gram_parameters(const Basis& basis);      ///< lambda_i lambda_j of H; pair (i, j) at i N + j
+Parameters function_parameters(const Basis& basis);  ///< lambda_i of G
 
-/// A table for each value of a parameter; of centres that share one lambda it is one table.
+/// One table per distinct parameter.
 struct ZonalTables {
-  std::vector<ZonalTable> each;
-  std::vector<std::size_t> of;  ///< as Parameters::of
+  std::vector<ZonalTable> tables;
+  std::vector<std::size_t> index;  ///< as Parameters::index
 
-  double operator()(std::size_t which, double t) const { return each[of[which]](t); }
-  std::vector<float> values() const;  ///< one table after the other, for a device
+  /// Value at t of member `i`, a centre or pair of centres.
+  double operator()(std::size_t i, double t) const { return tables[index[i]](t); }
+  std::vector<float> values() const;  ///< entries of all tables in order, for a device
 };
 
-/// H of an SRBF set, and G, the basis function itself. Throw Error(usage) for more than 2^24 entries in all.
+/// Returns tables of H (gram_tables) or of the basis functions G (function_tables), `size` entries each. Throws
+/// Error(usage) for more than 2^24 entries in total.
 ZonalTables gram_tables(const Basis& basis, int size);
 ZonalTables function_tables(const Basis& basis, int size);
 
-/// b_i(w) with G from function_tables() (Evaluation::table). A basis without centres has no table: its own evaluate().
+/// Returns b_i(w) by function_tables() (Evaluation::table). Bases without centres have no table and use Basis::evaluate().
 std::vector<double> evaluate(const Basis& basis, const ZonalTables& tables, const glm::dvec3& w);
-/// b_i(w) as `options` want them.
+/// Returns b_i(w), from a table or computed as `options` require.
 std::vector<double> evaluate(const Basis& basis, const LobeOptions& options, const glm::dvec3& w);
 
-/// The rotation that takes +z to `axis` (unit) and moves least; towards -z, where that is undefined, a half turn about x.
+/// Returns the smallest rotation of +z to the unit vector `axis`. For -z, where it is not unique: a half turn about x.
 glm::dmat3 rotation_to(const glm::dvec3& axis);
 
-/// Clamped-cosine lobes of one basis, by either way. Spherical harmonics rotate exactly, and direction bins cannot be
-/// rotated: for a basis without centres both ways give the exact projection.
+/// Clamped-cosine lobes of one basis. Bases without centres always use the exact projection: spherical harmonics rotate
+/// exactly, and direction bins cannot be rotated.
 class Lobes {
  public:
   Lobes(const Basis& basis, const LobeOptions& options);
 
-  /// The N coefficients of the lobe round `axis` (unit).
+  /// Returns the N coefficients of the lobe about the unit vector `axis`.
   std::vector<double> operator()(const glm::dvec3& axis) const;
 
  private:
@@ -94,8 +95,8 @@ class Lobes {
 
   const Basis& basis_;
   bool rotate_;
-  std::optional<ZonalTables> tables_;  ///< of H; none: H itself
-  std::vector<double> upwards_;        ///< the lobe towards +z
+  std::optional<ZonalTables> tables_;  ///< tables of H; none: computes H
+  std::vector<double> up_lobe_;        ///< the lobe about +z
 };
 
 }  // namespace clpv

@@ -10,11 +10,11 @@
 namespace clpv {
 namespace {
 
-constexpr int kPoints = 2048;  // along the horizon, at least
+constexpr int kPoints = 2048;  // minimum number of sample points along the horizon
 
-/// Of `cells` along a circle or half one, how many points each has.
-int points_of(int cells, int least) {
-  return (least + cells - 1) / cells;
+/// Sample points per texel, for at least `points` over `texels`.
+int points_per_texel(int texels, int points) {
+  return (points + texels - 1) / texels;
 }
 
 }  // namespace
@@ -23,12 +23,12 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
   const std::size_t count = kSweepBins * parts * parts;
   std::vector<glm::dvec3> sums(count, glm::dvec3(0));
   std::vector<double> angles(count, 0);
-  const int across = points_of(sky.width, kPoints), down = points_of(sky.height, kPoints / 2);
+  const int across = points_per_texel(sky.width, kPoints), down = points_per_texel(sky.height, kPoints / 2);
   const int columns = sky.width * across, rows = sky.height * down;
-  std::vector<glm::dvec2> turns;  // along z and x, by column
+  std::vector<glm::dvec2> horizontal;  // unit (x, z) of each column
   for (int x = 0; x < columns; ++x) {
     const glm::dvec3 level = sky.direction((x + 0.5) / across, sky.height / 2.0);
-    turns.push_back(glm::normalize(glm::dvec2(level.x, level.z)));
+    horizontal.push_back(glm::normalize(glm::dvec2(level.x, level.z)));
   }
   for (int y = 0; y < rows; ++y) {
     const double top = std::cos(std::numbers::pi * y / rows),
@@ -36,16 +36,16 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
     const double up = (top + bottom) / 2, out = std::sqrt(1 - up * up);
     const double angle = 2 * std::numbers::pi / columns * (top - bottom);
     for (int x = 0; x < columns; ++x) {
-      const glm::dvec2& turn = turns[x];
-      const BinPart to = part_along(-glm::dvec3(out * turn.x, up, out * turn.y), parts);
+      const glm::dvec2& heading = horizontal[x];
+      const SubBin to = sub_bin_along(-glm::dvec3(out * heading.x, up, out * heading.y), parts);
       const std::size_t i = to.bin * parts * parts + to.part;
       const std::size_t texel = y / down * sky.width + x / across;
       sums[i] += angle * glm::dvec3(sky.texels[texel]);
       angles[i] += angle;
     }
   }
-  // Points next to an edge fall to one side of it. All that the sky sends is kept, and an even sky is even: what is left over
-  // or missing is of its mean.
+  // Sampled solid angles differ slightly from exact ones. The sky's mean fills the difference: this keeps the sky's flux, and
+  // a uniform sky stays uniform.
   glm::dvec3 mean(0);
   for (const glm::dvec3& sum : sums) mean += sum / (4 * std::numbers::pi);
   const std::vector<SweepBin> bins = sweep_bins(parts);

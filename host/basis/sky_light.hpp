@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a sky sends along the directions that light is swept along. Knows no OpenCL.
+// A sky's light along the sweep's directions: the boundary condition of the coarsest cascade (docs/method.md, 'The sweep').
+// Without OpenCL.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,11 +10,11 @@
 
 namespace clpv {
 
-/// Mean radiance of each part of each bin (sweep_bins), [bin * parts^2 + part]: the integral of the sky over where light along
-/// the part comes from, over its solid angle.
+/// Returns the sky's mean radiance [W/m^2/sr] over each part of each bin (sweep_bins): [bin * parts^2 + part]. A part collects
+/// light that travels along it, so it averages the sky over the opposite directions.
 std::vector<glm::dvec3> sky_means(const Sky& sky, int parts);
 
-/// What comes in through cells of 1 m^2, in the order of CLPV_SWEPT (kernels/sweep_border.h): D = L |w_m|.
+/// Returns D = L |w_m| of the sky at the border for cells of 1 m^2, in the order of CLPV_SWEPT (kernels/sweep_border.h).
 std::vector<float> swept_sky(const Sky& sky, int parts);
 
 }  // namespace clpv

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Coefficients of the Legendre polynomial P_l, [i] that of z^i, by (n+1) P_{n+1} = (2n+1) z P_n - n P_{n-1}.
+// Coefficients of the Legendre polynomial P_l, [i] for z^i: (n+1) P_{n+1} = (2n+1) z P_n - n P_{n-1}.
 std::vector<double> legendre(int l) {
   std::vector<double> before{0}, now{1};
   for (int n = 0; n < l; ++n) {
@@ -33,7 +33,7 @@ std::vector<double> derivative(const std::vector<double>& p) {
   return d;
 }
 
-// K_lm: makes Y_lm of unit norm.
+// K_lm, the normalisation of Y_lm.
 double norm(int l, int m) {
   double ratio = 1;  // (l - m)! / (l + m)!
   for (int i = l - m + 1; i <= l + m; ++i) ratio /= i;
@@ -97,7 +97,7 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
     const Function& f = functions_[i];
     const double factor = cosine ? cosine_band(f.band) : 1;
     const int m = std::abs(f.order);
-    // Q_lm is even or odd in z: a polynomial in z^2, times z where odd.
+    // Q_lm is even or odd in z: a polynomial in z^2, times z if odd.
     const std::size_t odd = (f.polynomial.size() - 1) % 2;
     std::vector<double> even;
     for (std::size_t k = odd; k < f.polynomial.size(); k += 2) even.push_back(factor * f.polynomial[k]);
@@ -105,9 +105,9 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
     std::string value = horner(even, "zz");
     if (factor != 0 && odd == 1) value = "z * " + value;
     if (factor != 0 && m > 0) {
-      const std::string part =
+      const std::string factor_xy =
           m == 1 ? (f.order < 0 ? "y" : "x") : fmt::format("{}{}", f.order < 0 ? "im" : "re", m);
-      value = part + " * " + value;
+      value = factor_xy + " * " + value;
     }
     text += fmt::format("  r.c{} = {};\n", i, value);
   }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Real spherical harmonics of bands 0 .. L-1, N = L^2, in the order l^2 + l + m; orthonormal, A = 1.
-// Y_lm = K_lm (m < 0: Im, else Re) (x + iy)^|m| Q_lm(z), Q_lm = d^|m| P_l / dz^|m|; all signs as in Y_1m =
-// .4886 (y, z, x).
+// Y_lm = K_lm (m < 0: Im, else Re) (x + iy)^|m| Q_lm(z), Q_lm = d^|m| P_l / dz^|m|; signs as in
+// Y_1m = 0.4886 (y, z, x).
 #pragma once
 
 #include "basis/basis.hpp"
 
 namespace clpv {
 
+/// Basis of `bands`^2 real spherical harmonics.
 class SphericalHarmonics : public Basis {
  public:
   explicit SphericalHarmonics(int bands);
@@ -20,7 +21,7 @@ class SphericalHarmonics : public Basis {
  private:
   struct Function {
     int band, order;
-    std::vector<double> polynomial;  ///< of z, with the factor K_lm: [i] is the coefficient of z^i
+    std::vector<double> polynomial;  ///< K_lm Q_lm: [i] is the coefficient of z^i
   };
   std::string kernel_function(const std::string& name, bool cosine) const;
 

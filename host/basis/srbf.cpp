@@ -26,7 +26,7 @@ std::vector<glm::dvec3> cube() {
   return corners;
 }
 
-// Three directions of height z, 120 degrees apart.
+// Adds three directions with z-coordinate z, 120 degrees apart.
 void add_ring(std::vector<glm::dvec3>& centres, double z, double first_degrees) {
   const double radius = std::sqrt(1 - z * z);
   for (int i = 0; i < 3; ++i) {
@@ -35,7 +35,7 @@ void add_ring(std::vector<glm::dvec3>& centres, double z, double first_degrees) 
   }
 }
 
-// The azimuths matter: turning one ring against the other by 60 degrees makes the lobe error .196 to .308.
+// The rings are 60 degrees apart: a relative rotation changes the lobe error between 0.196 and 0.308.
 std::vector<glm::dvec3> two_rings() {
   std::vector<glm::dvec3> centres{{0, 0, 1}, {0, 0, -1}};
   add_ring(centres, 1.0 / 3, 0);
@@ -56,20 +56,22 @@ std::vector<glm::dvec3> joined(std::vector<glm::dvec3> a, const std::vector<glm:
 
 void require_usable(const std::string& name, const std::vector<glm::dvec3>& centres,
                     const std::vector<double>& lambdas) {
-  if (centres.empty() || centres.size() > kMostCentres) {
-    throw Error(ExitCode::usage, "{} has {} centres; allowed: 1 to {}", name, centres.size(), kMostCentres);
+  if (centres.empty() || centres.size() > kMaxCentres) {
+    throw Error(ExitCode::usage, "{}: found {} centres, allowed: 1 to {}", name, centres.size(), kMaxCentres);
   }
   for (const double lambda : lambdas) {
     if (!(lambda > 0 && lambda < 1)) {
-      throw Error(ExitCode::usage, "lambda is {}; {} needs one between 0 and 1, both excluded", lambda, name);
+      throw Error(ExitCode::usage, "{}: lambda: found {}, allowed: between 0 and 1, both excluded", name,
+                  lambda);
     }
   }
   for (std::size_t i = 0; i < centres.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double distance = glm::length(centres[i] - centres[j]);
-      if (!(distance >= kLeastCentreDistance)) {
-        throw Error(ExitCode::usage, "{}: centres {} and {} are {:.2g} apart; allowed: {} or more", name, j,
-                    i, distance, kLeastCentreDistance);
+      if (!(distance >= kMinCentreDistance)) {
+        throw Error(ExitCode::usage,
+                    "{}: centres {} and {}: found a distance of {:.2g}, allowed: at least {}", name, j, i,
+                    distance, kMinCentreDistance);
       }
     }
   }

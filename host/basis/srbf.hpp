@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Spherical radial basis functions: the Abel-Poisson kernel G at fixed centres, each with a bandwidth lambda_i.
-// G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2), b_i(w) = G(w . xi_i; lambda_i), Int b_i dw
-// = 4 pi, A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda_i lambda_j): the 4 pi belongs there with the plain
-// measure dw.
+// Spherical radial basis functions (SRBF): Abel-Poisson kernels G at fixed centres xi_i with bandwidths lambda_i.
+//   G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2)
+//   b_i(w) = G(w . xi_i; lambda_i),  Int b_i dw = 4 pi
+//   A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda_i lambda_j)
 #pragma once
 
 #include <map>
@@ -12,12 +12,13 @@
 
 namespace clpv {
 
-/// G(t; lambda) for t in [-1, 1], lambda in (0, 1).
+/// Returns G(t; lambda) for t in [-1, 1], lambda in (0, 1).
 double abel_poisson(double t, double lambda);
 
+/// Basis of SRBFs.
 class Srbf : public Basis {
  public:
-  /// Unit centres and as many lambdas. Throws as make_basis_from_centres does.
+  /// Unit centres and one lambda per centre. Throws like make_basis_from_centres().
   Srbf(const std::string& name, const std::vector<glm::dvec3>& centres, const std::vector<double>& lambdas);
 
   using Basis::evaluate;
@@ -29,12 +30,13 @@ class Srbf : public Basis {
   std::map<double, CosineOfPoisson> cosines_;  ///< by lambda
 };
 
+/// A named set of unit centres.
 struct SrbfSet {
   std::string name;
   std::vector<glm::dvec3> centres;
 };
 
-/// The named sets: srbf4, srbf6, srbf8v1, srbf8v2, srbf8v3, srbf14.
+/// Returns the named sets: srbf4, srbf6, srbf8v1, srbf8v2, srbf8v3, srbf14.
 const std::vector<SrbfSet>& srbf_sets();
 
 }  // namespace clpv

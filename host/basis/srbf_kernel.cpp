@@ -11,11 +11,11 @@
 namespace clpv {
 namespace {
 
-constexpr const char* kOfDirection = "(const float x, const float y, const float z) {\n  Coefficients r;\n";
+constexpr const char* kSignature = "(const float x, const float y, const float z) {\n  Coefficients r;\n";
 
-// A centre, and the one opposite to it where the set has it, with the same lambda.
+// A centre, and its antipode of equal lambda if the set has one.
 struct Pair {
-  int centre, opposite;  // opposite -1: none
+  int centre, opposite;  // opposite is -1 if there is none
 };
 
 std::vector<Pair> antipodal_pairs(const Basis& basis) {
@@ -50,7 +50,7 @@ std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs
         float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
         float_literal(1 - lambda * lambda));
   };
-  std::string text = std::string("static inline Coefficients clpv_basis") + kOfDirection;
+  std::string text = std::string("static inline Coefficients clpv_basis") + kSignature;
   for (const Pair& pair : pairs) {
     text += height_statement(basis, pair.centre) + value(pair.centre, pair.centre, 1);
     if (pair.opposite >= 0) text += value(pair.opposite, pair.centre, -1);
@@ -79,8 +79,8 @@ std::vector<double> monomials(const std::vector<double>& chebyshev) {
   return sum;
 }
 
-// Statements that set `even` to g's even part at height `t`. Horner's form in t^2 where its terms do not
-// cancel (lambda up to about .5), else Clenshaw's recurrence, which is stable for any lambda.
+// Statements that set `even` to g's even part at `t`. Horner's form in t^2 if its terms do not cancel (lambda up
+// to about 0.5), else Clenshaw's recurrence, which is stable for any lambda.
 std::string even_part(const std::vector<double>& chebyshev, int i) {
   const std::vector<double> c = monomials(chebyshev);
   double size = 0;
@@ -91,23 +91,23 @@ std::string even_part(const std::vector<double>& chebyshev, int i) {
                        horner(c, fmt::format("u{}", i)));
   }
   std::string text = fmt::format("  const float u{0} = fma(4.0f * t{0}, t{0}, -2.0f);\n", i);  // 2x
-  std::string one = "0.0f", two = "0.0f";
+  std::string next = "0.0f", after_next = "0.0f";  // b_{k+1}, b_{k+2}
   for (std::size_t k = chebyshev.size() - 1; k > 0; --k) {
     const std::string name = fmt::format("s{}_{}", i, k);
-    text += fmt::format("  const float {} = fma(u{}, {}, {} - {});\n", name, i, one,
-                        float_literal(chebyshev[k]), two);
-    two = one;
-    one = name;
+    text += fmt::format("  const float {} = fma(u{}, {}, {} - {});\n", name, i, next,
+                        float_literal(chebyshev[k]), after_next);
+    after_next = next;
+    next = name;
   }
-  return text + fmt::format("  const float even{0} = fma(0.5f * u{0}, {1}, {2} - {3});\n", i, one,
-                            float_literal(chebyshev[0]), two);
+  return text + fmt::format("  const float even{0} = fma(0.5f * u{0}, {1}, {2} - {3});\n", i, next,
+                            float_literal(chebyshev[0]), after_next);
 }
 
 std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
                             const std::map<double, CosineOfPoisson>& cosines) {
   std::map<double, std::vector<double>> chebyshev;
   for (const auto& [lambda, cosine] : cosines) chebyshev[lambda] = cosine.chebyshev();
-  std::string text = std::string("static inline Coefficients clpv_cosine_integrals") + kOfDirection;
+  std::string text = std::string("static inline Coefficients clpv_cosine_integrals") + kSignature;
   for (const Pair& pair : pairs) {
     const int i = pair.centre;
     const double lambda = basis.lambdas()[i], slope = cosines.at(lambda).slope();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kernel text of an SRBF set (Basis::kernel_source): antipodal centres of one lambda share all but a sign.
+// Kernel text of an SRBF basis (Basis::kernel_source()). Antipodal centres of equal lambda share their terms but for a sign.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace clpv {
 
-/// `cosines` by lambda.
+/// Returns the text. `cosines`: clamped-cosine integrals for every lambda of the basis.
 std::string srbf_kernel_source(const Basis& basis, const std::map<double, CosineOfPoisson>& cosines);
 
 }  // namespace clpv

@@ -16,8 +16,8 @@ namespace {
 constexpr int kSide = 2;  // bins along each edge of a cube's face
 constexpr int kSweptBands = 3;
 
-/// Part (i, j) of a bin: equal angles from the axis to the diagonal, as bins96 cuts bins24.
-SphericalPolygon part(int bin, int parts, int i, int j) {
+/// Part (i, j) of a bin: divided at equal angles between axis and diagonal, as bins96 divides bins24.
+SphericalPolygon part_polygon(int bin, int parts, int i, int j) {
   const auto lines = [&](int side, int step) -> std::array<double, 2> {
     const double sign = side == 0 ? -1 : 1, angle = std::numbers::pi / 4;
     return {sign * std::tan(angle * step / parts), sign * std::tan(angle * (step + 1) / parts)};
@@ -46,7 +46,7 @@ std::vector<SweepBin> sweep_bins(int parts) {
   std::vector<SweepBin> bins;
   for (int b = 0; b < kSweepBins; ++b) {
     const FaceAxes axes = axes_of(b / (kSide * kSide));
-    // Rows of memory run along x where the plane holds x: u is the first of the plane's axes in memory.
+    // u is the plane's fastest axis in memory: x if the plane contains x.
     const int u = axes.n == 0 ? 1 : 0, v = axes.n == 2 ? 1 : 2;
     SweepBin bin{axes.n, u, v, {}, {}, 0, {}};
     bin.sign[axes.n] = axes.sign < 0 ? -1 : 1;
@@ -60,7 +60,7 @@ std::vector<SweepBin> sweep_bins(int parts) {
     }
     for (int j = 0; j < parts; ++j) {
       for (int i = 0; i < parts; ++i) {
-        bin.directions.push_back(direction_of(part(b, parts, i, j), bin));
+        bin.directions.push_back(direction_of(part_polygon(b, parts, i, j), bin));
         bin.solid_angle += bin.directions.back().solid_angle;
       }
     }
@@ -69,11 +69,11 @@ std::vector<SweepBin> sweep_bins(int parts) {
   return bins;
 }
 
-BinPart part_along(const glm::dvec3& w, int parts) {
+SubBin sub_bin_along(const glm::dvec3& w, int parts) {
   const glm::dvec3 size = glm::abs(w);
   const int n = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   const int u = (n + 1) % 3, v = (n + 2) % 3, face = 2 * n + (w[n] < 0 ? 1 : 0);
-  const auto lines = [&](int axis) {  // of those inside the bin, how many lie before w
+  const auto index_along = [&](int axis) {  // index of the part along `axis`
     int before = 0;
     while (before + 1 < parts &&
            size[axis] >= std::tan(std::numbers::pi / 4 * (before + 1) / parts) * size[n])
@@ -81,7 +81,7 @@ BinPart part_along(const glm::dvec3& w, int parts) {
     return before;
   };
   const int bin = face * kSide * kSide + (w[v] < 0 ? 0 : kSide) + (w[u] < 0 ? 0 : 1);
-  return {bin, lines(v) * parts + lines(u)};
+  return {bin, index_along(v) * parts + index_along(u)};
 }
 
 int coarser_part(int part, int parts, int coarser_parts) {
@@ -93,12 +93,12 @@ Matrix bin_means(const Basis& basis) {
   const DirectionBins bins(kSide);
   Matrix sums(kSweepBins, basis.size());
   std::vector<double> total(kSweepBins, 0.0);
-  // Pieces end where bins do and where the basis jumps.
+  // Polygons end at boundaries of bins and at discontinuities of the basis.
   std::vector<glm::dvec3> planes = bins.creases();
-  const std::vector<glm::dvec3> own = basis.creases();
-  planes.insert(planes.end(), own.begin(), own.end());
-  for (const SphericalPolygon& piece : split(octants(), planes)) {
-    for (const QuadratureNode& node : nodes_of(piece)) {
+  const std::vector<glm::dvec3> creases = basis.creases();
+  planes.insert(planes.end(), creases.begin(), creases.end());
+  for (const SphericalPolygon& polygon : split(octants(), planes)) {
+    for (const QuadratureNode& node : nodes_of(polygon)) {
       const std::vector<double> in = bins.evaluate(node.w), b = basis.evaluate(node.w);
       for (int bin = 0; bin < kSweepBins; ++bin) {
         const double weight = node.weight * in[bin];
@@ -108,11 +108,11 @@ Matrix bin_means(const Basis& basis) {
       }
     }
   }
-  constexpr double kNone = 1e-14;  // of a bin that a function does not reach
+  constexpr double kZero = 1e-14;  // means below are rounding errors of 0
   for (int bin = 0; bin < kSweepBins; ++bin) {
     for (double& mean : sums.row(bin)) {
       mean /= total[bin];
-      if (std::abs(mean) < kNone) mean = 0;
+      if (std::abs(mean) < kZero) mean = 0;
     }
   }
   return sums;
@@ -149,8 +149,8 @@ Matrix swept_projection() {
 
 void close_diagonals(std::vector<SweepLink>& links, double power) {
   for (SweepLink& link : links) {
-    const double longer = std::pow(glm::length(glm::dvec3(link.offset)), power);
-    for (double& weight : link.blocked_by) weight *= longer;
+    const double factor = std::pow(glm::length(glm::dvec3(link.offset)), power);
+    for (double& weight : link.blocked_by) weight *= factor;
   }
 }
 
@@ -164,8 +164,8 @@ std::vector<SweepLink> sweep_links() {
 }
 
 static int link_number(const glm::ivec3& offset) {
-  const int place = (offset.x + 1) + 3 * (offset.y + 1) + 9 * (offset.z + 1);
-  return place - (place > 13 ? 1 : 0);  // 13 is the cell itself
+  const int number = (offset.x + 1) + 3 * (offset.y + 1) + 9 * (offset.z + 1);
+  return number - (number > 13 ? 1 : 0);  // 13 is the cell itself
 }
 
 int LinkVolumes::volume(int axis, const glm::ivec3& offset) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Directions that light is swept along, once through the grid each (docs/method.md, 'The sweep'). In double; knows no
-// OpenCL.
+// Directions, links and projections of the sweep (docs/method.md, 'The sweep'): discrete ordinates with short
+// characteristics. In double, without OpenCL.
 #pragma once
 
 #include <array>
@@ -13,68 +13,70 @@
 
 namespace clpv {
 
-/// Discrete ordinates: the 24 bins of `bins24` in parts^2 parts each, and the mean direction of each part.
+/// One sweep direction: the mean direction of one of parts^2 parts of a bin of `bins24`.
 ///
-/// Light along w moves from plane to plane across the axis of its largest component. A cell draws from the four cells of
-/// the plane before, 0 or 1 cells aside along each other axis, against w: its taps sum to 1. Each direction's bin has
-/// these offsets in common.
+/// Light along w moves from plane to plane across the axis of its largest component. A cell draws from four upstream cells
+/// of the previous plane, offset by 0 or 1 along the other axes. All directions of a bin share these offsets.
 struct SweepDirection {
-  glm::dvec3 w;        ///< unit
-  double solid_angle;  ///< [sr]
-  double flux;         ///< of w along its axis, in (0, 1]: a plane's distance over the way between planes
-  std::array<double, 4> taps;  ///< of the cells 0, u, v, u and v aside
+  glm::dvec3 w;                ///< unit
+  double solid_angle;          ///< [sr]
+  double flux;                 ///< |w_m| in (0, 1], m the bin's axis
+  std::array<double, 4> taps;  ///< weights of the cells offset by 0, u, v, u and v; they sum to 1
 };
 
+/// A bin of `bins24` and its directions.
 struct SweepBin {
-  int axis, u, v;                    ///< the largest component's axis; the two that a plane spans
-  glm::ivec3 sign;                   ///< of w along x, y, z
-  std::array<glm::ivec3, 4> offset;  ///< how far light of each tap has come, in cells
+  int axis, u, v;                    ///< axis m of the largest component; the axes of a plane
+  glm::ivec3 sign;                   ///< signs of w along x, y, z
+  std::array<glm::ivec3, 4> offset;  ///< offset of each tap, downstream minus upstream cell
   double solid_angle;                ///< [sr]
   std::vector<SweepDirection> directions;
 };
 
 inline constexpr int kSweepBins = 24;
-inline constexpr int kMostSweepParts = 4;
+inline constexpr int kMaxSweepParts = 4;
 
-/// Bins in the order of `bins24`. `parts`: 1 to kMostSweepParts, for 24, 96, 216 or 384 directions.
+/// Returns all bins in the order of `bins24`. `parts`: 1 to kMaxSweepParts, for 24, 96, 216 or 384 directions.
 std::vector<SweepBin> sweep_bins(int parts);
 
-/// The bin that a unit vector w lies in, and which of its parts^2 parts.
-struct BinPart {
+/// A bin and one of its parts^2 parts.
+struct SubBin {
   int bin, part;
 };
-BinPart part_along(const glm::dvec3& w, int parts);
+/// Returns the sub-bin that contains the unit vector w.
+SubBin sub_bin_along(const glm::dvec3& w, int parts);
 
-/// Which of `coarser_parts`^2 parts of a bin a part of `parts`^2 lies in, or mostly.
+/// Returns the one of `coarser_parts`^2 parts of a bin that contains most of part `part` of `parts`^2.
 int coarser_part(int part, int parts, int coarser_parts);
 
-/// 24 x N: the mean over each bin of the functions of a basis. What a basis holds is swept as these means, negative ones
-/// too: the energy of any field is kept.
+/// 24 x N: mean of each basis function over each bin. A field is swept as these means, negative ones included, which
+/// conserves its energy.
 Matrix bin_means(const Basis& basis);
 
-/// Whether a basis's coefficients are these means already: bins24's.
+/// Returns true if the basis's coefficients equal these means, as for bins24.
 bool holds_bin_means(const Basis& basis);
 
-/// What is kept of swept light: the nine spherical harmonics of bands 0 to 2, all that gathering asks of it: a convolution with the
-/// clamped cosine leaves almost nothing beyond band 2 (Ramamoorthi & Hanrahan 2001, 'An efficient representation for
-/// irradiance environment maps').
+/// Returns the basis of swept light: the nine spherical harmonics of bands 0 to 2. Convolution with the clamped cosine leaves
+/// almost nothing beyond band 2 (Ramamoorthi and Hanrahan 2001, 'An efficient representation for irradiance environment
+/// maps').
 std::unique_ptr<Basis> swept_basis();
 
-/// 9 x 24: the projection on them of light that is the same all over each bin.
+/// 9 x 24: projection of light that is constant in each bin on swept_basis().
 Matrix swept_projection();
 
-/// What blocks along diagonal links grows by their length to that power: by 1 a wall that fills its faces lets nothing through.
+/// Multiplies the blocking weights of each link by the length of its offset to the power `power`. With power 1 a full wall is
+/// opaque along diagonals too.
 void close_diagonals(std::vector<SweepLink>& links, double power);
 
-/// The links from a cell's 26 neighbours, as kernels/transmittance.cl numbers them.
+/// Returns the links from a cell's 26 neighbours in the order of kernels/transmittance.cl, without blocking weights.
 std::vector<SweepLink> sweep_links();
 
-/// Volumes of the transmittance of links that sweep_links.cl writes: for each axis, x's first, those that directions across it use.
+/// Transmittance volumes that sweep_links.cl writes: for each axis in order, the links that directions of that axis use.
 struct LinkVolumes {
-  std::array<std::vector<int>, 3> across;  ///< numbers of sweep_links()
+  std::array<std::vector<int>, 3> across;  ///< for each axis, indices into sweep_links()
 
   int count() const { return static_cast<int>(across[0].size() + across[1].size() + across[2].size()); }
-  /// The number of the volume that holds the link from `offset` for directions across `axis`.
+  /// Returns the index of the volume of the link with `offset` for directions of `axis`.
   int volume(int axis, const glm::ivec3& offset) const;
 };
 LinkVolumes link_volumes();

@@ -21,7 +21,7 @@ Face face_of(const glm::ivec3& travel, const glm::ivec3& normal) {
   return face;
 }
 
-// The face as seen from the source's centre; the neighbour's centre is `travel`, its edge 1.
+// Spherical polygon of the face from the source's centre; cells have edge 1, the neighbour's centre is `travel`.
 SphericalPolygon cone_of(const Face& face) {
   const glm::dvec3 centre = glm::dvec3(face.travel) + 0.5 * glm::dvec3(face.normal);
   const glm::dvec3 u(face.normal.y, face.normal.z, face.normal.x),
@@ -48,7 +48,7 @@ std::vector<double> sample_of(const Basis& basis, const LobeOptions& lobes, cons
   return b;
 }
 
-void look_up_blockers(Transport& transport, const Basis& basis) {
+void set_blocking_weights(Transport& transport, const Basis& basis) {
   const auto weights = [&](const glm::dvec3& direction) {
     return blocking_weights(transport.blocking, basis, transport.lobes, direction);
   };
@@ -91,7 +91,7 @@ Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptio
       transport.scheme = sweep_links();
       break;
   }
-  look_up_blockers(transport, basis);
+  set_blocking_weights(transport, basis);
   return transport;
 }
 
@@ -114,10 +114,10 @@ FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeO
   for (Face& face : transport.faces) {
     face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face)) : sample_of(basis, lobes, face);
   }
-  const Lobes lobe_round(basis, lobes);
+  const Lobes lobe_about(basis, lobes);
   transport.lobes = Matrix(basis.size(), static_cast<int>(kAxes.size()));
   for (std::size_t a = 0; a < kAxes.size(); ++a) {
-    const std::vector<double> lobe = lobe_round(glm::dvec3(kAxes[a]));
+    const std::vector<double> lobe = lobe_about(glm::dvec3(kAxes[a]));
     const double carried = flux == FaceFlux::exact ? basis.energy(lobe) : kPi;
     for (int i = 0; i < basis.size(); ++i) {
       transport.lobes(i, static_cast<int>(a)) = lobe[i] / carried;

@@ -93,7 +93,7 @@ void search_and_tell(const BasisSearchOptions& options, double lambda, const Bas
   search.aims = aims_of(options);
   search.lambda = lambda;
   Progress progress("search", search.starts);
-  const FoundCentres found = search_centres(search, [&] { progress.advance(); });
+  const CentreSearchResult found = search_centres(search, [&] { progress.advance(); });
   const auto basis = make_basis_from_centres(name_of(options), found.set.centres, found.set.lambdas);
   if (!options.output.empty()) write_file(options.output, file_of(*basis).dump(1) + "\n");
   const nlohmann::json bases = beside_others(*basis, lambda, view, search.aims);
@@ -106,7 +106,7 @@ void search_and_tell(const BasisSearchOptions& options, double lambda, const Bas
                                    {"valid", found.valid},
                                    {"seed", search.seed},
                                    {"error", found.error},
-                                   {"least_error_over_all", least_error_of(search.centres)}};
+                                   {"least_error_over_all", minimum_error(search.centres)}};
     fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"search", of_search}, {"bases", bases}}.dump(2));
     return;
   }
@@ -115,7 +115,7 @@ void search_and_tell(const BasisSearchOptions& options, double lambda, const Bas
       "bounds.\n"
       "Over all directions no {} functions of any kind have less than {:.4f}.\n",
       table_of(bases), search.aims.name, found.valid, search.starts, search.centres,
-      least_error_of(search.centres));
+      minimum_error(search.centres));
   for (std::size_t i = 0; i < basis->centres().size(); ++i) {
     const glm::dvec3& xi = basis->centres()[i];
     fmt::print("{:9.6f} {:9.6f} {:9.6f}  lambda {:.6f}\n", xi.x, xi.y, xi.z, basis->lambdas()[i]);

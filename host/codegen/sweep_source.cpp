@@ -70,13 +70,13 @@ CountedText sweep_collect_text() {
 std::string bounce_source_text() {
   return coefficient_macros(kReflectingSides) + sweep_bin_macros() +
          cell_macros("Swept", "SWEPT", kSweepBins) +
-         LinearCode().function("Coefficients", "clpv_arriving", "Swept", arriving_flux()) +
-         LinearCode().function("Swept", "clpv_leaving", "Coefficients", leaving_light());
+         LinearCode().function("Coefficients", "clpv_arriving", "Swept", incident_flux()) +
+         LinearCode().function("Swept", "clpv_leaving", "Coefficients", reflected_intensity());
 }
 
 std::string arriving_source_text() {
   return cell_macros("Sides", "SIDE", kReflectingSides) +
-         LinearCode().function("Sides", "clpv_arriving", "Swept", arriving_flux());
+         LinearCode().function("Sides", "clpv_arriving", "Swept", incident_flux());
 }
 
 }  // namespace clpv

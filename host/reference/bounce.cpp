@@ -16,7 +16,7 @@ using Arriving = std::function<std::vector<double>(int, const glm::ivec3&)>;
 
 /// Adds the light of surfaces on which that falls.
 void send_back(Volume& light, const Volume& reflectors, const Arriving& arriving) {
-  const Matrix leaving = leaving_light();
+  const Matrix leaving = reflected_intensity();
   for_each_cell(light.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < 3; ++channel) {
       std::vector<double> flux = arriving(channel, p);
@@ -36,7 +36,7 @@ Volume swept_along_24(const Transport& transport, SweptCascade cascade, const Vo
 
 /// What falls on each side of a cell, of what a sweep left.
 Arriving arriving_of(const Volume& swept) {
-  return [flux = arriving_flux(), &swept](int channel, const glm::ivec3& p) {
+  return [flux = incident_flux(), &swept](int channel, const glm::ivec3& p) {
     return flux * swept.cell(channel, p);
   };
 }
@@ -44,7 +44,7 @@ Arriving arriving_of(const Volume& swept) {
 /// On a finer cascade's cells, of what a sweep left in a coarser one.
 Arriving arriving_from(const ClpvGrid& coarse, const Volume& swept, const ClpvGrid& fine) {
   const double area = double{fine.cell} * fine.cell / (double{coarse.cell} * coarse.cell);
-  return [=, flux = arriving_flux(), &swept](int channel, const glm::ivec3& p) {
+  return [=, flux = incident_flux(), &swept](int channel, const glm::ivec3& p) {
     std::vector<double> sum = flux * sampled(swept, channel, place_in(coarse, fine, p));
     for (double& value : sum) value *= area;
     return sum;

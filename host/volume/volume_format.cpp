@@ -161,8 +161,8 @@ std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, i
     case Layout::soa:
       break;
   }
-  return (size(channel) * n + i) * bordered_cells(shape) + (size(z + 1) * rows + size(y + 1)) * row_pitch(shape) +
-         size(x + 1);
+  return (size(channel) * n + i) * bordered_cells(shape) +
+         (size(z + 1) * rows + size(y + 1)) * row_pitch(shape) + size(x + 1);
 }
 
 }  // namespace clpv

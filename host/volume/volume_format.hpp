@@ -23,7 +23,7 @@ struct VolumeShape {
 
 std::size_t number_bytes(Storage storage);
 std::string format_name(const VolumeFormat& format);  ///< "soa/float"
-std::vector<VolumeFormat> all_formats();               ///< every layout with every storage
+std::vector<VolumeFormat> all_formats();              ///< every layout with every storage
 
 /// Returns the reason why the device cannot hold volumes of this format: "no 3-D image writes (cl_khr_3d_image_writes)".
 /// Nothing if it can.
