@@ -48,7 +48,7 @@ struct CheckScope {
 /// A stage's. Small inputs: each ends within seconds on a CPU device, but for building kernels.
 CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 
-// Each stage's, in checks/check_*.cpp.
+// One for each stage, in host/verify/.
 using StageCheck = CheckResults(Session& session, const CheckScope& scope);
 StageCheck check_sizes, check_rasterize, check_emit, check_inject, check_blockers, check_reflectors,
     check_propagate, check_sweep, check_bounce, check_visibility, check_gather, check_shade;
