@@ -79,14 +79,6 @@ const Inputs::Injected& Inputs::injected(const Basis& basis, int cascade) {
   return entry->second;
 }
 
-const std::vector<float>& Inputs::light(const Basis& basis, int cascade) {
-  return injected(basis, cascade).light;
-}
-
-const std::vector<float>& Inputs::geometry(const Basis& basis, int cascade) {
-  return injected(basis, cascade).geometry;
-}
-
 const std::vector<float>& Inputs::areas(int cascade) {
   const auto [entry, made] = areas_.try_emplace(cascade);
   if (made) {

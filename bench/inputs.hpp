@@ -30,13 +30,15 @@ class Inputs {
     Surface rsm, camera;  ///< the RSM in the options' format
     SurfaceImage rsm_image, camera_image;
   };
-  const Seen& seen(int cascade) const { return seen_.at(static_cast<std::size_t>(cascade)); }
+  const Seen& seen(int cascade) const { return seen_.at(cascade); }
   std::vector<ClpvGrid> grids() const;
 
   /// Injected light and blocking of a cascade in a basis, the published way (one-sided), by layout `soa`
   /// in float: Volume's host order. Made once.
-  const std::vector<float>& light(const Basis& basis, int cascade);
-  const std::vector<float>& geometry(const Basis& basis, int cascade);
+  const std::vector<float>& light(const Basis& basis, int cascade) { return injected(basis, cascade).light; }
+  const std::vector<float>& geometry(const Basis& basis, int cascade) {
+    return injected(basis, cascade).geometry;
+  }
   /// What the scene's triangles block of a cascade, as areas: what the defaults' sweep takes. In the same order, made once.
   const std::vector<float>& areas(int cascade);
 

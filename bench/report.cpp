@@ -18,19 +18,10 @@
 #include "clpv/version.hpp"
 #include "device/kernel_files.hpp"
 #include "support/fingerprint.hpp"
+#include "support/text.hpp"
 
 namespace clpv::bench {
 namespace {
-
-/// A value of CSV, in quotes where it needs them.
-std::string csv_field(const nlohmann::json& value) {
-  if (value.is_null()) return {};
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string or_dash(bool there, const std::string& text) {
   return there ? text : "-";
@@ -62,6 +53,9 @@ std::string now() {
 
 }  // namespace
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Bandwidth, working_set, gbps)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Ceilings, gflops, bandwidths, launch_ms)
+
 nlohmann::json context_json(const Session& session) {
   const Device& device = session.device();
   std::array<char, 256> host{};
@@ -89,13 +83,9 @@ nlohmann::json context_json(const Session& session) {
 
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
                            const std::vector<Row>& rows) {
-  nlohmann::json list = nlohmann::json::array(), bandwidths = nlohmann::json::array();
+  nlohmann::json list = nlohmann::json::array(), all = context;
   for (std::size_t i = 0; i < rows.size(); ++i) list.push_back(to_json(rows[i], static_cast<int>(i)));
-  for (const Bandwidth& bandwidth : ceilings.bandwidths)
-    bandwidths.push_back({{"working_set", bandwidth.working_set}, {"gbps", bandwidth.gbps}});
-  nlohmann::json all = context;
-  all["ceilings"] = {
-      {"gflops", ceilings.gflops}, {"bandwidths", bandwidths}, {"launch_ms", ceilings.launch_ms}};
+  all["ceilings"] = ceilings;
   return {{"context", all}, {"benchmarks", list}};
 }
 
@@ -107,7 +97,8 @@ std::string report_csv(const std::vector<Row>& rows) {
     std::vector<std::string> keys, values;
     for (const auto& [key, value] : row.items()) {
       keys.push_back(key);
-      values.push_back(csv_field(value));
+      values.push_back(
+          value.is_null() ? "" : csv_field(value.is_string() ? value.get<std::string>() : value.dump()));
     }
     if (i == 0) text += fmt::format("{}\r\n", fmt::join(keys, ","));
     text += fmt::format("{}\r\n", fmt::join(values, ","));

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "support/json_optional.hpp"
+
 namespace clpv::bench {
 namespace {
 
@@ -30,7 +32,7 @@ nlohmann::json variant_json(const Variant& variant) {
           {"occlusion", o.occlusion},
           {"grid", o.grid},
           {"iterations", o.iterations},
-          {"cascade", variant.cascade ? nlohmann::json(*variant.cascade) : nlohmann::json(nullptr)},
+          {"cascade", variant.cascade},
           {"filtered", variant.filtered}};
 }
 
@@ -78,18 +80,6 @@ std::string lobes_of(const RenderOptions& options) {
   return fmt::format("{}{}", name_of(options.lobe), in_kernel ? "-kernel" : "");
 }
 
-const char* name_of(Status status) {
-  switch (status) {
-    case Status::ok:
-      return "ok";
-    case Status::unsupported:
-      return "unsupported";
-    case Status::wrong:
-      return "wrong";
-  }
-  return "";
-}
-
 double Row::gflops() const {
   return times.median > 0 ? cost.flops / times.median * 1e-6 : 0;
 }
@@ -97,6 +87,10 @@ double Row::gflops() const {
 double Row::gbps() const {
   return times.median > 0 ? cost.bytes / times.median * 1e-6 : 0;
 }
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
+                                   triangles, pixels)
 
 nlohmann::json to_json(const Row& row, int index) {
   nlohmann::json json = {{"name", row.name},
@@ -122,24 +116,14 @@ nlohmann::json to_json(const Row& row, int index) {
                {"reason", text_or_null(row.reason)},
                {"timer", row.from_events ? "event" : "wall"},
                {"samples_ms", row.samples_ms},
-               {"min", row.times.min},
-               {"median", row.times.median},
-               {"p95", row.times.p95},
-               {"max", row.times.max},
-               {"mad", row.times.mad},
                {"wall_ms", row.wall_ms},
                {"first_launch_ms", row.first_launch_ms},
                {"build_ms", row.build_ms},
                {"device_bytes", row.device_bytes},
                {"host_bytes", row.host_bytes}});
-  json.update({{"flops", row.cost.flops},
-               {"bytes", row.cost.bytes},
-               {"working_set", row.cost.working_set},
-               {"reads_per_cell", row.cost.reads_per_cell},
-               {"writes_per_cell", row.cost.writes_per_cell},
-               {"triangles", row.cost.triangles},
-               {"pixels", row.cost.pixels},
-               {"gflops", row.gflops()},
+  json.update(nlohmann::json(row.times));
+  json.update(nlohmann::json(row.cost));
+  json.update({{"gflops", row.gflops()},
                {"gbps", row.gbps()},
                {"ceiling", text_or_null(row.ceiling)},
                {"ceiling_share", row.ceiling_share},

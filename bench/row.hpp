@@ -9,7 +9,16 @@
 
 #include "options/render_options.hpp"
 
-namespace clpv::bench {
+namespace clpv {
+
+namespace bench {
+enum class Status { ok, unsupported, wrong };
+}
+
+template <>
+inline constexpr auto kNames<bench::Status> = name_list("ok", "unsupported", "wrong");
+
+namespace bench {
 
 /// Of one series, in its unit. All 0 where it is empty.
 struct Statistics {
@@ -43,9 +52,6 @@ struct Cost {
   double writes_per_cell = 0;
   double triangles = 0, pixels = 0;  ///< of rasterising: those of all views
 };
-
-enum class Status { ok, unsupported, wrong };
-const char* name_of(Status status);
 
 struct Row {
   std::string suite, stage, name;
@@ -81,4 +87,5 @@ struct Row {
 /// propagation; Google Benchmark's is always 1 here.
 nlohmann::json to_json(const Row& row, int index);
 
-}  // namespace clpv::bench
+}  // namespace bench
+}  // namespace clpv

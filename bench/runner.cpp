@@ -186,7 +186,7 @@ Results run_suite(Session& session, const Suite& suite, const BenchOptions& opti
   std::vector<std::vector<Case>> wanted;
   std::size_t count = 0;
   for (const Group& group : groups) {
-    wanted.push_back(filtered(group.cases(), options.filter));
+    wanted.push_back(filtered(group(), options.filter));
     count += wanted.back().size();
   }
   if (count == 0) throw Error(ExitCode::usage, "filter: no row of suite {} matches", suite.name);

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "bench/hall.hpp"
-#include "options/presets.hpp"
+#include "options/render_options.hpp"
 
 namespace clpv::bench {
 

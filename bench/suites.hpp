@@ -22,9 +22,7 @@ struct SuiteOptions {
 };
 
 /// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.
-struct Group {
-  std::function<std::vector<Case>()> cases;
-};
+using Group = std::function<std::vector<Case>()>;
 
 struct Suite {
   std::string name, help;

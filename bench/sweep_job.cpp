@@ -105,8 +105,8 @@ std::vector<double> swept_reference(Inputs& inputs, const Variant& variant) {
   const auto basis = make_basis(o);
   const Transport transport = make_transport(o, *basis);
   const reference::Volume light = to_reference(inputs.light(*basis, cascade), o.grid, basis->size(), 3);
-  reference::SweptCascade swept{inputs.grids().at(static_cast<std::size_t>(cascade)), &light, nullptr,
-                                sweep_options(o).parts.at(static_cast<std::size_t>(cascade))};
+  reference::SweptCascade swept{inputs.grids().at(cascade), &light, nullptr,
+                                sweep_options(o).parts.at(cascade)};
   reference::Volume areas;
   if (o.occlusion) {
     areas = to_reference(inputs.areas(cascade), o.grid + 1, blocking_size(o.blocking, *basis), 1);

@@ -2,9 +2,7 @@
 // glTF animations: where meshes, cameras and lights are at an instant.
 #include <glm/gtc/constants.hpp>
 
-#include "pipeline/scene_buffers.hpp"
-#include "tests/support/bad_input.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::animation_test {
 namespace {
@@ -135,24 +133,6 @@ TEST_F(AnimationTest, AnyInstantIsTheSameWhateverCameBefore) {
   straight.pose(0.3);
   for (const double seconds : {0.9, 0.1, 0.3}) wandering.pose(seconds);
   EXPECT_EQ(bytes_of(straight.scene().vertices), bytes_of(wandering.scene().vertices));
-}
-
-TEST_F(AnimationTest, OnTheDeviceMovedPartsAreWhatAFreshUploadHas) {
-  model.document["nodes"].push_back({{"mesh", 0}});
-  animate<float>(0, "translation", {0, 1}, {0, 0, 0, -7, 2, 3});
-  animate<float>(0, "scale", {0, 1}, {1, 1, 1, -1, 1, 1});
-  MovingScene moving = load();
-  Session& session = test_session();
-  SceneBuffers followed = upload_scene(session, moving.scene());
-  moving.pose(1);
-  upload_moving(session, moving.scene(), followed);
-  const SceneBuffers fresh = upload_scene(session, moving.scene());
-  EXPECT_EQ(bytes_of(session.read<Vertex>(followed.vertices, followed.vertex_count)),
-            bytes_of(session.read<Vertex>(fresh.vertices, fresh.vertex_count)));
-  EXPECT_EQ(bytes_of(session.read<Triangle>(followed.triangles, followed.triangle_count)),
-            bytes_of(session.read<Triangle>(fresh.triangles, fresh.triangle_count)));
-  EXPECT_EQ(followed.bounds.lower, fresh.bounds.lower);
-  EXPECT_EQ(followed.bounds.lower.x, -8);
 }
 
 TEST_F(AnimationTest, WhatIsFittedToASceneGoesByItsFirstInstant) {

@@ -7,7 +7,7 @@
 
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/moving_scene.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::api_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Hostile and broken files, JSON, containers, URIs and scene files: each is rejected with file, place, value found and value
 // allowed, as exit code 3 (bad_input).
-#include "tests/support/bad_input.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::bad_input_test {
 namespace {
@@ -127,27 +127,34 @@ TEST_F(BadInputTest, BufferUrisThatLeaveTheFolder) {
 
 /// Scene files: each rejected with place, value found and value allowed.
 struct BadSceneFileTest : BadInputTest {
+  BadSceneFileTest() { model.write(folder); }
+
   void expect_rejected(const std::string& members, const std::vector<std::string>& words) {
     const std::string text = "{" + members + "}", message = rejection(folder.write("scene.json", text));
     EXPECT_THAT(message, HasSubstr("scene.json"));
     for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word)) << text;
   }
+  /// Each row's members between `before` and `after`, in a scene of a sound model.
+  void expect_rows(const std::string& before, const std::string& after,
+                   const std::vector<std::pair<std::string, std::vector<std::string>>>& rows) {
+    for (const auto& [members, words] : rows)
+      expect_rejected(R"("model": "model.gltf", )" + before + members + after, words);
+  }
 };
 
 TEST_F(BadSceneFileTest, EachMember) {
-  model.write(folder);
-  const std::pair<std::string, std::vector<std::string>> rows[] = {
-      {R"("exposre": 1)", {"/exposre", "unknown key", "exposure", "metres_per_unit"}},
-      {R"("cascades": {"size": 3})", {"/cascades/size", "size_metres"}},
-      {R"("metres_per_unit": 0)", {"/metres_per_unit", "found 0"}},
-      {R"("metres_per_unit": -1)", {"/metres_per_unit"}},
-      {R"("metres_per_unit": "big")", {"/metres_per_unit"}},
-      {R"("exposure": 100)", {"/exposure", "-64 to 64"}},
-      {R"("cascades": {"count": 0})", {"/cascades/count"}},
-      {R"("cascades": {"count": 1.5})", {"/cascades/count"}},
-      {R"("cascades": {"count": 17})", {"/cascades/count"}},
-  };
-  for (const auto& [member, words] : rows) expect_rejected(R"("model": "model.gltf", )" + member, words);
+  expect_rows("", "",
+              {
+                  {R"("exposre": 1)", {"/exposre", "unknown key", "exposure", "metres_per_unit"}},
+                  {R"("cascades": {"size": 3})", {"/cascades/size", "size_metres"}},
+                  {R"("metres_per_unit": 0)", {"/metres_per_unit", "found 0"}},
+                  {R"("metres_per_unit": -1)", {"/metres_per_unit"}},
+                  {R"("metres_per_unit": "big")", {"/metres_per_unit"}},
+                  {R"("exposure": 100)", {"/exposure", "-64 to 64"}},
+                  {R"("cascades": {"count": 0})", {"/cascades/count"}},
+                  {R"("cascades": {"count": 1.5})", {"/cascades/count"}},
+                  {R"("cascades": {"count": 17})", {"/cascades/count"}},
+              });
   expect_rejected("", {"/model", "nothing"});
   expect_rejected(R"("model": 7)", {"/model", "found 7"});
   expect_rejected(R"("model": "absent.gltf")", {"/model", "absent.gltf", "option model"});
@@ -155,50 +162,94 @@ TEST_F(BadSceneFileTest, EachMember) {
 }
 
 TEST_F(BadSceneFileTest, Cameras) {
-  model.write(folder);
-  const std::pair<std::string, std::vector<std::string>> rows[] = {
-      {R"("fov": 3)", {"/cameras/0/fov", "vertical_fov_degrees"}},
-      {R"("eye": [0, 0])", {"/cameras/0/eye", "an array of 2", "3 numbers"}},
-      {R"("eye": [1, 0, 0])", {"/cameras/0/target", "the eye itself"}},
-      {R"("target": [0, 5, 0])", {"/cameras/0/up", "across the line of sight"}},
-      {R"("up": [1, 0, 0])", {"/cameras/0/up"}},
-      {R"("up": [0, 0, 0])", {"/cameras/0/up", "no length"}},
-      {R"("vertical_fov_degrees": 0)", {"/cameras/0/vertical_fov_degrees"}},
-      {R"("vertical_fov_degrees": 180)", {"/cameras/0/vertical_fov_degrees"}},
-      {R"("near": 0)", {"/cameras/0/near"}},
-      {R"("light": "moon")", {"/cameras/0/light", "'moon'", "'sun'"}},
-      {R"("name": "\u001b[31m", "light": "\u0000")", {"/cameras/0"}},
-  };
-  const std::string head = R"("model": "model.gltf", "lights": [{"name": "sun", "kind": "directional",
-      "direction": [0, -1, 0], "illuminance_lux": 1}], "cameras": [{"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0])";
-  for (const auto& [member, words] : rows)
-    expect_rejected(head + ", " + member + "}]", words);  // the last of a name counts
-  expect_rejected(head + R"(}, {"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0]}])",
-                  {"/cameras/1/name", "'a' again"});
+  const std::string other = R"({"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0])";
+  expect_rows(
+      R"("lights": [{"name": "sun", "kind": "directional", "direction": [0, -1, 0], "illuminance_lux": 1}],
+      "cameras": [)" +
+          other + ", ",
+      "}]",
+      {
+          // of members of one name the last counts
+          {R"("fov": 3)", {"/cameras/0/fov", "vertical_fov_degrees"}},
+          {R"("eye": [0, 0])", {"/cameras/0/eye", "an array of 2", "3 numbers"}},
+          {R"("eye": [1, 0, 0])", {"/cameras/0/target", "the eye itself"}},
+          {R"("target": [0, 5, 0])", {"/cameras/0/up", "across the line of sight"}},
+          {R"("up": [1, 0, 0])", {"/cameras/0/up"}},
+          {R"("up": [0, 0, 0])", {"/cameras/0/up", "no length"}},
+          {R"("vertical_fov_degrees": 0)", {"/cameras/0/vertical_fov_degrees"}},
+          {R"("vertical_fov_degrees": 180)", {"/cameras/0/vertical_fov_degrees"}},
+          {R"("near": 0)", {"/cameras/0/near"}},
+          {R"("light": "moon")", {"/cameras/0/light", "'moon'", "'sun'"}},
+          {R"("name": "\u001b[31m", "light": "\u0000")", {"/cameras/0"}},
+          {R"("up": [0, 1, 0]}, )" + other, {"/cameras/1/name", "'a' again"}},
+      });
 }
 
 TEST_F(BadSceneFileTest, Lights) {
-  model.write(folder);
   const std::string sun = R"("kind": "directional", "direction": [0, -1, 0], "illuminance_lux": )";
   std::string many = sun + "1";
   for (int i = 0; i < 64; ++i) many += "}, {" + sun + "1";
-  const std::pair<std::string, std::vector<std::string>> rows[] = {
-      {R"("kind": "sun")", {"/lights/0/kind", "directional, spot, point"}},
-      {R"("kind": "directional", "direction": [0, 0, 1])", {"/lights/0/illuminance_lux", "needs it"}},
-      {R"("kind": "directional", "direction": [0, 0, 0], "illuminance_lux": 1)",
-       {"/lights/0/direction", "no length"}},
-      {R"("kind": "point", "position": [0, 0, 0], "intensity_candela": 1, "direction": [0, 0, 1])",
-       {"/lights/0/direction", "point light"}},
-      {R"("kind": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "intensity_candela": 1,
+  expect_rows(
+      R"("lights": [{)", "}]",
+      {
+          {R"("kind": "sun")", {"/lights/0/kind", "directional, spot, point"}},
+          {R"("kind": "directional", "direction": [0, 0, 1])", {"/lights/0/illuminance_lux", "needs it"}},
+          {R"("kind": "directional", "direction": [0, 0, 0], "illuminance_lux": 1)",
+           {"/lights/0/direction", "no length"}},
+          {R"("kind": "point", "position": [0, 0, 0], "intensity_candela": 1, "direction": [0, 0, 1])",
+           {"/lights/0/direction", "point light"}},
+          {R"("kind": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "intensity_candela": 1,
           "inner_cone_degrees": 50, "outer_cone_degrees": 40)",
-       {"/lights/0", "inner less than outer"}},
-      {sun + "-1", {"/lights/0/illuminance_lux"}},
-      {sun + "1e30", {"/lights/0/illuminance_lux"}},
-      {sun + "\"bright\"", {"/lights/0/illuminance_lux", "\"bright\""}},
-      {many, {"/lights", "an array of 65"}},
-  };
-  for (const auto& [light, words] : rows)
-    expect_rejected(R"("model": "model.gltf", "lights": [{)" + light + "}]", words);
+           {"/lights/0", "inner less than outer"}},
+          {sun + "-1", {"/lights/0/illuminance_lux"}},
+          {sun + "1e30", {"/lights/0/illuminance_lux"}},
+          {sun + "\"bright\"", {"/lights/0/illuminance_lux", "\"bright\""}},
+          {many, {"/lights", "an array of 65"}},
+      });
+}
+
+TEST_F(BadSceneFileTest, KeysOfCameras) {
+  const std::string still = R"("eye": [0, 0, 0], "target": [0, 0, 1], )",
+                    ahead = R"("target": [0, 0, 1], "keys": [)", time = "/cameras/0/keys/0/time",
+                    range = "a number from 0 to 1000000";
+  expect_rows(
+      R"("cameras": [{"name": "walk", )", "}]",
+      {
+          {ahead + R"({"time": 2, "eye": [0, 0, 0]}, {"time": 2, "eye": [1, 0, 0]}])",
+           {"/cameras/0/keys/1/time", "found 2 s", "more than the 2 s"}},
+          {ahead + R"({"time": -1, "eye": [0, 0, 0]}])", {time, range}},
+          {ahead + R"({"time": 1e7, "eye": [0, 0, 0]}])", {time, range}},
+          {ahead + R"({"time": "noon", "eye": [0, 0, 0]}])", {time, range}},
+          {ahead + R"({"eye": [0, 0, 0]}])", {time, "found nothing"}},
+          {still + R"("keys": [{"time": 0}])", {"/cameras/0/keys/0", "a time alone", "vertical_fov_degrees"}},
+          {still + R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
+           {"/cameras/0/keys/0/eye", "/cameras/0/eye says too"}},
+          {still + R"("keys": [])", {"/cameras/0/keys", "an array of 1 to 65536"}},
+          {still + R"("interpolation": "step")", {"/cameras/0/interpolation", "no keys"}},
+          {R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
+           {"/cameras/0/target", "found nothing", "or in keys"}},
+      });
+}
+
+TEST_F(BadSceneFileTest, KeysOfLights) {
+  const std::string sun = R"("kind": "directional", "illuminance_lux": 1, )",
+                    direction = "/lights/0/keys/0/direction";
+  expect_rows(
+      R"("lights": [{)", "}]",
+      {
+          {sun + R"("direction": [0, -1, 0], "keys": [{"time": 0, "eye": [0, 0, 0]}])",
+           {"/lights/0/keys/0/eye", "unknown key"}},
+          {sun + R"("interpolation": "smooth", "keys": [{"time": 0, "direction": [0, -1, 0]}])",
+           {"/lights/0/interpolation", "linear, step"}},
+          {sun + R"("keys": [{"time": 0, "direction": [0, -2, 0]}, {"time": 1, "direction": [0, 1, 0]}])",
+           {"/lights/0/keys/1/direction", "the opposite of the key before"}},
+          {sun + R"("keys": [{"time": 0, "direction": [0, 0, 0]}])", {direction, "no length"}},
+          {R"("kind": "directional", "keys": [{"time": 0, "direction": [0, -1, 0]}])",
+           {"/lights/0/illuminance_lux", "needs it"}},
+          {R"("kind": "point", "position": [0, 0, 0], "intensity_candela": 1,
+          "keys": [{"time": 0, "direction": [0, -1, 0]}])",
+           {"/lights/0/direction", "a point light has not"}},
+      });
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "basis/lobe_quality.hpp"
 #include "basis/srbf.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/every_basis.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::basis_test {
@@ -86,20 +85,6 @@ TEST(Srbf, ConditionNumbers) {
   }
   EXPECT_NEAR(make_basis("srbf14")->condition(), 1.8e4, 500);
   EXPECT_NEAR(make_basis("sh5")->condition(), 1, 1e-12);
-}
-
-TEST(Srbf, AzimuthOfTheRingsMatters) {
-  // Rings at z = 1/3 and -1/3 at the same three azimuths instead of in between: the paper leaves it open.
-  std::vector<glm::dvec3> aligned = make_basis("srbf8v1")->centres();
-  for (glm::dvec3& centre : aligned) {
-    if (centre.z < 0 && centre.z > -0.9) centre = {-centre.x, -centre.y, centre.z};
-  }
-  const auto basis = make_basis_from_centres("aligned", aligned);
-  const auto staggered = make_basis("srbf8v1");
-  const auto error = [](const Basis& of) {
-    return lobe_quality(of, of.clamped_cosine(kOblique), kOblique).relative_l2;
-  };
-  EXPECT_GT(std::abs(error(*basis) - error(*staggered)), .01);
 }
 
 TEST(Srbf, PoissonKernelIsItsSeries) {
@@ -186,7 +171,7 @@ TEST(Rejected, IllConditionedSetsNamingLambdaAndNumber) {
 
 TEST(Rejected, LambdaOutsideItsRangeAndUnknownNames) {
   for (const double lambda : {0.0, 1.0, -0.25, 2.0, std::nan("")}) {
-    EXPECT_THAT(rejection("srbf8v2", lambda), ::testing::HasSubstr("between 0 and 1")) << lambda;
+    EXPECT_THAT(rejection("srbf8v2", lambda), ::testing::HasSubstr("greater than 0 and less than 1")) << lambda;
   }
   EXPECT_THAT(rejection("srbf7", .25), ::testing::HasSubstr("allowed: sh2, sh3, sh4, sh5, srbf4"));
 }

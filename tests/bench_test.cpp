@@ -16,9 +16,8 @@
 #include "bench/report.hpp"
 #include "bench/runner.hpp"
 #include "support/error.hpp"
-#include "support/json_schema.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::bench::bench_test {
 namespace {
@@ -26,8 +25,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const std::string kProgram = CLPV_PROGRAM;
 
 TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
   const Statistics s = statistics_of({5, 1, 4, 2, 103});
@@ -110,54 +107,15 @@ TEST(BenchPublished, CellsAreThoseOfTheTable) {
   EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
 }
 
-/// Every key of docs/benchmarks.md, in its range.
-std::vector<Rule> row_schema() {
-  std::vector<Rule> rules = {rule::object(""),
-                             rule::object("/context").must(),
-                             rule::list("/benchmarks", 1, 1000).must(),
-                             rule::integer("/context/schema", 1, 1).must(),
-                             rule::number("/context/ceilings/gflops", 1e-3, 1e9).must(),
-                             rule::object("/benchmarks/*")};
-  for (const char* key : {"date", "host_name", "device", "driver", "platform", "build_options", "kernel_hash",
-                          "git_describe", "host_cpu", "clpv_version", "executable", "library_build_type"})
-    rules.push_back(rule::text(std::string("/context/") + key).must());
-  const std::string row = "/benchmarks/*/";
-  for (const char* key :
-       {"name", "run_name", "suite", "stage", "basis", "layout", "storage", "state", "lobe", "transport"})
-    rules.push_back(rule::text(row + key).must());
-  rules.push_back(rule::text(row + "run_type", {"iteration"}).must());
-  rules.push_back(rule::text(row + "status", {"ok", "unsupported", "wrong"}).must());
-  rules.push_back(rule::text(row + "time_unit", {"ms"}).must());
-  rules.push_back(rule::text(row + "ceiling", {"fma", "bandwidth", "launch"}).must());
-  rules.push_back(rule::flag(row + "occlusion").must());
-  rules.push_back(rule::flag(row + "filtered").must());
-  rules.push_back(rule::list(row + "samples_ms", 3, 3).must());
-  for (const char* key : {"n", "grid", "iterations", "repetitions", "threads", "family_index"})
-    rules.push_back(rule::integer(row + key, 0, 1e6).must());
-  for (const char* key : {"min",
-                          "median",
-                          "p95",
-                          "max",
-                          "mad",
-                          "real_time",
-                          "cpu_time",
-                          "wall_ms",
-                          "first_launch_ms",
-                          "build_ms",
-                          "device_bytes",
-                          "host_bytes",
-                          "flops",
-                          "bytes",
-                          "reads_per_cell",
-                          "writes_per_cell",
-                          "gflops",
-                          "gbps",
-                          "max_rel_error",
-                          "tolerance"})
-    rules.push_back(rule::number(row + key, 0, 1e15).must());
-  rules.push_back(rule::number(row + "ceiling_share", 0, 2).must());
-  return rules;
-}
+/// The keys of docs/benchmarks.md: of the context, of a row.
+const std::vector<std::string> kContext = test::words_of(
+    "date host_name device driver platform build_options kernel_hash git_describe host_cpu clpv_version "
+    "executable library_build_type");
+const std::vector<std::string> kRow = test::words_of(
+    "name run_name suite stage basis layout storage state lobe transport run_type status time_unit ceiling "
+    "occlusion filtered samples_ms n grid iterations repetitions threads family_index min median p95 max mad "
+    "real_time cpu_time wall_ms first_launch_ms build_ms device_bytes host_bytes flops bytes reads_per_cell "
+    "writes_per_cell gflops gbps max_rel_error tolerance ceiling_share");
 
 /// Small enough for a kernel's compiling to be what takes the time.
 SuiteOptions small() {
@@ -172,7 +130,7 @@ std::vector<Row> rows_of(const Suite& suite, const std::string& filter,
                          const SuiteOptions& options = small()) {
   std::vector<Row> rows;
   for (const Group& group : suite.groups(test::test_session(), options)) {
-    std::vector<Case> cases = group.cases();
+    std::vector<Case> cases = group();
     std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, std::regex(filter)); });
     std::ranges::move(run_cases(test::test_session(), cases, {.repetitions = 1}), std::back_inserter(rows));
   }
@@ -281,20 +239,24 @@ TEST(BenchSuites, EveryPassOfRasterizingIsRightAndThePeerDrawsTheSame) {
   EXPECT_THAT(table, Not(HasSubstr("WRONG")));
 }
 
-const std::string kOneRow = " bench bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";
+const std::string kOneRow = "bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";
 
 TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
   const test::TemporaryFolder folder;
   const std::string old = folder.write("old.json", report({{"propagate/sh2/soa/float", 1e-6, 0}}).dump())
                               .string(),
                     now = (folder / "new.json").string();
-  const auto out = test::run(kProgram + kOneRow + " --format json --out " + now + " --compare " + old +
-                             " --plot " + (folder / "plots").string());
+  const auto out = test::run_here("bench " + kOneRow + " --format json --out " + now + " --compare " + old +
+                                  " --plot " + (folder / "plots").string());
   ASSERT_EQ(out.exit_code, 0) << out.err;
   EXPECT_THAT(out.out, ::testing::ContainsRegex("propagate/sh2/soa/float .* SLOWER"));
   const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
-  EXPECT_NO_THROW(check_rules(document, row_schema(), now));
   const nlohmann::json& row = document["benchmarks"][0];
+  EXPECT_EQ(document["context"]["schema"], 1);
+  EXPECT_GT(document["context"]["ceilings"]["gflops"], 0);
+  for (const std::string& key : kContext) EXPECT_TRUE(document["context"].contains(key)) << key;
+  for (const std::string& key : kRow) EXPECT_TRUE(row.contains(key) && !row[key].is_null()) << key;
+  EXPECT_EQ(row["samples_ms"].size(), 3u);
   EXPECT_EQ(row["name"], "propagate/sh2/soa/float");
   EXPECT_EQ(row["status"], "ok");
   EXPECT_LE(row["max_rel_error"], row["tolerance"]);
@@ -312,27 +274,11 @@ TEST(BenchProgram, AnAlteredLiteralIsCaught) {
   ASSERT_NE(at, std::string::npos);
   text.replace(at, sum.size(), "r.c##i = a.c##i + 1.0001f * b.c##i;");
   std::ofstream(folder.path() / "propagate.cl") << text;
-  const auto out = test::run("CLPV_KERNEL_DIR=" + folder.path().string() + " CLPV_PROGRAM_CACHE=off " +
-                             kProgram + kOneRow);
+  const auto out = test::run("CLPV_KERNEL_DIR=" + folder.path().string() +
+                             " CLPV_PROGRAM_CACHE=off " CLPV_PROGRAM " " + "bench " + kOneRow);
   EXPECT_EQ(out.exit_code, static_cast<int>(ExitCode::validation)) << out.out << out.err;
   EXPECT_THAT(out.out, HasSubstr("WRONG"));
   EXPECT_THAT(out.err, HasSubstr("propagate/sh2/soa/float"));
-}
-
-TEST(BenchProgram, RejectsBadUsage) {
-  const auto code = [](const std::string& arguments) {
-    return test::run(kProgram + " bench " + arguments).exit_code;
-  };
-  EXPECT_EQ(code("nothing"), 2);
-  EXPECT_EQ(code("bases --filter '['"), 2);
-  EXPECT_EQ(code("ceilings --filter nothing-of-that-name"), 2);
-  EXPECT_EQ(code("bases --repetitions 0"), 2);
-  EXPECT_EQ(code("bases --basis sh17"), 2);
-  EXPECT_EQ(code("bases --format xml"), 2);
-  EXPECT_EQ(code("bases --model x.gltf"), 2);
-  EXPECT_EQ(code("ceilings --format json --compare old.json"), 2);
-  EXPECT_EQ(code("ceilings --compare /nowhere/old.json"), 3);
-  EXPECT_EQ(code("ceilings --out /nowhere/new.json"), 1);
 }
 
 }  // namespace

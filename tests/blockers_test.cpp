@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Blockers from a scene's triangles, held against shares that are known.
+// Blockers from a scene's triangles against known areas.
 #include "pipeline/blockers.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "reference/blockers.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"
@@ -19,7 +18,7 @@ using namespace test;
 constexpr int kGrid = 4;
 const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // corners at 0..4, their cells half a metre round them
 
-/// Shares [axis][z][y][x], by the kernels; the CPU reference must agree.
+/// Shares [axis][z][y][x], by the kernels, which check_blockers holds against the CPU reference.
 struct Shares {
   std::vector<float> values;
   float at(int axis, int x, int y, int z) const {
@@ -31,13 +30,7 @@ Shares blocked(const Scene& scene) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   BlockerVoxelizer(test_session(), buffers, kGrid, 1, {}).block(0, kCells, geometry);
-  Shares shares{geometry.read(test_session())};
-  const reference::Blocked expected = reference::block(scene, kCells);
-  for (std::size_t i = 0; i < shares.values.size(); ++i) {
-    EXPECT_GE(shares.values[i], expected.least.values[i]) << i;
-    EXPECT_LE(shares.values[i], expected.most.values[i]) << i;
-  }
-  return shares;
+  return {geometry.read(test_session())};
 }
 
 float sum(const Shares& shares, int axis) {
@@ -105,10 +98,7 @@ TEST(Block, HolesOfMaskedMaterialsLetLightPass) {
 TEST(Block, ATriangleBeyondTheHorizonIsAWall) {
   Scene scene;
   add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, add_material(scene));
-  Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
-  BlockerVoxelizer(test_session(), upload_scene(test_session(), scene), kGrid, 1, {})
-      .block(0, kCells, geometry);
-  EXPECT_EQ(sum({geometry.read(test_session())}, 1), 25);
+  EXPECT_EQ(sum(blocked(scene), 1), 25);
 }
 
 TEST(Block, KernelsAgreeWithTheReference) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light that surfaces send back, held against what is known in closed form; and the kernels against the CPU reference.
+// Reflected light against closed forms, by the CPU reference; and the kernels against that reference.
 #include "pipeline/bounce.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,6 @@
 #include "reference/bounce.hpp"
 #include "reference/reflectors.hpp"
 #include "scene/load.hpp"
-#include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"
@@ -75,12 +74,6 @@ bool inside(const glm::ivec3& p) {
          glm::all(glm::lessThanEqual(p, glm::ivec3(kLast)));
 }
 
-template <typename Visit>
-void for_each_cell(Visit visit) {
-  for (int i = 0; i < kGrid * kGrid * kGrid; ++i)
-    visit(glm::ivec3(i % kGrid, i / kGrid % kGrid, i / kGrid / kGrid));
-}
-
 /// A closed box of an albedo, its walls in the middle of those that block next to the cells inside.
 Scene room_scene(float albedo, const ClpvGrid& grid) {
   Scene scene;
@@ -106,7 +99,7 @@ struct Room {
     blockers = reference::block(scene, grid).least;
     reflectors = reference::reflect(scene, grid).areas;
     const Matrix leaving = reflected_intensity();
-    for_each_cell([&](const glm::ivec3& p) {
+    reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;
       for (int side = 0; side < kReflectingSides; ++side) {
         if (p[side / 2] != (side % 2 == 0 ? kFirst : kLast)) continue;
@@ -123,7 +116,7 @@ struct Room {
     const reference::Volume swept_light =
         reference::sweep_bounced(*make_basis("bins24"), swept(), {cascade}, {&reflectors}, bounces)[0];
     double sum = 0;
-    for_each_cell([&](const glm::ivec3& p) {
+    reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;
       for (int b = 0; b < kSweepBins; ++b) sum += swept_light.value(1, b, p.x, p.y, p.z);
     });
@@ -131,7 +124,7 @@ struct Room {
   }
 };
 
-// Of a furnace's E / (1 - a) as many terms as there are bounces.
+// The series E (1 + a + a^2 + ...) of a furnace, with one term a bounce.
 TEST(Bounce, AFurnaceGlowsByItsClosedForm) {
   for (const float albedo : {0.2f, 0.8f}) {
     const Room room(albedo);
@@ -139,18 +132,6 @@ TEST(Bounce, AFurnaceGlowsByItsClosedForm) {
     EXPECT_NEAR(room.lit(Bounces::two) / one, 1 + albedo, 0.02 * albedo);
     const double series = (1 - std::pow(double{albedo}, bounces)) / (1 - double{albedo});
     EXPECT_NEAR(room.lit(Bounces::all) / one / series, 1, 0.1 * albedo) << albedo;
-  }
-}
-
-// Energy: what surfaces absorb is gone.
-TEST(Bounce, LightOnlyFallsWhereNothingEmits) {
-  double before = 1e9;
-  for (const float albedo : {1.0f, 0.5f, 0.0f}) {
-    const Room room(albedo);
-    const double more = room.lit(Bounces::two) / room.lit(Bounces::one) - 1;
-    EXPECT_LT(more, before);
-    EXPECT_LE(more, 1.02 * double{albedo} + kExact);
-    before = more;
   }
 }
 
@@ -174,16 +155,8 @@ double irradiance(const RenderOptions& options, const char* file = "scenes/corne
   return sum;
 }
 
-TEST(BouncedFrame, EachBounceAddsLightAndEndsByItself) {
-  const double one = irradiance(small_frame(Bounces::one, 1)), two = irradiance(small_frame(Bounces::two, 1)),
-               all = irradiance(small_frame(Bounces::all, 1));
-  EXPECT_GT(two, 1.1 * one);
-  EXPECT_GT(all, 1.05 * two);
-  EXPECT_LT(all, 3 * one);
-}
-
-// Of a lamp close under a ceiling: the room has 1.29 times the light of two bounces, traced. It had 1.65 times of it when all later ones
-// shone from where the second did.
+// A lamp close under a ceiling: path tracing finds 1.29 times the light of two bounces. It was 1.65 times when all later bounces
+// left from where the second did.
 TEST(BouncedFrame, LaterBouncesLeaveALamp) {
   const char* lamp = "scenes/cornell_lamp.json";
   RenderOptions two = small_frame(Bounces::two, 2), all = small_frame(Bounces::all, 2);
@@ -198,12 +171,6 @@ TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
     EXPECT_NEAR(irradiance(small_frame(bounces, 2)) / irradiance(small_frame(Bounces::one, 2)), share,
                 0.1 * share);
   }
-}
-
-TEST(BouncedFrame, RejectsWhatDoesNotSweep) {
-  RenderOptions options = small_frame(Bounces::two, 1);
-  options.transport = TransportKind::sampled;
-  EXPECT_THROW(irradiance(options), Error);
 }
 
 TEST(Bounce, KernelsAgreeWithTheReference) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The search for centres: its slopes against differences, its bounds, the same result for the same seed, and what users
-// meet; sets with a lambda of each centre's own.
+// Sets of SRBF centres: the search for them (its slopes against differences, its bounds, the same result for the same seed),
+// a lambda for each centre, and files of centres.
 #include "basis/centre_search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "quality/normal_weights.hpp"
 #include "tests/support/error_of.hpp"
@@ -48,15 +49,8 @@ TEST(LambdaOfEachCentre, GramMatrixIsThatOfTheFunctions) {
   }
 }
 
-TEST(LambdaOfEachCentre, TablesAreOneForEachProductOfLambdas) {
-  const auto basis = basis_of(uneven_set());
-  EXPECT_EQ(gram_tables(*basis, 16).tables.size(), 21u);
-  EXPECT_EQ(function_tables(*basis, 16).tables.size(), 6u);
-  EXPECT_EQ(gram_tables(*make_basis("srbf8v2"), 16).tables.size(), 1u);
-}
-
 TEST(LobeAims, LeastErrorsAreThoseOfTheHarmonics) {
-  // Of 4 and of 9 functions none are better than sh2 and sh3, of 8 none than sh2 with four of the next five.
+  // No 4 functions are better than sh2, no 9 than sh3, no 8 than sh2 with four of the next five.
   for (const auto& [functions, name] : {std::pair{4, "sh2"}, {9, "sh3"}}) {
     EXPECT_NEAR(minimum_error(functions), error_over(*make_basis(name), all_directions()), 1e-9);
   }
@@ -133,11 +127,11 @@ TEST(SearchCentres, IsBetterThanTheNamedSetsAndNeverBeatsTheLeastError) {
   EXPECT_NEAR(found.error, error_over(*basis, all_directions()), kSpiral);
   EXPECT_LE(basis->condition(), 2e4 * (1 + 1e-5));
   EXPECT_GT(found.error, minimum_error(8));
-  EXPECT_LT(found.error, 0.19) << "srbf8v1 and srbf8v2 have .233";
+  EXPECT_LT(found.error, 0.19) << "srbf8v1 and srbf8v2 have 0.233";
   CentreSearch axes = quick(6);
   axes.aims = propagation_axes(), axes.lambdas = SearchedLambdas::none;
   EXPECT_NEAR(search_centres(axes).error, error_over(*make_basis("srbf6"), axes.aims), 1e-4)
-      << "at lambda .25 no six centres hold the axes better than the axes themselves";
+      << "at lambda 0.25 no six centres hold the axes better than the axes themselves";
 }
 
 TEST(SearchCentres, SaysWhenNoSetIsWithinTheBounds) {
@@ -197,20 +191,89 @@ TEST(SearchCentres, TakesAScenesNormals) {
   EXPECT_EQ(test::run_here("basis --seed 4").exit_code, 2);
 }
 
-TEST(LobeAims, OfFilesAreRejectedWithThePlace) {
-  const test::TemporaryFolder folder;
-  const std::string path = (folder.path() / "w.json").string();
+class CentresFile : public ::testing::Test {
+ protected:
+  std::string file(const std::string& text) {
+    const std::string path = (folder_.path() / "mine.json").string();
+    std::ofstream(path) << text;
+    return path;
+  }
+  void expect_rejected(const std::string& path, const std::string& word) {
+    expect_rejected(path, word, [&] { load_basis(path); });
+  }
+  template <typename Load>
+  void expect_rejected(const std::string& path, const std::string& word, Load load) {
+    EXPECT_THAT(test::error_of(ExitCode::bad_input, load),
+                ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr(word)));
+  }
+  test::TemporaryFolder folder_;
+};
+
+const char* const kAxesFile = R"({"name": "axes", "centres":
+    [[2, 0, 0], [-1e200, 0, 0], [0, 1, 0], [0, -3, 0], [0, 0, 1e-200], [0, 0, -1]]})";
+
+TEST_F(CentresFile, MakesTheBasis) {
+  const auto basis = load_basis(file(kAxesFile), 0.3);
+  const auto named = make_basis("srbf6", 0.3);
+  EXPECT_EQ(basis->name(), "axes");
+  EXPECT_EQ(basis->centres(), named->centres());
+  EXPECT_EQ(basis->condition(), named->condition());
+  EXPECT_EQ(load_basis(file(R"({"centres": [[0, 0, 1]]})"))->name(), "mine");
+}
+
+TEST_F(CentresFile, RejectsWithThePlace) {
+  const std::pair<std::string, std::string> bad[] = {
+      {"{", "invalid JSON"},
+      {"[1]", "object"},
+      {"{}", "/centres is missing"},
+      {R"({"centres": []})", "1 to 64"},
+      {R"({"centres": 7})", "is 7"},
+      {R"({"centres": [[0, 0, 1], [1, 2]]})", "/centres/1"},
+      {R"({"centres": [[0, 0, 0]]})", "/centres/0"},
+      {R"({"centres": [[0, 0, "1"]]})", "/centres/0/2"},
+      {R"({"centres": [[0, 0, 1e999]]})", "invalid JSON"},
+      {R"({"centres": [[0, 0, 1], [0, 0, 5]]})", "/centres/1"},
+      {R"({"centres": [[0, 0, 1]], "lambda": 1})", "/lambda is 1; allowed: a number between 0 and 1"},
+      {R"({"centres": [[0, 0, 1]], "lambda": "wide"})", "/lambda is \"wide\""},
+      {R"({"centres": [[0, 0, 1], [1, 0, 0]], "lambda": [0.2, 0]})", "/lambda/1 is 0"},
+      {R"({"centres": [[0, 0, 1], [1, 0, 0]], "lambda": [0.2]})",
+       "/lambda is an array of 1; allowed: a number, or 2"},
+      {R"({"centres": [[0, 0, 1], [0.01, 0, 1]], "lambda": 0.01})", "condition number"},
+      {R"({"centres": [[0, 0, 1]], "lambdas": 0.2})", "lambdas"},
+      {R"({"centres": [[0, 0, 1]], "name": 3})", "/name"},
+      {std::string(100000, '['), "nested more than"},
+      {std::string(2 << 20, ' '), "bytes"},
+  };
+  for (const auto& [text, word] : bad) expect_rejected(file(text), word);
+  std::string many = "[[0,0,1]";
+  for (int i = 1; i < 65; ++i) many += ",[" + std::to_string(i) + ",1,0]";
+  expect_rejected(file("{\"centres\": " + many + "]}"), "array of 65");
+  expect_rejected((folder_.path() / "none.json").string(), "no file");
+  expect_rejected(folder_.path().string(), "a folder");
+}
+
+TEST_F(CentresFile, WeightsAreRejectedWithThePlaceToo) {
   for (const auto& [text, word] : {std::pair{"{", "invalid JSON"},
                                    {"[]", "/weights"},
                                    {R"({"weights": []})", "1 to 10000"},
                                    {R"({"weights": [[0, 0, 1, 1], [0, 0, 1]]})", "/weights/1"},
                                    {R"({"weights": [[0, 0, 0, 1]]})", "/weights/0"},
                                    {R"({"weights": [[0, 0, 1, -1]]})", "/weights/0"}}) {
-    std::ofstream(path) << text;
-    EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { load_aims(path); }),
-                ::testing::AllOf(HasSubstr(path), HasSubstr(word)));
+    const std::string path = file(text);
+    expect_rejected(path, word, [&] { load_aims(path); });
   }
-  EXPECT_THROW(load_aims((folder.path() / "none.json").string()), Error);
+}
+
+TEST_F(CentresFile, IsDescribedByTheProgram) {
+  const test::Outcome good = test::run_here("basis --json --lambda 0.3 --centres " + file(kAxesFile));
+  ASSERT_EQ(good.exit_code, 0) << good.err;
+  const auto json = nlohmann::json::parse(good.out);
+  EXPECT_EQ(json.at("schema"), 1);
+  EXPECT_EQ(json.at("bases").size(), 1u);
+  EXPECT_EQ(json.at("bases")[0].at("name"), "axes");
+  EXPECT_EQ(test::run_here("basis --centres " + file("{")).exit_code, 3);
+  EXPECT_EQ(test::run_here("basis sh2 --centres " + file(kAxesFile)).exit_code, 2);
+  EXPECT_EQ(test::run_here("basis --lambda 0.001 --centres " + file(kAxesFile)).exit_code, 2);
 }
 
 }  // namespace

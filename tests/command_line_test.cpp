@@ -30,6 +30,11 @@ TEST(CommandLine, ExitCodes) {
   EXPECT_EQ(clpv("rendr").exit_code, 2);
   EXPECT_EQ(clpv("render none.json -o /tmp/none.exr").exit_code, 3);
   EXPECT_EQ(clpv("--device 99 check --stage sizes").exit_code, 4);
+  const test::TemporaryFolder kernels;  // one of them computes something else
+  kernels.write("sizes.cl", "__kernel void sizes(__global uint* bytes) { bytes[0] = 1; }\n");
+  EXPECT_EQ(test::run("CLPV_KERNEL_DIR=" + kernels.path().string() + " " CLPV_PROGRAM " check --stage sizes")
+                .exit_code,
+            5);
 }
 
 TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {

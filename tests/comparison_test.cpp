@@ -42,7 +42,7 @@ TEST(Comparison, NaNIsWorseThanAnyNumberAndStays) {
 TEST(Comparison, AReferenceOfNothingAllowsNothing) {
   const std::vector<double> expected(8, 0.0);
   std::vector<float> found(8, 0.0f);
-  EXPECT_FALSE(compare_volumes(found, expected, 2).worst <= 1);  // 0 / 0 tells nothing: it does not pass
+  EXPECT_FALSE(compare_volumes(found, expected, 2).worst <= 1);  // 0 / 0 does not pass
 }
 
 TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {

@@ -47,20 +47,6 @@ TEST(Curve, StandsStillBeforeTheFirstKeyAndAfterTheLast) {
   EXPECT_THAT(at(spline, 9), ElementsAre(9));
 }
 
-TEST(Curve, LinearGoesEvenly) {
-  const Curve curve{Interpolation::linear, 1, {0, 2, 3}, {0, 4, -4}};
-  EXPECT_THAT(at(curve, 0.5), ElementsAre(DoubleNear(1, kExact)));
-  EXPECT_THAT(at(curve, 2), ElementsAre(4));
-  EXPECT_THAT(at(curve, 2.25), ElementsAre(DoubleNear(2, kExact)));
-}
-
-TEST(Curve, StepWaitsForTheNextKey) {
-  const Curve curve{Interpolation::step, 1, {0, 2, 3}, {0, 4, -4}};
-  EXPECT_THAT(at(curve, std::nextafter(2.0, 0.0)), ElementsAre(0));
-  EXPECT_THAT(at(curve, 2), ElementsAre(4));
-  EXPECT_THAT(at(curve, 2.999), ElementsAre(4));
-}
-
 TEST(Curve, SplineIsTheCubicOfItsValuesAndSlopes) {
   // p(x) = 2x^3 - 3x^2 + x + 5 and its slope 6x^2 - 6x + 1, at uneven keys: one cubic, whatever the pieces.
   const auto p = [](double x) { return ((2 * x - 3) * x + 1) * x + 5; };
@@ -107,18 +93,6 @@ TEST(Curve, SplinesOfRotationsAreMadeUnit) {
   const glm::dquat half = rotation_at(curve, 0.5);
   EXPECT_NEAR(glm::length(half), 1, kExact);
   EXPECT_NEAR(half.y, std::sin(0.25), kExact) << "half of two unit quaternions points half way";
-}
-
-TEST(Curve, DirectionsFollowTheGreatCircle) {
-  const double angle = 2.5;  // most of a half circle
-  const Curve curve{Interpolation::linear, 3, {0, 10}, {1, 0, 0, std::cos(angle), std::sin(angle), 0}};
-  for (const double share : {0.0, 0.1, 0.5, 0.75}) {
-    const glm::dvec3 d = direction_at(curve, 10 * share);
-    EXPECT_NEAR(d.x, std::cos(share * angle), kExact);
-    EXPECT_NEAR(d.y, std::sin(share * angle), kExact);
-  }
-  const Curve same{Interpolation::linear, 3, {0, 1}, {0, -1, 0, 0, -1, 0}};
-  EXPECT_EQ(direction_at(same, 0.5), glm::dvec3(0, -1, 0));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Skins and morph targets against closed forms, still and animated.
 #include <glm/gtc/constants.hpp>
 
-#include "tests/support/bad_input.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::deformation_test {
 namespace {

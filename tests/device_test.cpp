@@ -9,7 +9,7 @@
 
 #include "device/cl_error.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::device_test {
 namespace {
@@ -80,12 +80,8 @@ TEST(ListDevices, NumbersAndEventsAreSound) {
   }
 }
 
-std::string program() {
-  return CLPV_PROGRAM;
-}
-
 TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
-  const auto outcome = test::run(program() + " devices --json --device 0");
+  const auto outcome = test::run_here("devices --json --device 0");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json.at("schema"), 1);
@@ -102,26 +98,13 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
 TEST(DevicesCommand, WithoutAnyDriverIsAnEmptyListAndAWord) {
   const test::TemporaryFolder empty;
   const std::string none = "OCL_ICD_VENDORS=" + empty.path().string() + " ";
-  const auto listed = test::run(none + program() + " devices --json");
+  const auto listed = test::run(none + CLPV_PROGRAM " devices --json");
   EXPECT_EQ(listed.exit_code, 0);
   EXPECT_TRUE(nlohmann::json::parse(listed.out).at("devices").empty());
   EXPECT_THAT(listed.err, HasSubstr("no OpenCL device"));
-  const auto asked = test::run(none + program() + " devices --device 0");
+  const auto asked = test::run(none + CLPV_PROGRAM " devices --device 0");
   EXPECT_EQ(asked.exit_code, static_cast<int>(ExitCode::device));
   EXPECT_EQ(asked.out, "");
-}
-
-TEST(DevicesCommand, RusticlsEventsAreNotBelieved) {
-  const auto outcome = test::run("RUSTICL_ENABLE=llvmpipe " + program() + " devices --json");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
-  for (const auto& device : json.at("devices")) {
-    if (device.at("platform") != "rusticl") continue;
-    if (device.at("driver") != "22.3.6") GTEST_SKIP() << "known of driver 22.3.6 only";
-    EXPECT_FALSE(device.at("profiling_valid").get<bool>());
-    return;
-  }
-  GTEST_SKIP() << "rusticl (mesa-opencl-icd) is not installed";
 }
 
 TEST(ClError, NamesCodeCallAndAdvice) {

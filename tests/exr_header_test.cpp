@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The walk through an EXR's headers, against files that OpenEXR wrote and against headers put together here, byte by byte.
-#include "image/exr_header.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <span>
 #include <string>
 
+#include "image/image_header.hpp"
 #include "image/image_io.hpp"
 #include "support/error.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -26,13 +25,11 @@ ImageClaim walked(const std::string& bytes) {
 }
 
 std::string rejection(const std::string& bytes) {
-  try {
-    walked(bytes);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "not rejected";
+  return test::error_of(ExitCode::bad_input, [&] { walked(bytes); });
+}
+
+void expect_accepted(const std::string& bytes) {
+  EXPECT_NO_THROW(walked(bytes));
 }
 
 std::string number(std::uint32_t value) {
@@ -119,7 +116,7 @@ TEST(ExrHeader, PartsAreOfTypesThatOpenExrChecks) {
             "part 0: found type 'scanlin'; allowed: scanlineimage, tiledimage, deepscanline, deeptile"));
     EXPECT_THAT(rejection(file(flags, window(4, 4) + '\0' + '\0')), HasSubstr("found type ''"));
   }
-  EXPECT_EQ(rejection(one(part_type("scanlin"))), "not rejected") << "OpenEXR goes by the flags";
+  expect_accepted(one(part_type("scanlin")));  // OpenEXR reads the flags
 }
 
 TEST(ExrHeader, TextsAndUnknownTypesAreNoLongerThanTheFile) {
@@ -168,7 +165,7 @@ TEST(ExrHeader, ValuesHaveTheSizeThatTheySay) {
   const auto preview = [](std::uint32_t width, std::uint32_t height, std::size_t bytes) {
     return one(attribute("preview", "preview", number(width) + number(height) + std::string(bytes, 'x')));
   };
-  EXPECT_EQ(rejection(preview(2, 3, 24)), "not rejected");
+  expect_accepted(preview(2, 3, 24));
   for (const std::string& bytes :
        {preview(2, 3, 23), preview(2, 3, 28), preview(40000, 40000, 24), preview(0xffffffffu, 0xffffffffu, 4),
         preview(0x7fffffff, 0x7fffffff, 4)}) {
@@ -176,7 +173,7 @@ TEST(ExrHeader, ValuesHaveTheSizeThatTheySay) {
   }
   EXPECT_THAT(rejection(one(attribute("preview", "preview", "1234567"))), HasSubstr("no size"));
   const auto texts = [](const std::string& value) { return one(attribute("a", "stringvector", value)); };
-  EXPECT_EQ(rejection(texts(number(1) + "a" + number(0) + number(2) + "bc")), "not rejected");
+  expect_accepted(texts(number(1) + "a" + number(0) + number(2) + "bc"));
   EXPECT_THAT(rejection(texts(number(1) + "a" + number(9) + "bc")), HasSubstr("found 9 bytes"));
   EXPECT_THAT(rejection(texts(number(1) + "ab")), HasSubstr("found 4 bytes"));
 }
@@ -196,7 +193,7 @@ TEST(ExrHeader, NamesAreThereOnce) {
   EXPECT_THAT(rejection(one(window(4, 4) + window(4, 4), 64)),
               HasSubstr("attribute 'dataWindow' (box2i): found a second of this name"));
   const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';
-  EXPECT_EQ(rejection(file(several, part + part + '\0', 64)), "not rejected");
+  expect_accepted(file(several, part + part + '\0', 64));
 }
 
 TEST(ExrHeader, PartsAndAttributesAreBounded) {
@@ -205,10 +202,10 @@ TEST(ExrHeader, PartsAndAttributesAreBounded) {
     attributes += attribute(fmt::format("a{}", i), "int", "1234");
     parts += part_type("scanlineimage") + '\0';
   }
-  EXPECT_EQ(rejection(one(attributes)), "not rejected");
+  expect_accepted(one(attributes));
   EXPECT_THAT(rejection(one(attributes + attribute("b", "int", "1234"))),
               HasSubstr("part 0: found over 1024 attributes"));
-  EXPECT_EQ(rejection(file(several, parts + '\0')), "not rejected");
+  expect_accepted(file(several, parts + '\0'));
   EXPECT_THAT(rejection(file(several, parts + part_type("scanlineimage") + '\0' + '\0')),
               HasSubstr("over 1024 parts"));
 }
@@ -220,7 +217,7 @@ TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
   // 1000 rows: one by one, by 16 (ZIP), by 256 (DWAB), each with 8 bytes in the table.
   for (const auto& [kind, chunks] : {std::pair{'\0', 1000}, {'\3', 63}, {'\11', 4}, {'\177', 4}}) {
     const std::string attributes = window(5, 1000) + compressed(kind);
-    EXPECT_EQ(rejection(one(attributes, 8 * chunks)), "not rejected") << chunks;
+    expect_accepted(one(attributes, 8 * chunks));
     EXPECT_THAT(rejection(one(attributes, 8 * chunks - 1)),
                 HasSubstr(fmt::format("part 0: found {} chunks", chunks)));
   }
@@ -228,12 +225,12 @@ TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
     return window(16384, 16384) + attribute("tiles", "tiledesc", number(width) + number(height) + '\0');
   };
   EXPECT_THAT(rejection(file(tiled, tiles(1, 1) + '\0')), HasSubstr("found 268435456 chunks"));
-  EXPECT_EQ(rejection(file(tiled, tiles(16384, 8192) + '\0', 16)), "not rejected");
-  EXPECT_EQ(rejection(file(tiled, tiles(0, 0) + '\0', 0)), "not rejected");  // which OpenEXR does
+  expect_accepted(file(tiled, tiles(16384, 8192) + '\0', 16));
+  expect_accepted(file(tiled, tiles(0, 0) + '\0', 0));  // which OpenEXR does
   EXPECT_THAT(rejection(one(attribute("chunkCount", "int", number(1u << 30)))),
               HasSubstr("1073741824 chunks"));
   const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';  // 4 chunks, and as many
-  EXPECT_EQ(rejection(file(several, part + part + '\0', 64)), "not rejected");
+  expect_accepted(file(several, part + part + '\0', 64));
   EXPECT_THAT(rejection(file(several, part + part + '\0', 8)), HasSubstr("part 1: found 4 chunks"));
   EXPECT_THAT(rejection(file(several, part + part + '\0', 40)),
               HasSubstr("all parts: found 8 chunks; allowed: 5,"));

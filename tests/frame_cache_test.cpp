@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What stood still is not computed again, and a frame is the same whatever was rendered before it.
+// Results whose inputs did not change are not recomputed, and a frame is the same whatever was rendered before it.
 #include <gtest/gtest.h>
 
 #include <set>
 #include <stdexcept>
 
-#include "options/presets.hpp"
+#include "options/render_options.hpp"
 #include "pipeline/cached.hpp"
 #include "pipeline/frame.hpp"
 #include "scene/load.hpp"
-#include "support/named_enum.hpp"
-#include "tests/support/moving_scene.hpp"
+#include "tests/support/gltf_builder.hpp"
 
 namespace clpv::frame_cache_test {
 namespace {
@@ -38,7 +37,7 @@ constexpr float kSize = 3;  // [m], of the finest cascade
 constexpr float kCell = kSize / kGrid;
 const Passes kOfEveryFrame{Pass::rasterize_camera, Pass::gather, Pass::shade};
 
-/// A scene of which each thing has an instant of its own.
+/// Times of the scene's parts [s], and the camera's place.
 struct Instants {
   glm::vec3 eye{0.1f * kCell, 1.6f, 3.1f};
   double wall = 0, sun = 0;
@@ -71,7 +70,7 @@ class CachedFrame : public ::testing::Test {
     return camera;
   }
 
-  /// What a frame shows and holds.
+  /// A frame's images and light volumes.
   using Found = std::vector<std::vector<float>>;
   static Found rendered(Session& session, Frame& frame, const Camera& camera) {
     frame.render(camera);
@@ -128,16 +127,8 @@ TEST_F(CachedFrame, MakesWhatChanged) {
   at.wall = at.sun = 2;  // after the last key
   EXPECT_EQ(passes(at), all);
   at.wall = at.sun = 5;
-  EXPECT_EQ(passes(at), kOfEveryFrame) << "what moved has come to rest";
+  EXPECT_EQ(passes(at), kOfEveryFrame) << "nothing moves any more";
   EXPECT_EQ(passes(Instants{}), all);
-}
-
-TEST_F(CachedFrame, ForgetsTheEventsOfTheFrameBefore) {
-  const Camera camera = show({});
-  Passes passes;
-  for (int i = 0; i < 2; ++i) frame_.render(camera);
-  for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
-  EXPECT_EQ(passes, kOfEveryFrame);
 }
 
 TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
@@ -177,7 +168,7 @@ TEST_F(CachedFrame, AnObserverSeesWhatCascadesShare) {
   EXPECT_TRUE(observed() == anew);
 }
 
-/// What the camera sees blocks: what follows from it changes with the view.
+/// Surfels that the camera sees are blockers: what depends on them changes with the view.
 class CachedPublishedFrame : public CachedFrame {
  protected:
   CachedPublishedFrame()

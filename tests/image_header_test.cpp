@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What PNG and JPEG files say of themselves, and what is left of a PNG before a decoder sees it.
+// Headers of PNG and JPEG files, and the chunks of a PNG that are passed on to the decoder.
 #include "image/image_header.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "image/image_io.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/tiny_images.hpp"
 
 namespace clpv::image_header_test {

@@ -31,7 +31,7 @@ int moments() {
   return wish != nullptr ? std::atoi(wish) : 2;
 }
 
-/// A process of its own group, so that a signal meets it and what it started.
+/// A process in a separate group, so that a signal reaches it and its children.
 class Child {
  public:
   Child(const std::string& command, const fs::path& said) {
@@ -74,7 +74,7 @@ class Child {
 
 class Killed : public ::testing::Test {
  protected:
-  /// Runs `arguments` to their end, which tells how long they take; then kills them at moments within that time, and
+  /// Runs `arguments` to their end and measures the time; then kills them at moments within that time, and
   /// calls `look` after each. A whole run must go well then.
   template <typename Look>
   void kill_at_moments(const std::string& arguments, const Look& look) {

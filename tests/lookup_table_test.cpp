@@ -7,71 +7,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <vector>
 
-#include "basis/kernel_text.hpp"
-#include "codegen/linear_code.hpp"
 #include "pipeline/propagate.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/run_here.hpp"
 
 namespace clpv::lookup_table_test {
 namespace {
 
 using test::test_session;
 using ::testing::HasSubstr;
-
-/// What a kernel reads along each direction; by the functions that stages are generated with.
-std::vector<float> looked_up(const Basis& basis, const LobeOptions& lobes, TableStorage storage,
-                             const std::vector<cl_float4>& directions) {
-  const LookupTable table(test_session(), basis, lobes, storage, TableUse::functions);
-  ProgramSource source{"coefficients.h", {}, {}};
-  source.generated = table.macros() + coefficient_macros(basis.size()) +
-                     table_basis_source(basis, lobes.table_size) +
-                     "__kernel void look_up(__global const float4* directions, __global float* found"
-                     " CLPV_AND_TABLE) {\n"
-                     "  const float4 d = directions[get_global_id(0)];\n"
-                     "  found[get_global_id(0)] = clpv_table_basis(d.x, d.y, d.z CLPV_PASS_TABLE).c1;\n}\n";
-  Kernel kernel(test_session(), source, "look_up");
-  const Buffer given = test_session().upload(directions, "directions");
-  const Buffer found = test_session().buffer(directions.size() * sizeof(float), "found");
-  table.add_to(kernel.set(given, found));
-  kernel.launch(directions.size(), 1);
-  return test_session().read<float>(found, directions.size());
-}
-
-TEST(LookupTable, HoldsTheFunctionOnTheDevice) {
-  // The second centre, whose table stands behind the first one's, is +x.
-  const auto basis = make_basis_from_centres("two", {{0, 1, 0}, {1, 0, 0}}, std::vector<double>{0.2, 0.3});
-  const LobeOptions lobes{.table_size = 64, .table_functions = true};
-  const ZonalTables tables = function_tables(*basis, lobes.table_size);
-  std::vector<cl_float4> directions{{{1, 0, 0, 0}}, {{-1, 0, 0, 0}}};
-  for (int i = 0; i < 62; ++i) {
-    const double t = -1 + 2 * (i + 0.5) / 63;  // between entries
-    directions.push_back({{static_cast<float>(t), static_cast<float>(std::sqrt(1 - t * t)), 0, 0}});
-  }
-  const std::vector<float> buffer = looked_up(*basis, lobes, TableStorage::buffer, directions);
-  for (std::size_t i = 0; i < directions.size(); ++i)
-    EXPECT_EQ(buffer[i], static_cast<float>(tables(1, directions[i].s[0]))) << i;
-  if (!test_session().device().images) GTEST_SKIP() << "no images on this device";
-  EXPECT_EQ(looked_up(*basis, lobes, TableStorage::image, directions), buffer);
-}
-
-TEST(LookupTable, IsNotThereWhereNothingIsLookedUp) {
-  const auto sh = make_basis("sh2"), srbf = make_basis("srbf4");
-  const LobeOptions both{.kind = LobeKind::rotate, .table_functions = true};
-  for (const TableUse use : {TableUse::lobes, TableUse::functions}) {
-    for (const LookupTable& table : {LookupTable(test_session(), *sh, both, TableStorage::image, use),
-                                     LookupTable(test_session(), *srbf, {}, TableStorage::image, use)}) {
-      EXPECT_FALSE(table.exists());
-      EXPECT_EQ(table.macros(), LookupTable::no_macros());
-    }
-    EXPECT_TRUE(LookupTable(test_session(), *srbf, both, TableStorage::buffer, use).exists());
-  }
-}
 
 TEST(LookupTable, RejectsImagesThatTheDeviceHasNot) {
   Device without = choose_device();
@@ -89,7 +35,7 @@ TEST(LookupTable, RejectsImagesThatTheDeviceHasNot) {
 /// Entries 0 .. size - 1 as a kernel reads them.
 std::vector<float> entries(const LookupTable& table, int size) {
   Session& session = test_session();
-  // Of a file that is definitions alone, as a program is of some file.
+  // A program needs a file; this one holds definitions only.
   ProgramSource source{"shared/sort.h", {}, {}};
   source.generated = table.macros() +
                      "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
@@ -107,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(LookupTable, EachStorage,
                            return info.param == TableStorage::buffer ? "Buffer" : "Image";
                          });
 
-// A stage makes its table anew; those of stages that are gone leave memory to others, and must not leave this one's.
+// A new stage creates its table again. Memory freed by the tables of former stages must not be this table's.
 TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersComeAndGo) {
   if (GetParam() == TableStorage::image && !test_session().device().images)
     GTEST_SKIP() << "the device has no images";
@@ -159,40 +105,6 @@ TEST(RunTimeLobes, OfUnevenLambdasGiveTheLightOfConstantOnes) {
     for (std::size_t i = 0; i < constant.size(); ++i)
       ASSERT_NEAR(computed[i], constant[i], 1e-5 * double{largest}) << name_of(kind) << " " << i;
   }
-}
-
-TEST(RunTimeLobes, AreRejectedWhereNoStepMakesAny) {
-  const auto basis = make_basis("sh2");
-  EXPECT_THAT(test::error_of(ExitCode::usage,
-                             [&] {
-                               Propagator(test_session(), *basis,
-                                          make_transport(TransportKind::sampled, *basis),
-                                          {.grid = 3, .state = State::fluxes, .lobe_time = LobeTime::kernel});
-                             }),
-              HasSubstr("state fluxes"));
-}
-
-// The paper's lobes and tables from end to end, and a set of a user's own.
-TEST(RunTimeLobes, AreThereForUsers) {
-  const test::TemporaryFolder folder;
-  const std::string file =
-      folder.write("mine.json", R"({"centres": [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]]})")
-          .string();
-  const auto run = [&](const std::string& given) {
-    const test::Outcome outcome = test::run_here(
-        "propagate --grid 5 --iterations 2 --at 2,2,2 --normal 1,2,3 --lobe rotate --evaluate table "
-        "--table-size 99 " +
-        given);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out);
-  };
-  const auto last = [](const nlohmann::json& json) {
-    return json["steps"].back()["travelling"][0].get<double>();
-  };
-  const nlohmann::json host = run("--centres " + file), kernel = run("--lobe-time kernel --centres " + file);
-  EXPECT_NEAR(last(kernel), last(host), 1e-5 * last(host));
-  EXPECT_EQ(kernel["options"]["lobe-time"], "kernel");
-  EXPECT_EQ(kernel["options"]["table-size"], 99);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tests/support/moving_scene.hpp"
+#include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::test::mpi_test {
@@ -96,7 +96,7 @@ TEST_F(Mpi, AMatrixIsThePlainRuns) {
   EXPECT_EQ(without_times(many.out), without_times(alone.out));
   for (const auto& entry : fs::directory_iterator(folder / "plain/references"))
     EXPECT_TRUE(read_file(entry.path()) == bytes("of3/references/" + entry.path().filename().string()));
-  // What either kept, the other takes, times and all.
+  // Either reads the other's cache, times included.
   EXPECT_EQ(plain(matrix + "--cache of3").out, many.out);
   EXPECT_EQ(by(2, matrix + "--cache plain").out, alone.out);
 }
@@ -165,16 +165,6 @@ TEST_F(Mpi, ExitCodesComeThrough) {
   EXPECT_THAT(other.err,
               AllOf(HasSubstr("render: not for several processes (found: rank "), HasSubstr(" of 2)")));
   EXPECT_FALSE(fs::exists(folder / "a.exr"));
-}
-
-TEST_F(Mpi, OneRankIsThePlainProgram) {
-  const Outcome one =
-      by(1, "render moving.json -o one.exr --width 24 --height 18 --transport sampled" + kSmall);
-  ASSERT_EQ(one.exit_code, 0) << one.err;
-  ASSERT_EQ(
-      plain("render moving.json -o plain.exr --width 24 --height 18 --transport sampled" + kSmall).exit_code,
-      0);
-  EXPECT_TRUE(bytes("one.exr") == bytes("plain.exr"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The options of a frame: each goes from text to a value and back, what is no value is rejected with those that are, and
-// every enumeration that stands for a choice has all its names.
+// The options of a frame: each goes from text to a value and back, invalid values are rejected with the valid ones, presets set
+// what they say, and every enumeration of a choice has a name for each value.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,16 +9,17 @@
 #include <set>
 #include <sstream>
 
-#include "bench/row.hpp"
+#include "image/image_io.hpp"
 #include "image/tone_map.hpp"
-#include "options/presets.hpp"
 #include "options/render_options.hpp"
 #include "options/show.hpp"
 #include "options/stage_options.hpp"
 #include "options/stages.hpp"
 #include "scene/light_kind.hpp"
+#include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::options_test {
 namespace {
@@ -39,38 +40,25 @@ std::vector<std::string> choices_in(const std::string& allowed) {
   return choices;
 }
 
-TEST(Options, EveryChoiceGoesFromTextToAValueAndBack) {
-  for (const OptionDescription& info : list_options(RenderOptions{})) {
-    if (info.allowed.find('|') == std::string::npos) continue;
-    SCOPED_TRACE(info.name);
-    std::set<std::string> seen;
-    for (const std::string& choice : choices_in(info.allowed)) {
-      RenderOptions options;
-      set_option(options, info.name, choice);
-      EXPECT_EQ(value_of(options, info.name), choice);
-      EXPECT_TRUE(seen.insert(to_json(options).at(info.name).dump()).second) << choice << " is like another";
-    }
-    EXPECT_GE(seen.size(), 2u);
-  }
-}
-
-TEST(Options, EveryNumberAndFileGoesFromTextToAValueAndBack) {
-  const std::map<std::string, std::string> others = {
+TEST(Options, EveryOneGoesFromTextToAValueAndBack) {
+  const std::map<std::string, std::string> numbers_and_files = {
       {"centres", "mine.json"}, {"lambda", "0.375"}, {"table-size", "99"},     {"iterations", "3"},
       {"grid", "17"},           {"cascades", "2"},   {"cascade-size", "6.25"}, {"rsm-size", "64"},
       {"shadow-size", "128"},   {"width", "31"},     {"blocker-stride", "2"},  {"height", "17"},
       {"gather-offset", "1.5"}};
-  std::size_t found = 0;
   for (const OptionDescription& info : list_options(RenderOptions{})) {
-    if (info.allowed.find('|') != std::string::npos) continue;
     SCOPED_TRACE(info.name);
-    ASSERT_TRUE(others.contains(info.name));
-    RenderOptions options;
-    set_option(options, info.name, others.at(info.name));
-    EXPECT_EQ(value_of(options, info.name), others.at(info.name));
-    ++found;
+    const bool choice = info.allowed.find('|') != std::string::npos;
+    std::set<std::string> seen;
+    for (const std::string& text :
+         choice ? choices_in(info.allowed) : std::vector<std::string>{numbers_and_files.at(info.name)}) {
+      RenderOptions options;
+      set_option(options, info.name, text);
+      EXPECT_EQ(value_of(options, info.name), text);
+      EXPECT_TRUE(seen.insert(to_json(options).at(info.name).dump()).second) << text << " is like another";
+    }
+    EXPECT_GE(seen.size(), choice ? 2u : 1u);
   }
-  EXPECT_EQ(found, others.size());
 }
 
 TEST(Options, TheirDefaultsAreTextsTheyTake) {
@@ -103,19 +91,6 @@ TEST(Options, ABasisReplacesAFileOfCentres) {
   EXPECT_EQ(options.centres, "");
 }
 
-TEST(Options, AllPresetsApply) {
-  for (const PresetName preset : values_of<PresetName>()) {
-    RenderOptions options;
-    set_option(options, "grid", "9");
-    apply_preset(options, preset);
-    EXPECT_EQ(options.preset, preset);
-    EXPECT_EQ(options.grid, 9);
-    if (preset != PresetName::paper) continue;
-    for (const auto& [name, value] : paper_options())
-      EXPECT_EQ(value_of(options, std::string(name)), value) << name;
-  }
-}
-
 TEST(Options, StagesAreToldWhatWasChosen) {
   RenderOptions options;
   apply_preset(options, PresetName::paper);
@@ -138,16 +113,6 @@ TEST(Options, StagesAreToldWhatWasChosen) {
   EXPECT_EQ(gather.table, TableStorage::image);
 }
 
-/// A row's names of a benchmark tell lobes apart as charts and earlier runs know them.
-TEST(Options, BenchmarksNameLobes) {
-  RenderOptions options = bench::timed_options();
-  EXPECT_EQ(bench::lobes_of(options), "exact");
-  options.lobe = LobeKind::rotate;
-  EXPECT_EQ(bench::lobes_of(options), "rotate");
-  options.lobe_time = LobeTime::kernel;
-  EXPECT_EQ(bench::lobes_of(options), "rotate-kernel");
-}
-
 /// Those that are no options, which the tests above go through.
 template <typename E>
 class EachNamedEnum : public ::testing::Test {};
@@ -165,11 +130,84 @@ TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {
   EXPECT_EQ(name_of(static_cast<TypeParam>(values.size())), "");
 }
 
-TYPED_TEST(EachNamedEnum, RejectsOthersAndListsThem) {
-  const std::string bad = std::string(name_of(values_of<TypeParam>().front())) + "s";
-  const std::string message = test::error_of(ExitCode::usage, [&] { named<TypeParam>("it", bad); });
-  EXPECT_THAT(message, HasSubstr("it: found '" + bad + "', allowed: "));
-  for (const std::string& name : names_of<TypeParam>()) EXPECT_THAT(message, HasSubstr(name));
+using ::testing::HasSubstr;
+
+TEST(Presets, BestIsTheDefaults) {
+  RenderOptions options;
+  set_option(options, "preset", "best");
+  EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
+  EXPECT_EQ(to_json(options)["preset"], "best");
+}
+
+TEST(Presets, PaperIsThePublishedScheme) {
+  RenderOptions options;
+  set_option(options, "preset", "paper");
+  const nlohmann::json found = to_json(options),
+                       published = {
+                           {"preset", "paper"},       {"basis", "srbf8v2"},      {"lambda", 0.25},
+                           {"lobe", "rotate"},        {"lobe-time", "kernel"},   {"evaluate", "table"},
+                           {"table-size", 256},       {"table", "image"},        {"transport", "sampled"},
+                           {"state", "coefficients"}, {"layout", "image"},       {"storage", "half"},
+                           {"rsm-format", "paper"},   {"blocking", "one-sided"}, {"blockers", "seen"},
+                           {"gather", "all"},         {"gather-offset", 0.5}};
+  for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
+}
+
+TEST(Presets, LeaveAloneWhatTheyDoNotSet) {
+  RenderOptions options;
+  set_option(options, "width", "77");
+  set_option(options, "cascade-size", "3.5");
+  set_option(options, "preset", "paper");
+  set_option(options, "preset", "best");
+  nlohmann::json expected = to_json(RenderOptions{});
+  expected["width"] = 77;
+  expected["cascade-size"] = 3.5;
+  EXPECT_EQ(to_json(options), expected) << "best undoes all that paper set";
+}
+
+TEST(Presets, RenderRecordsWhatWasResolved) {
+  const test::TemporaryFolder folder;
+  const std::string image = (folder.path() / "a.exr").string(), stats = (folder.path() / "a.json").string();
+  // The preset comes last, and is overridden all the same; the scene's own cascades stand.
+  const test::Outcome outcome =
+      test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " + stats +
+                     " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json options = nlohmann::json::parse(test::read_file(stats)).at("options");
+  EXPECT_EQ(options["preset"], "paper");
+  EXPECT_EQ(options["basis"], "sh2");
+  EXPECT_EQ(options["transport"], "sampled");
+  EXPECT_EQ(options["cascade-size"], 2.0);
+  const auto metadata = read_image(image).metadata;
+  EXPECT_EQ(metadata.at("preset"), "paper");
+  EXPECT_EQ(metadata.at("basis"), "sh2");
+  EXPECT_EQ(metadata.at("blocking"), "one-sided");
+}
+
+TEST(Presets, PropagateTakesThem) {
+  const std::string propagate = "propagate --grid 5 --iterations 1 --at 2,2,2 ";
+  const test::Outcome paper = test::run_here(propagate + "--lambda 0.3 --preset paper");
+  ASSERT_EQ(paper.exit_code, 0) << paper.err;
+  const nlohmann::json options = nlohmann::json::parse(paper.out).at("options");
+  EXPECT_EQ(options["preset"], "paper");
+  EXPECT_EQ(options["basis"], "srbf8v2");
+  EXPECT_EQ(options["lambda"], 0.3);
+  const test::Outcome swept = test::run_here(propagate + "--preset best");
+  EXPECT_EQ(swept.exit_code, 2);
+  EXPECT_THAT(swept.err, HasSubstr("transport: found 'sweep', which takes no steps"));
+}
+
+TEST(Presets, QualityTakesAPresetsTransport) {
+  const test::TemporaryFolder folder;
+  const test::Outcome outcome = test::run_here(
+      "quality " CLPV_SOURCE_DIR
+      "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 --width 16 --height 9 --grid 8 "
+      "--spp 1 --frames 1 --format json --cache " +
+      folder.path().string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json cells = nlohmann::json::parse(outcome.out).at("cells");
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_NE(cells[0]["nrmse"], cells[1]["nrmse"]);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(PathTracer, FurnaceHasTheRadianceOfAGeometricSeries) {
   }
 }
 
-/// The irradiance [W/m^2] that a unit square on the floor gets on the whole from an emissive material's `lamp`.
+/// Mean irradiance [W/m^2] of a unit square on the floor, lit by an emissive `lamp`.
 double received(const std::function<void(Scene&, unsigned material)>& add_lamp, float radiance,
                 unsigned flags, int samples, glm::vec3 eye = {0, 0.5f, 0}, float half = 0.5f) {
   Scene scene;
@@ -151,8 +151,9 @@ TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
   Scene scene = floor_scene(0.5);
   scene.lights = {lamp({0.3f, 1.5f, -0.2f}, 7)};
   PathTracerOptions options;
-  options.samples = 4;
+  options.samples = 1;
   const TracedImage image = trace_paths(scene, kDown, options);
+  EXPECT_TRUE(std::isnan(image.noise)) << "noise needs two samples";
   for (unsigned py = 0; py < kDown.height; ++py) {
     for (unsigned px = 0; px < kDown.width; ++px) {
       const glm::dvec3 to(0.3 - on_floor(px, py).x, 1.5, -0.2 - on_floor(px, py).y);
@@ -165,33 +166,7 @@ TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
   }
 }
 
-TEST(PathTracer, RangeAndConeOfASpotBoundItsLight) {
-  Scene scene = floor_scene(0.5);
-  const double inner = std::cos(0.2), outer = std::cos(0.5);
-  Light spot{"spot", spot_light({0, 1, 0}, {0, -1, 0}, 0.2f, 0.5f)};
-  for (float& i : spot.data.intensity) i = 3;
-  spot.data.range = 1.1f;
-  scene.lights = {spot};
-  PathTracerOptions options;
-  options.samples = 1;
-  const TracedImage image = trace_paths(scene, kDown, options);
-  int full = 0, partial = 0, dark = 0;
-  for (unsigned py = 0; py < kDown.height; ++py) {
-    for (unsigned px = 0; px < kDown.width; ++px) {
-      const double distance = std::hypot(glm::length(on_floor(px, py)), 1.0), cosine = 1 / distance;
-      const double cone = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
-      const double expected = distance > 1.1 ? 0.0 : 3 * cone * cone * cosine / (distance * distance);
-      EXPECT_NEAR(image.direct[py * kDown.width + px].x, expected, 1e-4) << px << "," << py;
-      ++(cone == 1 ? full : expected > 0 ? partial : dark);
-    }
-  }
-  EXPECT_GT(full, 0);
-  EXPECT_GT(partial, 0);
-  EXPECT_GT(dark, 0);
-  EXPECT_TRUE(std::isnan(image.noise)) << "one sample says nothing about noise";
-}
-
-/// A floor of albedo .6, 3 x 2, under a slanting sun, and 1 above it a small tile facing down, its shadow
+/// A floor of albedo 0.6, 3 x 2, under a slanting sun, and 1 above it a small tile facing down, its shadow
 /// elsewhere.
 Scene plates() {
   Scene scene;

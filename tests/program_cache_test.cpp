@@ -162,7 +162,7 @@ class CachedSession : public ProgramCacheTest {
   std::string key(int value) const {
     return ProgramCache::key(choose_device(), source(value).options, program_text(source(value)));
   }
-  /// What the kernel of source(value) writes, its program kept afterwards.
+  /// The number that the kernel of source(value) writes; its program is stored afterwards.
   int answer(int value) const {
     Session session(choose_device(), cache_);
     const Buffer out = session.buffer(sizeof(int), "answer");

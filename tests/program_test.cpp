@@ -79,21 +79,6 @@ TEST(ProgramText, LiteralsThenGeneratedThenFile) {
             "#line 1 \"generated\"\nint g;\n#line 1 \"a.cl\"\nint a;\n");
 }
 
-TEST(Literals, AreWrittenByTheirType) {
-  const Literals literals = Literals()
-                                .flag("CLPV_ON", true)
-                                .integer("CLPV_INT", -3)
-                                .number("CLPV_UINT", std::size_t{3})
-                                .real("CLPV_FLOAT", 0.25)
-                                .word("CLPV_WORD", "CLPV_SOA");
-  const std::map<std::string, std::string> wanted{{"CLPV_ON", "1"},
-                                                  {"CLPV_INT", "-3"},
-                                                  {"CLPV_UINT", "3u"},
-                                                  {"CLPV_FLOAT", "0.25f"},
-                                                  {"CLPV_WORD", "CLPV_SOA"}};
-  EXPECT_EQ(literals.defined(), wanted);
-}
-
 TEST(Literals, OneNameHasOneValue) {
   Literals literals;
   literals.flag("CLPV_ON", true);

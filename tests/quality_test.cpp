@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Quality runs: the matrix of variants, what is kept of a stopped run, how results are told, and the command.
+// Quality runs: the matrix of variants, cached cells of a stopped run, reports, and the command.
 #include "quality/quality.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "quality/quality_report.hpp"
 #include "support/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -190,15 +189,6 @@ TEST_F(QualityCommand, MeasuresAMatrixAndGoesOnWhereItWasStopped) {
   EXPECT_EQ(same_times, 3);
   EXPECT_EQ(kept(), 4u);
   EXPECT_THAT(test::read_file(file("a.csv")), HasSubstr("room,left,srbf4,,"));
-}
-
-TEST_F(QualityCommand, RejectsWithItsOwnExitCode) {
-  const test::Outcome nobody = quality("--camera nobody");
-  EXPECT_EQ(nobody.exit_code, 2);
-  EXPECT_THAT(nobody.err, HasSubstr("left, right"));
-  EXPECT_EQ(quality("--json " + file("nowhere/a.json")).exit_code, 1);
-  EXPECT_EQ(quality(file("absent.json")).exit_code, 3);
-  EXPECT_FALSE(fs::exists(file("cache/references"))) << "no time was spent on tracing";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rays meet: holes, textures and single sides as path tracing sees them, and all of it as the rasteriser does.
+// Ray casting: holes and single-sided surfaces as the path tracer sees them, and the same image as the rasteriser's.
 #include "pathtracer/ray_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// 2 x 2 texels: opaque red, a hole; a hole, opaque green at sRGB 188 (linear .503).
+/// 2 x 2 texels: opaque red, a hole; a hole, opaque green at sRGB 188 (linear 0.503).
 Texture checker() {
   Texture texture;
   texture.width = texture.height = 2;
@@ -52,29 +52,6 @@ TEST(RayScene, MaskedHolesLetLightAndSightThrough) {
   const TracedImage floor = trace_paths(scene, below, options);
   EXPECT_EQ(floor.direct[0].x, 0) << "in the shadow of the red texel";
   EXPECT_NEAR(floor.direct[1].x, 1, 1e-6);
-}
-
-TEST(RayScene, TexturesAreFilteredAndWrapped) {
-  Scene scene = floor_scene(1);
-  Texture texture;
-  texture.width = 4, texture.height = 1;
-  texture.wrap_u = CLPV_WRAP_MIRROR;
-  texture.rgba = {0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255};
-  scene.textures = {texture};
-  scene.materials[0].texture = 0;
-  scene.lights = {sun({0, -1, 0}, 1)};
-  // u from 0 to 4 over the floor's 20 m: texels of 1.25 m, a period of 10 m.
-  for (Vertex& v : scene.vertices) v.uv[0] = (v.position[0] + 10) / 5, v.uv[1] = 0;
-  PathTracerOptions options;
-  options.samples = 1;
-  const ClpvView view = view_of({0, 10, 0}, {0, -1, 0}, {0, 0, -1}, 1, 64, 1);
-  const TracedImage image = trace_paths(scene, view, options);
-  for (unsigned px = 0; px < 64; ++px) {
-    const double x = (2 * (px + 0.5) / 64 - 1) * 10 + 10;
-    const double mirrored = std::fmod(x, 10) < 5 ? std::fmod(x, 5) : 5 - std::fmod(x, 5);
-    const double expected = std::clamp(mirrored / 1.25 - 1.5, 0.0, 1.0);
-    EXPECT_NEAR(image.albedo[px].x, expected, 1e-4) << px;
-  }
 }
 
 TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {

@@ -101,12 +101,6 @@ TEST(Kernel, WhatIsDescribedAndStillWantedIsBuiltOnce) {
   EXPECT_EQ(session.build_ms(), built);
 }
 
-TEST(Session, EmptyUploadsAndReadsAreFine) {
-  Session session(choose_device());
-  const Buffer buffer = session.upload(std::vector<float>{}, "nothing");
-  EXPECT_TRUE(session.read<float>(buffer, 0).empty());
-}
-
 TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   Session session(choose_device());
   const Buffer bytes = session.buffer(1024, "sizes");

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Shading against closed forms: Lambert's law for every kind of light, what each view shows, and the kernels' CPU reference.
+// Shading against closed forms: Lambert's law for every kind of light, what each view shows, shadows
+// of known outline, surfaces that must not shadow themselves. And the kernels against the CPU reference.
 #include "pipeline/shade.hpp"
+
+#include <gmock/gmock.h>
 
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
@@ -46,11 +49,8 @@ TEST(Shade, NothingIsLitBeyondTheRange) {
 
 TEST(Shade, SpotLightFadesAcrossItsCone) {
   const double inner = std::cos(0.3), outer = std::cos(0.6);
-  MappedLight light = bulb({0, 4, 0}, 50);
-  light.light.kind = CLPV_LIGHT_SPOT;
-  set(light.light.direction, -kUp);
-  light.light.cone_scale = static_cast<float>(1 / (inner - outer));
-  light.light.cone_offset = static_cast<float>(-outer / (inner - outer));
+  MappedLight light{test::spot_light({0, 4, 0}, {0, -1, 0}, 0.3f, 0.6f), {}};
+  for (float& i : light.light.intensity) i = 50;
   const auto expected = [&](const glm::dvec3& p) {
     const double r = glm::length(glm::dvec3(0, 4, 0) - p), cosine = 4 / r;
     const double cone = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
@@ -62,8 +62,7 @@ TEST(Shade, SpotLightFadesAcrossItsCone) {
 TEST(Shade, AnUnknownKindOfLightIsDarkAndTheReferenceRejectsIt) {
   MappedLight light = bulb({0, 2, 0}, 40);
   light.light.kind = 3;
-  for (const glm::vec4& pixel : show(Show::direct, floor_image(), {light}))
-    ASSERT_EQ(glm::vec3(pixel), glm::vec3(0));
+  EXPECT_THAT(lit(floor_image(), {light}), ::testing::Each(0.0));
   EXPECT_THROW(reference::direct_irradiance({light}, floor_image()), Error);
 }
 
@@ -91,31 +90,171 @@ TEST(Shade, LightInTheSurfaceStaysFinite) {
 
 TEST(Shade, EachViewShowsItsShare) {
   SurfaceImage image = floor_image();
-  std::vector<cl_float4> indirect;
+  std::vector<glm::dvec3> indirect;
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
     const auto f = static_cast<float>(pixel % 7);
     image.colour[pixel] = glm::vec4(0.1f * f, 0.5f, 0.9f, 1);
     image.emissive.emplace_back(f, 0.25f, 0, 0);
-    indirect.push_back({{1 + f, 2, 3, 0}});
+    indirect.emplace_back(1 + f, 2, 3);
     if (pixel % 5 == 0) image.depth[pixel] = 0;
   }
-  const std::vector<MappedLight> lights = {sun({0, -1, 0}, 7)};
-  std::vector<std::vector<glm::vec4>> shown;
-  for (const Show view : values_of<Show>()) shown.push_back(show(view, image, lights, indirect));
+  const std::vector<glm::dvec3> direct_light = reference::direct_irradiance({sun({0, -1, 0}, 7)}, image);
+  std::vector<std::vector<glm::dvec4>> shown;
+  for (const Show view : values_of<Show>())
+    shown.push_back(reference::shade(view, image, direct_light, indirect));
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
     const bool background = image.depth[pixel] <= 0;
-    const glm::vec3 albedo(image.colour[pixel]), e(indirect[pixel].s[0], 2, 3), normal(0, 1, 0);
-    const glm::vec3 bounced = albedo * static_cast<float>(1 / pi) * e;
-    const glm::vec3 direct =
-        albedo * static_cast<float>(1 / pi) * glm::vec3(7, 14, 21) + glm::vec3(image.emissive[pixel]);
-    const glm::vec3 expected[] = {
-        direct + bounced, direct, bounced, e, albedo, normal, glm::vec3(image.depth[pixel])};
+    const glm::dvec3 albedo(image.colour[pixel]),
+        bounced = albedo / pi * indirect[pixel],
+        direct = albedo / pi * glm::dvec3(7, 14, 21) + glm::dvec3(image.emissive[pixel]);
+    const glm::dvec3 expected[] = {direct + bounced,
+                                   direct,
+                                   bounced,
+                                   indirect[pixel],
+                                   albedo,
+                                   {0, 1, 0},
+                                   glm::dvec3(image.depth[pixel])};
     for (std::size_t s = 0; s < shown.size(); ++s) {
-      const glm::vec4 wanted = background ? glm::vec4(0) : glm::vec4(expected[s], 1);
-      for (int c = 0; c < 4; ++c) {
-        ASSERT_NEAR(shown[s][pixel][c], wanted[c], background ? 0 : 1e-5)
-            << names_of<Show>()[s] << ", pixel " << pixel;
+      const glm::dvec4 wanted = background ? glm::dvec4(0) : glm::dvec4(expected[s], 1);
+      ASSERT_LE(glm::length(shown[s][pixel] - wanted), background ? 0 : 1e-5)
+          << names_of<Show>()[s] << ", pixel " << pixel;
+    }
+  }
+}
+
+/// A roof 2 m above the floor, over all x < 0.
+double roof(const glm::dvec3& o, const glm::dvec3& d) {
+  const double t = plane_at(o, d, kUp, 2);
+  return t > 0 && (o + t * d).x < 0 ? t : 0;
+}
+
+TEST(Shadow, ShadowFallsWhereTheRoofStands) {
+  for (const double slant : {0.0, 0.6, -1.1}) {
+    const SurfaceImage image = floor_image();
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(slant, -1, 0.1));
+    const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
+      return nearer(plane_at(o, d, kUp, 0), roof(o, d));
+    };
+    const std::vector<double> e = lit(image, {sun(direction, 7, casting)});
+    const double full = -7 * direction.y,
+                 edge = 2 * slant;  // light travels 2 m down on its way past the edge
+    // Two texels of filter on either side, as the floor is cut by the map's slanted texels.
+    const double penumbra = 2 * kTexel / -direction.y;
+    double narrowest = 1e9, widest = -1e9;
+    for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+      const double x = point_of(image, pixel).x;
+      if (x < edge - penumbra) {
+        ASSERT_EQ(e[pixel], 0.0) << "x " << x << " slant " << slant;
       }
+      if (x > edge + penumbra) {
+        ASSERT_NEAR(e[pixel], full, 7 * kFloat) << "x " << x << " slant " << slant;
+      }
+      if (e[pixel] > 0.45 * full && e[pixel] < 0.55 * full) {
+        narrowest = std::min(narrowest, x), widest = std::max(widest, x);
+      }
+    }
+    EXPECT_GT(narrowest, edge - kTexel / -direction.y) << "half the light arrives at the edge";
+    EXPECT_LT(widest, edge + kTexel / -direction.y);
+  }
+}
+
+TEST(Shadow, TiltedPlanesDoNotShadowThemselves) {
+  // A plane that the light grazes at up to 89 degrees, seen face on, the light's texels turned against the camera's.
+  for (const double degrees : {0.0, 20.0, 45.0, 70.0, 85.0, 89.0}) {
+    for (const double azimuth : {0.0, 0.4, 2.0}) {
+      const double angle = degrees / 180 * pi;
+      const glm::dvec3 direction(std::sin(angle) * std::cos(azimuth), -std::cos(angle),
+                                 std::sin(angle) * std::sin(azimuth));
+      expect_lit(
+          floor_image(), sun(direction, 7, floor_at(0)),
+          [&](const glm::dvec3&) { return 7 * std::cos(angle); }, 7);
+    }
+  }
+}
+
+TEST(Shadow, RoundSurfacesDoNotShadowThemselves) {
+  const glm::dvec3 forward = glm::normalize(glm::dvec3(0.3, -1, 0.5)),
+                   direction = glm::normalize(glm::dvec3(0.9, -1, 0));
+  const double radius = 4;
+  const Geometry sphere = [&](const glm::dvec3& o, const glm::dvec3& d) {
+    const double b = glm::dot(o, d) / glm::dot(d, d), c = (glm::dot(o, o) - radius * radius) / glm::dot(d, d);
+    return b * b > c ? std::max(0.0, -b - std::sqrt(b * b - c)) : 0.0;
+  };
+  const SurfaceImage image = look(forward, sphere, [](const glm::dvec3& p) { return glm::normalize(p); });
+  const std::vector<double> e = lit(image, {sun(direction, 7, sphere)});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    if (image.depth[pixel] <= 0) continue;
+    const double cosine = -glm::dot(direction, glm::dvec3(image.normal[pixel]));
+    if (cosine > 0.2) {
+      ASSERT_NEAR(e[pixel], 7 * cosine, 7e-4) << "pixel " << pixel << " cosine " << cosine;
+    }
+    if (cosine <= 0) {
+      ASSERT_EQ(e[pixel], 0.0);
+    }
+  }
+}
+
+TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
+  // A wall x = 0 of 3 m on the floor; light comes down over it at 45 degrees. What may leak at its foot: half the
+  // filter, and what the lift hides of the wall.
+  const double foot =
+      (2 * std::sqrt(2.0) + CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * std::sqrt(0.5)) * kTexel;
+  const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
+    const double t = plane_at(o, d, {1, 0, 0}, 0);
+    const double y = (o + t * d).y;
+    return nearer(plane_at(o, d, kUp, 0), t > 0 && y > 0 && y < 3 ? t : 0);
+  };
+  const SurfaceImage image = floor_image();
+  const std::vector<double> e = lit(image, {sun({1, -1, 0}, 7, casting)});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    const double x = point_of(image, pixel).x;
+    if (x > foot && x < 3 - 3 * kTexel) {
+      ASSERT_EQ(e[pixel], 0.0) << "light under the wall at x " << x;
+    }
+    if (x < -3 * kTexel || x > 3 + 3 * kTexel) {
+      ASSERT_NEAR(e[pixel], 7 * std::sqrt(0.5), 7 * kFloat) << "x " << x;
+    }
+  }
+}
+
+// A floor alone, at whose far side the light grazes at 87 degrees; and a room whose walls the six views cross slantwise.
+TEST(Shadow, SixViewsOfAPointLightShowNoSeamsAndDoNotShadowTheirReceiver) {
+  const auto room = [](const glm::dvec3& o, const glm::dvec3& d) {
+    double t = 0;
+    for (const glm::dvec3& n : kDirections) {
+      if (glm::dot(n, d) > 0) t = nearer(t, plane_at(o, d, n, n.y < 0 ? 0 : 7));
+    }
+    return t;
+  };
+  struct Case {
+    glm::dvec3 at;
+    Geometry casting;
+  };
+  for (const auto& [at, casting] : {Case{{-4, 0.6, 1}, floor_at(0)}, Case{{0.7, 2.5, -1.1}, room}}) {
+    MappedLight light = bulb(at, 40);
+    for (const glm::dvec3& direction : kDirections)
+      light.maps.push_back(cast(view_of(at, direction, false, 1, kTexels), casting));
+    const SurfaceImage image = floor_image();
+    const std::vector<double> e = lit(image, {light}), unshadowed = lit(image, {bulb(at, 40)});
+    for (std::size_t pixel = 0; pixel < e.size(); ++pixel)
+      ASSERT_NEAR(e[pixel], unshadowed[pixel], 1e-6 * unshadowed[pixel]) << "pixel " << pixel;
+  }
+}
+
+TEST(Shadow, OutsideItsMapASurfaceIsLit) {
+  MappedLight light =
+      sun({0, -1, 0}, 7, [](const glm::dvec3&, const glm::dvec3&) { return 1.0; });  // all blocked
+  light.maps[0].view.half_width = light.maps[0].view.half_height = 2;
+  const SurfaceImage image = floor_image();
+  const std::vector<double> e = lit(image, {light});
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    const glm::dvec3 p = point_of(image, pixel);
+    const double out = std::max(std::abs(p.x), std::abs(p.z));
+    if (out < 2) {
+      ASSERT_EQ(e[pixel], 0.0);
+    }
+    if (out > 2.2) {
+      ASSERT_NEAR(e[pixel], 7, 7 * kFloat);
     }
   }
 }

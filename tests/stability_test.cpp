@@ -21,7 +21,7 @@ using test::test_session;
 
 constexpr int kWidth = 64, kHeight = 36;
 
-/// What a camera sees of the floor y = 0, and of a box's top at that height over |x|, |z| < 1, where there is one.
+/// G-buffer of the floor y = 0 and, where `box` > 0, of a box's top at that height over |x|, |z| < 1.
 SurfaceImage view_of_floor(const glm::vec3& eye, double box = 0) {
   Camera camera;
   camera.eye = eye;
@@ -89,7 +89,7 @@ TEST(Stability, ClosedCases) {
   EXPECT_EQ(
       change_of_light(still_seen(view_of_floor({0, 2, 3}), view_of_floor({0.2f, 2, 3})), even, even).mean,
       0.0);
-  // Four of a hundred points change by all that is there: a twenty-fifth of the light, and fewer than the 95th knows of.
+  // 4 of 100 points change by 100 %: 4 % of the light, and too few for the 95th percentile.
   std::vector<float> few(400, 1.0f), flashed = few;
   for (std::size_t i = 0; i < 16; ++i) flashed[i] = 2;
   const LightChange flash = change_of_light(std::vector<bool>(100, true), few, flashed);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The sweep, held against what is known of light in closed form; and the kernels against the CPU reference.
+// The sweep against closed forms, by the CPU reference; and the kernels against that reference.
 #include "pipeline/sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -121,16 +120,11 @@ reference::Volume swept(int n, int parts, const std::function<double(int bin, co
                         const reference::Volume* geometry = nullptr) {
   const auto basis = make_basis("bins24");
   reference::Volume light(n, kSweepBins);
-  for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y) {
-      for (int x = 0; x < n; ++x) {
-        for (int bin = 0; bin < kSweepBins; ++bin) {
-          for (int channel = 0; channel < 3; ++channel)
-            light.at(channel, bin, x, y, z) = inject(bin, {x, y, z});
-        }
-      }
+  reference::for_each_cell(n, [&](const glm::ivec3& p) {
+    for (int bin = 0; bin < kSweepBins; ++bin) {
+      for (int channel = 0; channel < 3; ++channel) light.at(channel, bin, p.x, p.y, p.z) = inject(bin, p);
     }
-  }
+  });
   const SweptCascade cascade{grid_of(n), &light, geometry, parts};
   return reference::sweep(*basis, swept_by(*basis), {cascade}).front();
 }
@@ -141,19 +135,18 @@ double fluence(const reference::Volume& light, const glm::ivec3& p) {
   return sum;
 }
 
-/// Of a halo of cells `r` from the middle: mean of the fluence over that of an isotropic source of 1 W/sr there, and the
-/// root of its mean square.
+/// Fluence in the halo of cells at a distance `r` from the middle, relative to that of an isotropic source of 1 W/sr: its
+/// mean and root mean square.
 std::pair<double, double> halo(const reference::Volume& light, double r) {
   const int middle = light.n / 2;
   double sum = 0, squares = 0;
   int cells = 0;
-  for (int i = 0; i < light.n * light.n * light.n; ++i) {
-    const glm::ivec3 p(i % light.n, i / light.n % light.n, i / light.n / light.n);
+  reference::for_each_cell(light.n, [&](const glm::ivec3& p) {
     const double distance = glm::length(glm::dvec3(p - middle));
-    if (std::abs(distance - r) >= 0.5) continue;
+    if (std::abs(distance - r) >= 0.5) return;
     const double share = fluence(light, p) * distance * distance;
     sum += share, squares += share * share, ++cells;
-  }
+  });
   return {sum / cells, std::sqrt(squares / cells)};
 }
 
@@ -227,7 +220,7 @@ TEST(Sweep, AWallLetsThroughWhatItsWaysDo) {
   }
 }
 
-/// What to inject for light that is the same in every cell: each cell makes up for what comes from outside.
+/// Injected light that makes the field uniform: each cell replaces the light that would come from outside.
 double made_up(int n, int b, const glm::ivec3& p) {
   static const std::vector<SweepBin> bins = sweep_bins(1);
   const SweepBin& bin = bins[static_cast<std::size_t>(b)];
@@ -250,13 +243,12 @@ TEST(Sweep, UniformLightStaysSoThroughAllCascades) {
   const std::vector<int> parts{2, 1, 1};
   const auto grids = cascade_grids({0.3f, 1.1f, -0.6f}, 3, 5, kGrid);
   reference::Volume dark(kGrid, kSweepBins), uniform(kGrid, kSweepBins);
-  for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
-    const glm::ivec3 p(i % kGrid, i / kGrid % kGrid, i / kGrid / kGrid);
+  reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
     for (int b = 0; b < kSweepBins; ++b) {
       for (int channel = 0; channel < 3; ++channel)
-        uniform.at(channel, b, p.x, p.y, p.z) = static_cast<float>((1 + channel) * made_up(kGrid, b, p));
+        uniform.at(channel, b, p.x, p.y, p.z) = (1 + channel) * made_up(kGrid, b, p);
     }
-  }
+  });
   std::vector<SweptCascade> cascades;
   for (std::size_t c = 0; c < grids.size(); ++c)
     cascades.push_back({grids[c], c == 2 ? &uniform : &dark, nullptr, parts[c]});

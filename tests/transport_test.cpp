@@ -7,8 +7,6 @@
 #include <algorithm>
 
 #include "basis/lobe_quality.hpp"
-#include "support/error.hpp"
-#include "tests/support/every_basis.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::transport_test {
@@ -79,7 +77,7 @@ TEST_P(TransportOf, LobesAreClampedCosinesAlongTheAxes) {
                   exact = make_transport(TransportKind::exact, *basis_);
   for (std::size_t a = 0; a < kAxes.size(); ++a) {
     const std::vector<double> lobe = basis_->clamped_cosine(glm::dvec3(kAxes[a]));
-    // Unit flux changes a lobe by -.13 to +.05 %.
+    // Unit flux changes a lobe by -0.13 to +0.05 %.
     EXPECT_NEAR(basis_->energy(lobe) / kPi, 1, 1.4e-3);
     std::vector<double> unit;
     for (int i = 0; i < basis_->size(); ++i) {

@@ -145,14 +145,6 @@ TEST(View, WideSpotsTakeSixViews) {
   EXPECT_THROW(spot_view(wide, kSize, kBounds), Error);
 }
 
-TEST(View, UnknownKindsOfLightAreRejected) {
-  ClpvLight light = directional_light({0, -1, 0});
-  light.kind = 3;
-  EXPECT_THROW(rsm_views(light, {{0, 0, 0}, 0.5f, 8, {}}, kBounds, kSize), Error);
-  EXPECT_THROW(shadow_views(light, kBounds, kSize), Error);
-  EXPECT_THROW(rsm_follows_cascade(light), Error);
-}
-
 TEST(View, PointViewsSeeEveryDirectionOnce) {
   const ClpvLight light = point_light({1, 2, 3});
   const auto views = point_views(light, kSize, kBounds);

@@ -51,11 +51,6 @@ void expect_near(const std::vector<float>& found, const std::vector<float>& want
   for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], wanted[i], allowed * largest) << i;
 }
 
-TEST(Volume, FormatsAreEveryLayoutInEveryStorage) {
-  EXPECT_EQ(all_formats().size(), 8u);
-  EXPECT_EQ(format_name({}), "soa/float");
-}
-
 TEST(Volume, ReadsBackWhatWasWritten) {
   // Coefficients that fill texels of four, and such that do not; blocks of eight samples, and one more.
   for (const VolumeShape& shape : {VolumeShape{17, 4, 3}, {33, 1, 1}, {8, 9, 3}, {5, 14, 1}, {1, 25, 3}}) {
@@ -75,21 +70,6 @@ TEST(Volume, ReadsBackWhatWasWritten) {
       EXPECT_EQ(copy.read(test_session()), found);
       volume.clear(test_session());
       for (const float value : volume.read(test_session())) ASSERT_EQ(value, 0.0f);
-    }
-  }
-}
-
-TEST(Volume, NoTwoCoefficientsShareAPlace) {
-  const VolumeShape shape{9, 5, 3};
-  for (const VolumeFormat& format : all_formats()) {
-    SCOPED_TRACE(format_name(format));
-    std::vector<bool> taken(stored_numbers(format, shape), false);
-    for (int at = 0; at < 9 * 9 * 9 * 5 * 3; ++at) {
-      const std::size_t index =
-          stored_index(format, shape, at / 3645, at / 729 % 5, at % 9, at / 9 % 9, at / 81 % 9);
-      ASSERT_LT(index, taken.size());
-      ASSERT_FALSE(taken[index]);
-      taken[index] = true;
     }
   }
 }
@@ -122,66 +102,7 @@ TEST(Volume, BuffersBeyondWhatKernelsAddressAreUnsupported) {
   EXPECT_FALSE(unsupported(test_session().device(), {}, {128, 25, 3}).has_value());
 }
 
-TEST(Volume, CountsWhatACellTakes) {
-  EXPECT_EQ(accesses_per_cell({}, 9), 9);
-  EXPECT_EQ(accesses_per_cell({Layout::image}, 9), 3);
-  EXPECT_EQ(bytes_per_cell({Layout::tiled, Storage::float16}, 9), 18u);
-  EXPECT_EQ(bytes_per_cell({Layout::image, Storage::float16}, 9), 24u);
-}
-
 constexpr VolumeShape kShape{5, 6, 3};
-
-std::vector<float> counted() {
-  std::vector<float> values(5 * 5 * 5 * 6 * 3);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 1000);
-  return values;
-}
-
-std::vector<float> with_one_more(std::vector<float> values) {
-  for (float& value : values) value += 1;
-  return values;
-}
-
-/// As a kernel would: reads one volume, writes another, or the same where a launch may.
-void add_one(const Volume& so_far, const Volume& next) {
-  EXPECT_EQ(so_far.memory()() == next.memory()(), so_far.format().layout != Layout::image);
-  Volume written = next;
-  written.write(test_session(), with_one_more(so_far.read(test_session())));
-}
-
-TEST(Accumulator, AddsAgainAndAgainToAllCells) {
-  for (const VolumeFormat& format : formats(kShape)) {
-    SCOPED_TRACE(format_name(format));
-    Accumulator accumulator(test_session());
-    Volume one(test_session(), kShape, "one sum", format), other(test_session(), kShape, "other sum", format);
-    one.write(test_session(), counted());
-    for (int i = 0; i < 3; ++i) {
-      accumulator.add(one, add_one);
-      accumulator.add(other, add_one);
-    }
-    EXPECT_EQ(one.read(test_session()), with_one_more(with_one_more(with_one_more(counted()))));
-    EXPECT_EQ(other.read(test_session()), std::vector<float>(counted().size(), 3.0f));
-  }
-}
-
-TEST(Accumulator, AddsToSomeCellsInAFormatThatCanBeUpdated) {
-  for (const VolumeFormat& format : formats(kShape)) {
-    SCOPED_TRACE(format_name(format));
-    Accumulator accumulator(test_session());
-    Volume sum(test_session(), kShape, "sum", format);
-    sum.write(test_session(), counted());
-    std::vector<float> wanted = counted();
-    wanted[77] = 5.5f;
-    accumulator.add_to_cells(sum, [&](const Volume& cells) {
-      EXPECT_EQ(cells.format(), Accumulator::cells_format(format));
-      EXPECT_TRUE(cells.format().layout != Layout::image);
-      EXPECT_EQ(cells.read(test_session()), counted());
-      Volume written = cells;
-      written.write(test_session(), wanted);
-    });
-    EXPECT_EQ(sum.read(test_session()), wanted);
-  }
-}
 
 TEST(Accumulator, TakesTheMemoryItSays) {
   Session& session = test_session();
@@ -206,22 +127,7 @@ TEST(Accumulator, TakesTheMemoryItSays) {
   }
 }
 
-TEST(Volume, PlanesBesideAnImageHoldTheSame) {
-  const VolumeShape shape{9, 5, 3};
-  for (const Storage storage : {Storage::float32, Storage::float16}) {
-    if (unsupported(test_session().device(), {Layout::image, storage}, shape)) GTEST_SKIP() << "no images";
-    Volume image(test_session(), shape, "image", {Layout::image, storage});
-    image.write(test_session(), random_values(shape));
-    PlaneStage stage(test_session(), shape, storage);
-    stage.load(image);
-    EXPECT_EQ(stage.planes().read(test_session()), image.read(test_session()));
-    stage.planes().write(test_session(), std::vector<float>(random_values(shape).size(), 0.25f));
-    stage.store(image);
-    EXPECT_EQ(stage.planes().read(test_session()), image.read(test_session()));
-  }
-}
-
-/// What two steps make of light and blockers. `lanes`: cells of a work-item.
+/// Light after two steps past random blockers. `lanes`: cells of a work-item.
 std::vector<float> propagated(const VolumeFormat& format, int lanes, const char* basis_name,
                               Blocking blocking, int grid) {
   const auto basis = make_basis(basis_name);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What triangles leave in cells is the same whether it was made from nothing or brought along with a cascade and with what
-// moved.
+// Voxelised triangles are the same whether computed from nothing or updated as cascades and triangles move.
 #include "pipeline/voxel_masks.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +30,7 @@ ClpvGrid grid_at(const glm::ivec3& first) {
   return grid;
 }
 
-/// Triangles from specks to walls, in and round a space of some 20 cells; the last 40 move.
+/// Triangles from specks to walls, in and round a space of about 20 cells; the last 40 move.
 Scene soup() {
   Scene scene;
   const unsigned materials[] = {add_material(scene, {0.8f, 0.5f, 0.3f}),
@@ -148,30 +147,6 @@ TEST(VoxelMasks, FollowWhatMoves) {
     EXPECT_TRUE(now == from_nothing(scene, grid_at(place))) << step;
     EXPECT_FALSE(now == before) << step;
     before = now;
-  }
-}
-
-TEST(TriangleClusters, BoundTheirTrianglesAndTellWhatMoved) {
-  Scene scene = soup();
-  TriangleClusters runs(scene);
-  ASSERT_EQ(runs.bounds().size(), (700u + CLPV_CLUSTER - 1) / CLPV_CLUSTER);
-  EXPECT_EQ(runs.instant(), 0u);
-  EXPECT_TRUE(runs.move(scene).empty()) << "nothing did";
-  shift(scene, scene.moving[1], {3, 0, 0});
-  ASSERT_EQ(runs.move(scene).size(), 1u);
-  EXPECT_EQ(runs.instant(), 1u);
-  ASSERT_EQ(runs.moved().size(), 1u);
-  for (unsigned t = 0; t < 700; ++t) {
-    const Bounds run = runs.bounds()[t / CLPV_CLUSTER];
-    for (const unsigned vertex : scene.triangles[t].vertex) {
-      for (int a = 0; a < 3; ++a) {
-        EXPECT_LE(run.lower[a], scene.vertices[vertex].position[a]);
-        EXPECT_GE(run.upper[a], scene.vertices[vertex].position[a]);
-        if (t < 680) continue;
-        EXPECT_GE(runs.moved()[0].upper[a], scene.vertices[vertex].position[a]);
-        EXPECT_LE(runs.moved()[0].lower[0], scene.vertices[vertex].position[0] - 3);
-      }
-    }
   }
 }
 

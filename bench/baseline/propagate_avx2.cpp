@@ -101,15 +101,15 @@ Constants constants_of(const Basis& basis, const Transport& transport) {
   }
   c.lobe0 = static_cast<float>(faces->lobes(0, 0));
   for (int k = 0; k < 6; ++k) {
-    const std::vector<double>& far = faces->faces[static_cast<std::size_t>(5 * k)].flux;
+    const std::vector<double>& far = faces->faces[5 * k].flux;
     const auto along = static_cast<std::size_t>(c.of_axis[k / 2]);
     Sent& sent = c.sent[k];
     sent.far0 = static_cast<float>(far[0]), sent.far1 = static_cast<float>(far[along]);
     for (int f = 1; f < 5; ++f) {
-      const Face& face = faces->faces[static_cast<std::size_t>(5 * k + f)];
+      const Face& face = faces->faces[5 * k + f];
       const int axis = face.normal.x != 0 ? 0 : face.normal.y != 0 ? 1 : 2;
       const int sign = face.normal[axis];
-      const double across = sign * face.flux[static_cast<std::size_t>(c.of_axis[axis])];
+      const double across = sign * face.flux[c.of_axis[axis]];
       require(f == 1 || (same(face.flux[0], sent.side0) || std::abs(face.flux[0] - sent.side0) < 1e-6));
       sent.side0 = static_cast<float>(face.flux[0]), sent.side1 = static_cast<float>(face.flux[along]);
       require(f == 1 || std::abs(across - sent.across) < 1e-6);
@@ -129,7 +129,7 @@ struct FaceTable {
 FaceTable links_of(const FaceTransport& faces) {
   FaceTable table{};
   for (int f = 0; f < kLinks; ++f) {
-    const Face& face = faces.faces[static_cast<std::size_t>(f)];
+    const Face& face = faces.faces[f];
     const auto normal = std::find(kAxes.begin(), kAxes.end(), face.normal) - kAxes.begin();
     table.link[f / 5][normal] = f;
     table.against[f] = -face.direction;
@@ -162,7 +162,7 @@ struct PropagateBaseline::Impl {
         open(static_cast<std::size_t>(grid) * grid * grid * kLinks) {
     for (int w = 0; w < kLinks; ++w) {
       const std::vector<double> b = basis.evaluate(links.against[w]);
-      for (int i = 0; i < kN; ++i) blocker[w][i] = static_cast<float>(b[static_cast<std::size_t>(i)] / 4);
+      for (int i = 0; i < kN; ++i) blocker[w][i] = static_cast<float>(b[i] / 4);
     }
   }
   std::size_t planes() const { return static_cast<std::size_t>(shape.plane()) * kChannels * kN; }

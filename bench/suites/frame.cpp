@@ -9,7 +9,7 @@
 #include <map>
 
 #include "bench/suites.hpp"
-#include "options/presets.hpp"
+#include "options/render_options.hpp"
 #include "support/named_enum.hpp"
 #include "verify/comparison.hpp"
 
@@ -150,9 +150,9 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   variant.options.lobe_time = LobeTime::host;
   Case result;
   result.row =
-      make_row("frame", "frame", variant, fmt::format("/{}/anew:{}", name_of(preset), clpv::name_of(anew)));
+      make_row("frame", "frame", variant, fmt::format("/{}/anew:{}", name_of(preset), name_of(anew)));
   result.row.preset = name_of(preset);
-  result.row.anew = clpv::name_of(anew);
+  result.row.anew = name_of(anew);
   result.make = [&session, options, render, anew] { return frame_job(session, options, render, anew); };
   return result;
 }

@@ -75,7 +75,7 @@ class Measured {
         const Place place{part_of(o), o.occlusion, line.pass, row.variant->cascade.value_or(-1), o.basis};
         const bool timed = row.status == Status::ok;
         times_[place] = {row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
-                         name_of(row.status)};
+                         std::string(name_of(row.status))};
         if (std::count(bases_.begin(), bases_.end(), o.basis) == 0) bases_.push_back(o.basis);
         cascades_ = std::max(cascades_, place.cascade + 1);
       }

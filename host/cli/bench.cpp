@@ -28,13 +28,6 @@ struct Options {
   bench::BenchOptions bench;
 };
 
-const bench::Suite& suite_named(const std::string& name) {
-  for (const bench::Suite& suite : bench::suites()) {
-    if (suite.name == name) return suite;
-  }
-  throw Error(ExitCode::usage, "no suite named '{}'", name);
-}
-
 std::vector<std::string> suite_names() {
   std::vector<std::string> names;
   for (const bench::Suite& suite : bench::suites()) names.push_back(suite.name);
@@ -133,7 +126,7 @@ void run(Options options, const Shared& shared) {
   }
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
-  const bench::Suite& suite = suite_named(options.suite);
+  const bench::Suite& suite = *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   take_scene(options, suite);
   // Of programs out of a cache no build can be told.
   Session session(choose_device(shared.device),

@@ -20,6 +20,10 @@
 #include "verify/junit.hpp"
 
 namespace clpv {
+
+namespace reference {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CheckResult, stage, variant, worst, allowed, place)
+}
 namespace check_command {
 
 struct Options {
@@ -58,12 +62,8 @@ void print(std::string_view stage, const reference::CheckResults& results) {
 nlohmann::json to_json(const reference::CheckResults& results) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& r : results) {
-    list.push_back({{"stage", r.stage},
-                    {"variant", r.variant},
-                    {"worst", r.worst},
-                    {"allowed", r.allowed},
-                    {"place", r.place},
-                    {"passed", r.passed()}});
+    list.push_back(nlohmann::json(r));
+    list.back()["passed"] = r.passed();
   }
   return list;
 }

@@ -9,28 +9,17 @@
 #include "support/log.hpp"
 
 namespace clpv {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name, driver,
+                                   version, type, compute_units, max_alloc_bytes, images, image3d_writes,
+                                   int64_atomics, fp64, profiling_valid, missing)
+
 namespace {
 
 nlohmann::json to_json(const DeviceList& list) {
   nlohmann::json devices = nlohmann::json::array();
   for (const Device& d : list.devices) {
-    devices.push_back({{"index", d.index},
-                       {"platform_index", d.platform_index},
-                       {"device_index", d.device_index},
-                       {"platform", d.platform},
-                       {"name", d.name},
-                       {"driver", d.driver},
-                       {"version", d.version},
-                       {"type", d.type},
-                       {"compute_units", d.compute_units},
-                       {"max_alloc_bytes", d.max_alloc_bytes},
-                       {"images", d.images},
-                       {"image3d_writes", d.image3d_writes},
-                       {"int64_atomics", d.int64_atomics},
-                       {"fp64", d.fp64},
-                       {"profiling_valid", d.profiling_valid},
-                       {"supported", d.supported()},
-                       {"missing", d.missing}});
+    devices.push_back(nlohmann::json(d));
+    devices.back()["supported"] = d.supported();
   }
   return {{"schema", 1}, {"devices", devices}, {"platforms_without_devices", list.platforms_without_devices}};
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <nlohmann/json_fwd.hpp>
@@ -14,8 +15,10 @@
 
 #include "device/device.hpp"
 #include "options/render_options.hpp"
+#include "pathtracer/path_tracer.hpp"
 #include "pipeline/scene_options.hpp"
 #include "support/named_enum.hpp"
+#include "support/progress.hpp"
 
 namespace clpv {
 
@@ -93,5 +96,21 @@ void require_extension(const std::string& option, const std::filesystem::path& f
 
 /// Makes the folder that an option names, where it is not there. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);
+
+/// The options of path tracing, shared by `reference`, `quality` and `report`.
+struct TracingOptions {
+  std::string bounces = "1";
+  reference::PathTracerOptions values;  ///< all but `bounces`
+
+  /// Throws Error(usage) for --bounces that are neither a number from 1 nor all.
+  reference::PathTracerOptions resolved() const;
+};
+
+/// --bounces, --spp, --noise, --seed and --threads; `options` must outlive the parse.
+void add_tracing_options(CLI::App& command, TracingOptions& options);
+
+/// Shows on a bar what trace_paths tells it.
+reference::TraceProgress shown_on(Progress& progress);
+inline constexpr std::uint64_t kTraceSteps = 10000;  ///< of such a bar
 
 }  // namespace clpv

@@ -76,8 +76,7 @@ reference::Volume injected_light(const Basis& basis, const Options& options) {
     const std::vector<double> c = lobe(basis, source);
     for (int channel = 0; channel < 3; ++channel) {
       for (int i = 0; i < basis.size(); ++i) {
-        volume.at(channel, i, source.at.x, source.at.y, source.at.z) +=
-            source.flux[channel] * c[static_cast<std::size_t>(i)];
+        volume.at(channel, i, source.at.x, source.at.y, source.at.z) += source.flux[channel] * c[i];
       }
     }
   }
@@ -94,7 +93,7 @@ reference::Volume blocked_corners(const Basis& basis, const Options& options) {
     for (int z = first.z; z <= last.z; ++z) {
       for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
-          for (int i = 0; i < basis.size(); ++i) volume.at(0, i, x, y, z) = one[static_cast<std::size_t>(i)];
+          for (int i = 0; i < basis.size(); ++i) volume.at(0, i, x, y, z) = one[i];
         }
       }
     }
@@ -113,14 +112,11 @@ reference::Volume travelling_coefficients(const Basis& basis, const Transport& t
   const std::size_t plane = static_cast<std::size_t>(grid) * grid * grid;
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
   const bool fluxes = carried != basis.size() || values.size() != result.values.size();
-  for (int channel = 0; channel < 3; ++channel) {
+  if (!fluxes) result.values.assign(values.begin(), values.end());
+  for (int channel = 0; fluxes && channel < 3; ++channel) {
     for (int i = 0; i < basis.size(); ++i) {
       for (std::size_t p = 0; p < plane; ++p) {
         double& out = result.values[(static_cast<std::size_t>(channel) * basis.size() + i) * plane + p];
-        if (!fluxes) {
-          out = values[(static_cast<std::size_t>(channel) * carried + i) * plane + p];
-          continue;
-        }
         for (int f = 0; f < 6; ++f)
           out += faces->lobes(i, f) * values[(static_cast<std::size_t>(channel) * 6 + f) * plane + p];
       }

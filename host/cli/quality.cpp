@@ -5,7 +5,7 @@
 //   --vary             ->  Variant: values of the options that vary             quality/quality.hpp
 //   subject x variant  ->  Group: the options of one frame, which shows every camera of the subject
 //   group x camera     ->  QualityCell: kept by an earlier run, or rendered, compared and kept      QualityStore
-//   cells              ->  means of a variant; table, CSV and JSON               quality/quality_report.hpp
+//   cells              ->  means of a variant; table, CSV and JSON               quality/quality.hpp
 //
 // Ranks take every N-th group, or every N-th cell where groups are fewer than ranks.
 #include "quality/quality.hpp"
@@ -21,9 +21,7 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
-#include "cli/tracing_options.hpp"
 #include "clpv/version.hpp"
-#include "quality/quality_report.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/output_file.hpp"

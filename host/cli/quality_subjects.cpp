@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "cli/options.hpp"
-#include "cli/tracing_options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"

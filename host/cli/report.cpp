@@ -12,7 +12,6 @@
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
 #include "cli/render_request.hpp"
-#include "cli/tracing_options.hpp"
 #include "clpv/version.hpp"
 #include "image/compare.hpp"
 #include "image/image_io.hpp"

@@ -14,6 +14,7 @@
 #include "cli/video.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "pipeline/frame_stats.hpp"
 #include "pipeline/view.hpp"
 #include "quality/cached_reference.hpp"
 #include "scene/bounds.hpp"
@@ -124,17 +125,14 @@ class Sequence {
 
   /// stability.json of all frames, rendered once more: most of them may be of an earlier run. By one rank.
   void measure_stability() {
-    Progress progress("stability", static_cast<std::uint64_t>(options_.frames));
     Renderer renderer(device_, moving_.scene(), resolved_);
     Stability stability(renderer.session, renderer.frame, options_.traced);
-    for (int i = 0; i < options_.frames; ++i) {
-      stop_if_interrupted(fmt::format("the frames are in {}, their stability is not told", options_.output));
+    for_all_frames("stability", "their stability is not told", [&](int i) {
       moving_.pose(options_.instant(i));
       renderer.frame.scene_moved();
       renderer.frame.render(camera());
       stability.add(i, options_.instant(i), moving_.scene(), camera());
-      progress.advance();
-    }
+    });
     nlohmann::json all = about();
     all["traced_spp"] = options_.traced;
     write_file(fs::path(options_.output) / "stability.json",
@@ -143,16 +141,10 @@ class Sequence {
 
   /// All frames, from their files. By one rank.
   void film(Video& video) {
-    Progress progress("film", static_cast<std::uint64_t>(options_.frames));
-    for (int i = 0; i < options_.frames; ++i) {
-      stop_if_interrupted(fmt::format("the frames are in {}, the film is not made", options_.output));
+    for_all_frames("film", "the film is not made", [&](int i) {
       const Image image = read_image(options_.file(i));
-      video.add(image.encoding == Encoding::srgb
-                    ? image
-                    : display_image(image, options_.request.exposure_of(moving_.scene()),
-                                    options_.request.tonemap));
-      progress.advance();
-    }
+      video.add(image.encoding == Encoding::srgb ? image : displayed(image));
+    });
     video.finish();
   }
 
@@ -163,6 +155,20 @@ class Sequence {
     Renderer(const Device& device, const Scene& scene, const RenderOptions& options)
         : session(device, ProgramCache::of_user()), frame(session, scene, options) {}
   };
+
+  /// `lost`: what an interrupted run lacks.
+  template <typename Action>
+  void for_all_frames(const char* title, const char* lost, const Action& action) {
+    Progress progress(title, static_cast<std::uint64_t>(options_.frames));
+    for (int i = 0; i < options_.frames; ++i, progress.advance()) {
+      stop_if_interrupted(fmt::format("the frames are in {}, {}", options_.output, lost));
+      action(i);
+    }
+  }
+
+  Image displayed(const Image& image) const {
+    return display_image(image, options_.request.exposure_of(moving_.scene()), options_.request.tonemap);
+  }
 
   const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
   fs::path times_file() const { return fs::path(options_.output) / "times.json"; }
@@ -186,31 +192,34 @@ class Sequence {
 
   /// Whether it was not there yet.
   bool render(int number) {
-    FrameTimes times;
-    times.seconds = options_.instant(number);
+    const double seconds = options_.instant(number);
     Clock::time_point started = Clock::now();
-    moving_.pose(times.seconds);
-    times.pose_ms = milliseconds_since(started);
-    const nlohmann::json description = described(times.seconds);
+    moving_.pose(seconds);
+    double pose_ms = milliseconds_since(started);
+    const nlohmann::json description = described(seconds);
     const std::string key = this->key(description);
     if (holds_frame(options_.file(number), key)) return false;
-
-    times.first = !renderer_;
-    if (!renderer_) renderer_.emplace(device_, moving_.scene(), resolved_);
+    const bool first = !renderer_;
+    if (first) renderer_.emplace(device_, moving_.scene(), resolved_);
     auto& [session, frame] = *renderer_;
     started = Clock::now();
     if (moving_.moves()) frame.scene_moved();
-    times.pose_ms += milliseconds_since(started);
+    pose_ms += milliseconds_since(started);
     started = Clock::now();
     frame.render(camera());
     session.queue().finish();
-    times.frame_ms = milliseconds_since(started);
-    times.stages = session.timeline().times();
+    const double frame_ms = milliseconds_since(started);
+    nlohmann::json stages = to_json(session.timeline().times());
     started = Clock::now();
     write(number, frame, description, key);
-    times.write_ms = milliseconds_since(started);
-    times_[number] = to_json(number, times);
-    spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, times.seconds, times.frame_ms);
+    times_[number] = {{"frame", number},
+                      {"time", seconds},
+                      {"first", first},
+                      {"pose_ms", pose_ms},
+                      {"frame_ms", frame_ms},
+                      {"write_ms", milliseconds_since(started)},
+                      {"stages", std::move(stages)}};
+    spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, frame_ms);
     if (Clock::now() - times_written_ > kTimesEvery) write_times();
     return true;
   }
@@ -220,8 +229,7 @@ class Sequence {
     image.metadata = metadata_of(description);
     image.metadata[kKey] = key;
     if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);
-    write_png(options_.file(number),
-              display_image(image, options_.request.exposure_of(moving_.scene()), options_.request.tonemap));
+    write_png(options_.file(number), displayed(image));
   }
 
   nlohmann::json about() const {

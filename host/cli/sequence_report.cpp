@@ -5,6 +5,7 @@
 
 #include "bench/row.hpp"
 #include "support/input_file.hpp"
+#include "support/json_optional.hpp"
 #include "support/log.hpp"
 
 namespace clpv {
@@ -14,11 +15,6 @@ using nlohmann::json;
 
 constexpr int kSchema = 1;
 constexpr const char* kSpans[] = {"pose", "frame", "write"};
-
-template <typename T>
-json number_or_null(const std::optional<T>& value) {
-  return value ? json(*value) : json(nullptr);
-}
 
 json summary_of(std::vector<double> samples) {
   const bench::Statistics figures = bench::statistics_of(std::move(samples));
@@ -59,24 +55,6 @@ json summary_of(const std::vector<const json*>& frames) {
 
 }  // namespace
 
-json to_json(int frame, const FrameTimes& times) {
-  json stages = json::array();
-  for (const StageTime& stage : times.stages) {
-    stages.push_back({{"stage", name_of(stage.mark.pass)},
-                      {"cascade", number_or_null(stage.mark.cascade)},
-                      {"light", number_or_null(stage.mark.light)},
-                      {"ms", stage.ms},
-                      {"timer", stage.from_events ? "event" : "wall"}});
-  }
-  return {{"frame", frame},
-          {"time", times.seconds},
-          {"first", times.first},
-          {"pose_ms", times.pose_ms},
-          {"frame_ms", times.frame_ms},
-          {"write_ms", times.write_ms},
-          {"stages", std::move(stages)}};
-}
-
 SequenceTimes read_times(const std::filesystem::path& file, int frames) {
   const auto text = file_bytes(file);
   if (!text) return {};
@@ -115,9 +93,9 @@ json stability_json(const json& about, std::span<const StabilityStep> steps) {
                       {"still", step.still},
                       {"cascades_moved", step.cascades_moved},
                       {"seen", step.seen},
-                      {"change", number_or_null(step.change.mean)},
-                      {"change_p95", number_or_null(step.change.p95)},
-                      {"traced", number_or_null(step.noise)}});
+                      {"change", step.change.mean},
+                      {"change_p95", step.change.p95},
+                      {"traced", step.noise}});
     if (step.still && step.change.mean)
       (step.cascades_moved.empty() ? inside : across).push_back(*step.change.mean);
   }

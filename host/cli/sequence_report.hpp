@@ -7,25 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "device/timeline.hpp"
 #include "quality/stability.hpp"
 
 namespace clpv {
 
-/// Wall times of one frame [ms].
-struct FrameTimes {
-  double seconds = 0;   ///< of the scene's time: the instant that the frame shows
-  bool first = false;   ///< of a run: its launches may compile
-  double pose_ms = 0;   ///< the scene brought to its instant, on host and device
-  double frame_ms = 0;  ///< all stages, until the device is done
-  double write_ms = 0;  ///< read back, encoded and written
-  std::vector<StageTime> stages;
-};
-
-/// Times of frames as JSON, by the frames' numbers.
+/// Wall times of frames [ms] as JSON, by the frames' numbers: pose_ms, the scene brought to its instant, on host and device;
+/// frame_ms, all stages, until the device is done; write_ms, read back, encoded and written. `first` of a run: its launches may
+/// compile.
 using SequenceTimes = std::map<int, nlohmann::json>;
-
-nlohmann::json to_json(int frame, const FrameTimes& times);
 
 /// Those of frames below `frames` that a times.json of an earlier run holds; none, with a warning, where it holds something
 /// else.

@@ -9,6 +9,7 @@
 
 #include "image/tone_map.hpp"
 #include "support/error.hpp"
+#include "support/json_optional.hpp"
 
 namespace clpv {
 namespace {
@@ -166,29 +167,17 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
   return result;
 }
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, width, height, channels, rmse, nrmse, relative_mse, psnr_db,
+                                   max_error, identical, valid_pixels, nrmse_valid, best_gain,
+                                   nrmse_best_gain, energy_ratio, perceptual_failures)
+
 nlohmann::json to_json(const Comparison& c) {
-  const auto value = [](const std::optional<double>& number) {
-    return number ? nlohmann::json(*number) : nlohmann::json(nullptr);
-  };
-  return {{"schema", 1},
-          {"width", c.width},
-          {"height", c.height},
-          {"channels", c.channels},
-          {"encoding", c.encoding == Encoding::linear ? "linear" : "srgb"},
-          {"rmse", c.rmse},
-          {"nrmse", value(c.nrmse)},
-          {"relative_mse", c.relative_mse},
-          {"psnr_db", value(c.psnr_db)},
-          {"max_error", c.max_error},
-          {"max_error_at", {c.max_error_at.x, c.max_error_at.y}},
-          {"mean_luminance", {c.mean_luminance.x, c.mean_luminance.y}},
-          {"identical", c.identical},
-          {"valid_pixels", c.valid_pixels},
-          {"nrmse_valid", value(c.nrmse_valid)},
-          {"best_gain", value(c.best_gain)},
-          {"nrmse_best_gain", value(c.nrmse_best_gain)},
-          {"energy_ratio", value(c.energy_ratio)},
-          {"perceptual_failures", c.perceptual_failures}};
+  nlohmann::json json = c;
+  json.update({{"schema", 1},
+               {"encoding", c.encoding == Encoding::linear ? "linear" : "srgb"},
+               {"max_error_at", {c.max_error_at.x, c.max_error_at.y}},
+               {"mean_luminance", {c.mean_luminance.x, c.mean_luminance.y}}});
+  return json;
 }
 
 Image difference_image(const Image& a, const Image& b, float amplify) {

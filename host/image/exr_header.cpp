@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "image/exr_header.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "image/image_header.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 

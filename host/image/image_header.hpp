@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,5 +34,12 @@ std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes
 /// Of a complete PNG, the chunks that its pixels need, and its plain texts. Others may be packed, and libpng makes room for
 /// what they say they are when unpacked.
 std::vector<std::uint8_t> bare_png(std::span<const std::uint8_t> bytes);
+
+/// The claim of an OpenEXR file's first part, after a walk through the headers of all (OpenEXR's documentation, "File Layout"). Each attribute must have
+/// its type's size, and it and each part's table of chunks must fit into the file: then headers and tables take no more memory
+/// than the file has bytes. Each of several parts must be of a type that OpenEXR checks. What is missing, or has values that
+/// mean nothing, is OpenEXR's to reject. Throws Error(bad_input) that names the file, the part and the attribute, what was
+/// found, and what is allowed.
+ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes);
 
 }  // namespace clpv

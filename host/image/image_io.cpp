@@ -9,7 +9,6 @@
 #include <cmath>
 #include <optional>
 
-#include "image/exr_header.hpp"
 #include "image/image_header.hpp"
 #include "image/memory_reader.hpp"
 #include "support/error.hpp"

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
-#include "options/presets.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "support/text.hpp"
@@ -105,20 +104,14 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("height", o.height, "image height [pixels]", Range{1, kMaxPixels});
 }
 
-std::string text_of(const std::string& value) {
-  return value;
-}
-std::string text_of(int value) {
-  return std::to_string(value);
-}
-std::string text_of(double value) {
-  return fmt::format("{}", value);
-}
-std::string text_of(bool value) {
-  return value ? "on" : "off";
-}
-std::string text_of(NamedEnum auto value) {
-  return std::string(name_of(value));
+template <typename T>
+std::string text_of(const T& value) {
+  if constexpr (NamedEnum<T>)
+    return std::string(name_of(value));
+  else if constexpr (std::is_same_v<T, bool>)
+    return value ? "on" : "off";
+  else
+    return fmt::format("{}", value);
 }
 
 template <NamedEnum E>
@@ -219,6 +212,28 @@ nlohmann::json to_json(const RenderOptions& options) {
     }
   });
   return json;
+}
+
+// Kaplanyan and Dachsbacher's scheme with the paper's basis, step by step as published.
+const std::vector<std::pair<std::string_view, std::string_view>>& paper_options() {
+  static const std::vector<std::pair<std::string_view, std::string_view>> options{
+      {"basis", "srbf8v2"},      {"lambda", "0.25"},      {"lobe", "rotate"},       {"lobe-time", "kernel"},
+      {"evaluate", "table"},     {"table-size", "256"},   {"table", "image"},       {"transport", "sampled"},
+      {"state", "coefficients"}, {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"},
+      {"blocker-stride", "1"},   {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},
+      {"storage", "half"},
+  };
+  return options;
+}
+
+void apply_preset(RenderOptions& options, PresetName name) {
+  const std::vector<OptionDescription> defaults = list_options(RenderOptions{});
+  for (const auto& [option, value] : paper_options()) {
+    const bool paper = name == PresetName::paper;
+    set_option(options, option,
+               paper ? value : std::ranges::find(defaults, option, &OptionDescription::name)->value);
+  }
+  options.preset = name;
 }
 
 }  // namespace clpv

@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "basis/blocking.hpp"
@@ -69,5 +70,11 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
 
 /// Returns every option by name, as a number, string or boolean.
 nlohmann::json to_json(const RenderOptions& options);
+
+/// Returns names and values of the options that `paper` (the published scheme) sets. `best` leaves them at their defaults.
+const std::vector<std::pair<std::string_view, std::string_view>>& paper_options();
+
+/// Sets these options to their values in the preset. Other options, such as the image size, do not change.
+void apply_preset(RenderOptions& options, PresetName name);
 
 }  // namespace clpv

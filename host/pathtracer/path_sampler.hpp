@@ -11,7 +11,6 @@
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/ray_scene.hpp"
-#include "pathtracer/sky_sampler.hpp"
 
 namespace clpv::reference {
 

@@ -14,7 +14,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "image/image.hpp"
 #include "kernels/shared/view.h"
+#include "options/show.hpp"
 #include "parallel/ranks.hpp"
 #include "scene/scene.hpp"
 
@@ -61,5 +63,8 @@ using TraceProgress = std::function<void(double)>;
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
                         Ranks& ranks = single_rank());
+
+/// R, G, B, A of one view, units and meaning as in kernels/shared/shade.h: alpha 1 where there is a surface, else all 0.
+Image traced_view(const TracedImage& traced, Show show);
 
 }  // namespace clpv::reference

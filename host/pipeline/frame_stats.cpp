@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "support/json_optional.hpp"
 #include "support/median.hpp"
 
 namespace clpv {
@@ -38,6 +39,18 @@ std::array<double, 3> volume_energy(Session& session, const Basis& basis, const 
   return energy;
 }
 
+nlohmann::json to_json(const std::vector<StageTime>& times) {
+  nlohmann::json stages = nlohmann::json::array();
+  for (const StageTime& time : times) {
+    stages.push_back({{"stage", name_of(time.mark.pass)},
+                      {"cascade", time.mark.cascade},
+                      {"light", time.mark.light},
+                      {"ms", time.ms},
+                      {"timer", time.from_events ? "event" : "wall"}});
+  }
+  return stages;
+}
+
 void FrameStats::end_startup(const Session&) {
   startup_ms_ = since_mark();
   mark_ = Clock::now();
@@ -66,17 +79,7 @@ void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeV
 }
 
 nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {
-  const auto number_or_null = [](const std::optional<int>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
-  };
-  nlohmann::json stages = nlohmann::json::array(), energy = nlohmann::json::array();
-  for (const StageTime& time : median_times(stages_)) {
-    stages.push_back({{"stage", name_of(time.mark.pass)},
-                      {"cascade", number_or_null(time.mark.cascade)},
-                      {"light", number_or_null(time.mark.light)},
-                      {"ms", time.ms},
-                      {"timer", time.from_events ? "event" : "wall"}});
-  }
+  nlohmann::json energy = nlohmann::json::array();
   for (const Energy& e : energies_) {
     energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
@@ -86,7 +89,7 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
           {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
           {"options", options},
           {"frames", frame_ms_.size()},
-          {"stages", stages},
+          {"stages", clpv::to_json(median_times(stages_))},
           {"frame_ms", frame_ms},
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.build_ms()},

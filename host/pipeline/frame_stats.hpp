@@ -43,6 +43,9 @@ class FrameStats {
   std::vector<Energy> energies_;
 };
 
+/// Stage, cascade, light, milliseconds and timer of each.
+nlohmann::json to_json(const std::vector<StageTime>& times);
+
 /// Int f dw summed over all cells of a light volume, a channel [W].
 std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume);
 

@@ -9,7 +9,7 @@
 
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
-#include "pathtracer/traced_view.hpp"
+#include "pathtracer/path_tracer.hpp"
 #include "pipeline/view.hpp"
 #include "scene/emission.hpp"
 #include "scene/sky.hpp"

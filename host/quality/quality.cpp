@@ -10,7 +10,6 @@
 
 #include "device/kernel_files.hpp"
 #include "image/compare.hpp"
-#include "quality/quality_report.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "quality/quality_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,18 +7,13 @@
 #include <string_view>
 
 #include "options/stages.hpp"
+#include "quality/quality.hpp"
+#include "support/json_optional.hpp"
 #include "support/named_enum.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
-
-nlohmann::json json_of(const std::optional<double>& value) {
-  return value ? nlohmann::json(*value) : nlohmann::json();
-}
-
-std::optional<double> optional_of(const nlohmann::json& json) {
-  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
-}
 
 nlohmann::json json_of(const Variant& variant) {
   nlohmann::json json = nlohmann::json::object();
@@ -30,14 +23,6 @@ nlohmann::json json_of(const Variant& variant) {
 
 std::string text_of(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "";
-}
-
-/// A field of a CSV file (RFC 4180).
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
-  return result + '"';
 }
 
 std::set<std::string> stage_names(const std::vector<QualityCell>& cells) {
@@ -86,67 +71,46 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 
 }  // namespace
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain, nrmse_best_gain,
+                                   energy_ratio, perceptual, frame_ms, stage_ms, compute_units, made_s,
+                                   measured_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse, nrmse_best_gain,
+                                   energy_ratio, perceptual, frame_ms, stage_ms)
+
 nlohmann::json to_json(const QualityCell& cell) {
-  nlohmann::json varied = nlohmann::json::array();  // an array: objects forget the order
+  nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects forget the order
   for (const auto& [name, value] : cell.variant) varied.push_back({name, value});
-  return {{"scene", cell.scene},
-          {"camera", cell.camera},
-          {"options", json_of(cell.variant)},
-          {"varied", varied},
-          {"rejected", cell.rejected},
-          {"nrmse", json_of(cell.nrmse)},
-          {"best_gain", json_of(cell.best_gain)},
-          {"nrmse_best_gain", json_of(cell.nrmse_best_gain)},
-          {"energy_ratio", json_of(cell.energy_ratio)},
-          {"perceptual", json_of(cell.perceptual)},
-          {"frame_ms", cell.frame_ms},
-          {"stage_ms", cell.stage_ms},
-          {"timer", cell.from_events ? "event" : "wall"},
-          {"compute_units", cell.compute_units},
-          {"made_s", cell.made_s},
-          {"measured_s", cell.measured_s}};
+  json.update({{"options", json_of(cell.variant)},
+               {"varied", varied},
+               {"timer", cell.from_events ? "event" : "wall"}});
+  return json;
 }
 
 QualityCell cell_from_json(const nlohmann::json& json) {
-  QualityCell cell;
-  cell.scene = json.at("scene");
-  cell.camera = json.at("camera");
+  QualityCell cell = json;
   for (const auto& pair : json.at("varied")) cell.variant.emplace_back(pair.at(0), pair.at(1));
-  cell.rejected = json.at("rejected");
-  cell.nrmse = optional_of(json.at("nrmse"));
-  cell.best_gain = optional_of(json.at("best_gain"));
-  cell.nrmse_best_gain = optional_of(json.at("nrmse_best_gain"));
-  cell.energy_ratio = optional_of(json.at("energy_ratio"));
-  cell.perceptual = optional_of(json.at("perceptual"));
-  cell.frame_ms = json.at("frame_ms");
-  cell.stage_ms = json.at("stage_ms").get<std::map<std::string, double>>();
   cell.from_events = json.at("timer") == "event";
-  cell.compute_units = json.at("compute_units");
-  cell.made_s = json.at("made_s");
-  cell.measured_s = json.at("measured_s");
   return cell;
 }
 
 nlohmann::json to_json(const QualitySummary& sum) {
-  return {{"options", json_of(sum.variant)},  {"views", sum.views},
-          {"rejected", sum.rejected},         {"nrmse", sum.nrmse},
-          {"worst_nrmse", sum.worst_nrmse},   {"nrmse_best_gain", sum.nrmse_best_gain},
-          {"energy_ratio", sum.energy_ratio}, {"perceptual", sum.perceptual},
-          {"frame_ms", sum.frame_ms},         {"stage_ms", sum.stage_ms}};
+  nlohmann::json json = sum;
+  json["options"] = json_of(sum.variant);
+  return json;
 }
 
 std::string quality_csv(const std::vector<QualityCell>& cells) {
   if (cells.empty()) return "";
   const std::set<std::string> stages = stage_names(cells);
   std::string text = "scene,camera";
-  for (const auto& [name, value] : cells[0].variant) text += ',' + quoted(name);
+  for (const auto& [name, value] : cells[0].variant) text += ',' + csv_field(name);
   text += ",rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms";
-  for (const std::string& stage : stages) text += ',' + quoted(stage + "_ms");
+  for (const std::string& stage : stages) text += ',' + csv_field(stage + "_ms");
   text += '\n';
   for (const QualityCell& cell : cells) {
-    text += quoted(cell.scene) + ',' + quoted(cell.camera);
-    for (const auto& [name, value] : cell.variant) text += ',' + quoted(value);
-    text += ',' + quoted(cell.rejected);
+    text += csv_field(cell.scene) + ',' + csv_field(cell.camera);
+    for (const auto& [name, value] : cell.variant) text += ',' + csv_field(value);
+    text += ',' + csv_field(cell.rejected);
     for (const auto& value :
          {cell.nrmse, cell.best_gain, cell.nrmse_best_gain, cell.energy_ratio, cell.perceptual}) {
       text += ',' + text_of(value);

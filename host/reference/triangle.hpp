@@ -5,6 +5,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
+#include "scene/emission.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {
@@ -25,13 +26,6 @@ inline glm::vec2 coordinates(const Vertex& v) {
 }
 inline glm::vec4 colour(const Vertex& v) {
   return {v.colour[0], v.colour[1], v.colour[2], v.colour[3]};
-}
-
-/// The three corners [m].
-inline std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangle) {
-  std::array<glm::dvec3, 3> corners;
-  for (std::size_t i = 0; i < 3; ++i) corners[i] = position(scene.vertices[triangle.vertex[i]]);
-  return corners;
 }
 
 /// get(vertex) between the vertices; `weights` of the second and the third.

@@ -17,19 +17,6 @@ double brightest(const Material& material) {
   return std::max({material.emissive[0], material.emissive[1], material.emissive[2], 0.0f});
 }
 
-std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangle) {
-  std::array<glm::dvec3, 3> corners;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& p = scene.vertices[triangle.vertex[i]].position;
-    corners[i] = {p[0], p[1], p[2]};
-  }
-  return corners;
-}
-
-bool double_sided(const Material& material) {
-  return (material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0;
-}
-
 /// Cuts triangles into parts of the size that suits where they are.
 class Planner {
  public:
@@ -105,6 +92,19 @@ class Planner {
 };
 
 }  // namespace
+
+std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangle) {
+  std::array<glm::dvec3, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& p = scene.vertices[triangle.vertex[i]].position;
+    corners[i] = {p[0], p[1], p[2]};
+  }
+  return corners;
+}
+
+bool double_sided(const Material& material) {
+  return (material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0;
+}
 
 bool emits(const Material& material) {
   return brightest(material) > 0;

@@ -2,7 +2,9 @@
 // Which surfaces of a scene glow, and where on them points are put that light is sent from (kernels/emit.cl). Knows no OpenCL.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "kernels/shared/emit.h"
@@ -15,6 +17,11 @@ static_assert(sizeof(ClpvEmitter) == CLPV_SIZEOF_EMITTER);
 
 /// Whether a material gives light of its own: its front, and its back where it is double sided.
 bool emits(const Material& material);
+
+/// Whether both sides do, where one does.
+bool double_sided(const Material& material);
+
+std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangle);
 
 /// The triangles of such materials.
 std::vector<std::uint32_t> emissive_triangles(const Scene& scene);

@@ -17,7 +17,7 @@ namespace clpv {
 /// An entry of one of tinygltf's lists, by an index that has been checked.
 template <typename T>
 const T& entry(const std::vector<T>& list, int index) {
-  return list[static_cast<std::size_t>(index)];
+  return list[index];
 }
 
 struct GltfDocument {

@@ -2,11 +2,10 @@
 // A metal reflects nothing diffusely in glTF; here its base colour does, since light propagation volumes
 // carry diffuse light only and a black Sponza would teach nothing. Metalness, roughness and normal maps are
 // not read.
-#include "scene/gltf_material.hpp"
-
 #include <algorithm>
 
 #include "scene/bounds.hpp"
+#include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -4,7 +4,6 @@
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_parts.hpp"
-#include "scene/gltf_primitive.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -21,7 +21,7 @@ std::vector<int> find_parents(const GltfDocument& document) {
   std::vector<int> parents(document.model.nodes.size(), kNone);
   for (std::size_t i = 0; i < parents.size(); ++i) {
     for (const int child : document.model.nodes[i].children) {
-      int& parent = parents[static_cast<std::size_t>(child)];
+      int& parent = parents[child];
       if (parent != kNone) {
         reject(document.file, place_of(child), fmt::format("parents {} and {}", parent, i),
                "one parent at most");
@@ -129,8 +129,7 @@ NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves
 
 SkinReader::SkinReader(const GltfDocument& document, const NodeTree& tree)
     : document_(document), in_tree_(document.model.nodes.size()) {
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i)
-    in_tree_[static_cast<std::size_t>(tree.nodes[i].index)] = i;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) in_tree_[tree.nodes[i].index] = i;
 }
 
 std::shared_ptr<const Skin> SkinReader::read(int index) {

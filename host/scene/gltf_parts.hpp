@@ -2,18 +2,47 @@
 // The parts of a glTF document, each as a scene has it. Internal to the loader.
 #pragma once
 
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "scene/gltf_document.hpp"
-#include "scene/gltf_material.hpp"
 #include "scene/motion.hpp"
 #include "scene/notes.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
+
+/// How a vertex's texture coordinates come about: set TEXCOORD_n, then uv' = transform (u, v, 1).
+struct UvMapping {
+  int set = 0;
+  glm::dmat3 transform{1.0};
+  friend bool operator==(const UvMapping&, const UvMapping&) = default;
+};
+
+/// One texture to be made: an image seen through a sampler.
+struct TextureRequest {
+  int image;
+  std::uint32_t wrap_u, wrap_v;
+  friend bool operator==(const TextureRequest&, const TextureRequest&) = default;
+};
+
+struct MaterialSet {
+  std::vector<Material> materials;       ///< those of the document in its order, then glTF's default material
+  std::vector<UvMapping> mappings;       ///< one a material
+  std::vector<TextureRequest> textures;  ///< Material::texture indexes these
+};
+
+/// Throws Error(bad_input).
+MaterialSet read_materials(const GltfDocument& document, Notes& notes);
+
+/// Decodes each requested image (PNG or JPEG, told by its first bytes, not by name or mimeType) on all cores, where its header
+/// keeps the bounds.
+/// Row 0 is v = 0. Throws Error(bad_input) for the first bad one in the document's order.
+std::vector<Texture> load_textures(const GltfDocument& document, const std::vector<TextureRequest>& requests);
 
 /// The curves of each node that moves, by its index. All animations play, at once and from their own times; where several
 /// move the same of a node, the first does, and a note says so. Throws Error(bad_input) for samplers whose accessors are of
@@ -55,5 +84,20 @@ void append_meshes(const GltfDocument& document, PosedTree& posed, const Materia
 /// unique. Those at nodes that move become `motion.cameras` and `motion.lights` too. Throws Error(bad_input).
 void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit, Scene& scene,
                   Motion& motion, Notes& notes);
+
+/// How much more the scene may hold.
+struct Room {
+  std::uint64_t vertices, triangles;
+  std::uint64_t morph_numbers;  ///< of morph targets
+};
+
+/// Reads primitive `index` of mesh `mesh`, with the joints its vertices go with and its morph targets, which take up
+/// `room.morph_numbers`. No triangles, and a note, where it is made of points or lines. `slots` is scratch memory, all
+/// kNoSlot between calls: primitives often share one huge accessor and use a small part of it. Throws Error(bad_input).
+LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
+                              const MaterialSet& materials, Room& room, std::vector<std::uint32_t>& slots,
+                              Notes& notes);
+
+inline constexpr std::uint32_t kNoSlot = 0xffffffff;
 
 }  // namespace clpv

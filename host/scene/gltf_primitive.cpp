@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_primitive.hpp"
-
 #include <algorithm>
 #include <optional>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
+#include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

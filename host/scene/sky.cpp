@@ -33,13 +33,6 @@ std::size_t index_of(const Sky& sky, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(sky.width) + static_cast<std::size_t>(x);
 }
 
-std::size_t channel_of(const Image& image, const char* name, const std::filesystem::path& path) {
-  const auto found = std::ranges::find(image.channels, name);
-  if (found == image.channels.end())
-    throw Error(ExitCode::bad_input, "{}: no channel {}; a sky has R, G and B", path.string(), name);
-  return static_cast<std::size_t>(found - image.channels.begin());
-}
-
 }  // namespace
 
 std::size_t Sky::texel_at(const glm::dvec3& direction) const {
@@ -107,10 +100,12 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
   sky.width = image.width, sky.height = image.height, sky.rotation = rotation;
   sky.texels.resize(image.pixel_count());
   for (int channel = 0; channel < 3; ++channel) {
-    const char* name = names[static_cast<std::size_t>(channel)];
-    const std::size_t from = channel_of(image, name, path);
+    const char* name = names[channel];
+    const auto from = image.channel(name);
+    if (!from)
+      throw Error(ExitCode::bad_input, "{}: no channel {}; a sky has R, G and B", path.string(), name);
     for (std::size_t i = 0; i < sky.texels.size(); ++i) {
-      const float value = image.pixels[i * image.channels.size() + from];
+      const float value = image.pixels[i * image.channels.size() + *from];
       const double scaled = scale * double{value};
       if (!(scaled >= 0 && scaled <= bounds::kSkyRadiance)) {
         throw Error(ExitCode::bad_input, "{}: pixel {},{} channel {}: found {}, times {}; allowed: 0 to {}",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <OpenImageIO/imageio.h>
+#include <fmt/ranges.h>
 
 #include <atomic>
 #include <exception>
@@ -11,7 +12,7 @@
 #include "image/image_header.hpp"
 #include "image/memory_reader.hpp"
 #include "scene/bounds.hpp"
-#include "scene/gltf_material.hpp"
+#include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -26,11 +27,7 @@ struct Encoded {
 };
 
 std::string first_bytes(std::span<const std::uint8_t> bytes) {
-  std::string out;
-  for (const std::uint8_t byte : bytes.subspan(0, std::min<std::size_t>(bytes.size(), 8))) {
-    out += fmt::format("{}{:02x}", out.empty() ? "" : " ", byte);
-  }
-  return out;
+  return fmt::format("{:02x}", fmt::join(bytes.first(std::min<std::size_t>(bytes.size(), 8)), " "));
 }
 
 void read_encoded(const GltfDocument& document, int index, Encoded& encoded) {

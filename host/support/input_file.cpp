@@ -10,17 +10,6 @@ namespace clpv {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t limit) {
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return std::nullopt;
-  const std::uintmax_t size = fs::file_size(path, failed);
-  if (failed || size > limit) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) return std::nullopt;
-  return bytes;
-}
-
 Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
@@ -44,6 +33,15 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
     reject(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
   }
   return bytes;
+}
+
+std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t most) {
+  try {
+    const Bytes bytes = read_file(path, most, path.string());
+    return std::string(bytes.begin(), bytes.end());
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 std::optional<fs::path> user_cache_folder() {

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The report page: pictures of errors, the chart, what is escaped, what is missing, what is rejected."""
 import json
-import os
 import pathlib
-import subprocess
-import sys
 import tempfile
 import unittest
 
-from support import PACKAGE, bench_document, row, variant
+from support import bench_document, row, variant
 from clpv_draw import documents, report
 import numpy
 
@@ -109,31 +106,6 @@ class Page(unittest.TestCase):
         with self.assertRaisesRegex(documents.BadDocument, "q.json: /variants/0/nrmse is null; allowed: a number"):
             self.page()
         self.assertFalse((self.folder / "index.html").exists())
-
-
-class Program(unittest.TestCase):
-    def run_package(self, *arguments, before=""):
-        """python3 -m clpv_draw as clpv starts it; `before`: a folder of modules that come first."""
-        return subprocess.run([sys.executable, "-B", "-m", "clpv_draw", *map(str, arguments)], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, check=False,
-                              env={**os.environ, "PYTHONPATH": f"{before}:{PACKAGE.parent}"})
-
-    def test_tells_what_is_missing(self):
-        with tempfile.TemporaryDirectory() as name:
-            pathlib.Path(name, "jinja2.py").write_text("raise ImportError('broken jinja2')\n")
-            ended = self.run_package("report", before=name)
-            self.assertEqual(ended.returncode, 1)
-            self.assertIn("broken jinja2 (Debian: python3-matplotlib", ended.stderr)
-            self.assertEqual(self.run_package("bench", before=name).returncode, 0)
-
-    def test_refusals_have_clpvs_exit_codes(self):
-        self.assertEqual(self.run_package().returncode, 2)
-        self.assertEqual(self.run_package("nothing").returncode, 2)
-        with tempfile.TemporaryDirectory() as name:
-            pathlib.Path(name, "bench.json").write_text('{"benchmarks": [{}]}')
-            ended = self.run_package("bench", name, name)
-            self.assertEqual(ended.returncode, 3)
-            self.assertIn("/benchmarks/0/suite is null", ended.stderr)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Spherical plots against surfaces whose outlines are known, and sheets of them."""
+"""Spherical plots against surfaces whose outlines are known."""
 import math
 import unittest
 
 from support import ROOT  # noqa: F401  (puts the package into the path)
-from clpv_draw import sphere, style
+from clpv_draw import sphere
 import numpy
 from matplotlib import pyplot
 
@@ -81,32 +81,6 @@ class SphericalPlot(unittest.TestCase):
         distance = numpy.hypot(columns - (left + right) / 2, rows - (top + bottom) / 2)
         self.assertGreater(len(rows), 100)
         self.assertLess(abs(distance - 50).max(), 4)
-
-
-class Sheet(unittest.TestCase):
-    def test_tiles_stand_in_rows_under_their_title(self):
-        sheet = style.Sheet(["a title"], 2, 3, (1, 0.8))
-        places = numpy.array(sheet.places)
-        self.assertEqual(places[0, 1], places[1, 1])
-        self.assertEqual(places[0, 0], places[2, 0])
-        self.assertLess(places[2, 1] + places[2, 3], places[0, 1])
-        self.assertLess(places[0, 1] + places[0, 3], 1)
-        self.assertGreaterEqual(places[:, :2].min(), 0)
-        pyplot.close(sheet.figure)
-
-    def test_captions_are_beside_their_tiles_and_inside_the_sheet(self):
-        for above in (False, True):
-            sheet = style.Sheet(["a title"], 2, 4, (1, 0.8), caption_lines=2, above=above)
-            boxes = []
-            for i in range(4):
-                axis = sheet.tile(i, f"first {i}\nsecond")
-                boxes.append(axis.texts[0].get_window_extent(sheet.figure.canvas.get_renderer()))
-                middle = axis.get_window_extent().y0 + axis.get_window_extent().height / 2
-                self.assertEqual(boxes[-1].y0 > middle, above)
-            for i, one in enumerate(boxes):
-                self.assertTrue(sheet.figure.bbox.y0 <= one.y0 and one.y1 <= sheet.figure.bbox.y1)
-                self.assertFalse(any(one.overlaps(axis.get_window_extent()) for axis in sheet.figure.axes))
-            pyplot.close(sheet.figure)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "image/compare.hpp"
-#include "image/exr_header.hpp"
+#include "image/image_header.hpp"
 #include "image/image_io.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

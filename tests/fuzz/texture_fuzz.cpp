@@ -3,7 +3,7 @@
 #include <span>
 
 #include "image/image_header.hpp"
-#include "scene/gltf_material.hpp"
+#include "scene/gltf_parts.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {

@@ -2,13 +2,11 @@
 // A device that fails on command: preloaded (LD_PRELOAD) before the OpenCL loader, it passes every call on, but for one.
 //
 //   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns that OpenCL code
-//   CLPV_SHIM=CALL:N:hang    does not return
 //   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that were not released
 //
 // "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue.
 #include <CL/cl.h>
 #include <dlfcn.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +20,7 @@ std::mutex guard;
 std::map<std::string, long> calls;
 std::map<cl_mem, long> references;
 
-/// What a call returns in place of being made; nothing where it is to be made.
+/// Returns true if this call must fail, with the code that it returns instead.
 bool fails(const char* kind, const char* name, cl_int& code) {
   const std::lock_guard lock(guard);
   const long of_name = ++calls[name], of_kind = ++calls[kind];
@@ -33,9 +31,6 @@ bool fails(const char* kind, const char* name, cl_int& code) {
   const bool by_name = std::string(which) == name, by_kind = std::string(which) == kind;
   if (!by_name && !by_kind) return false;
   if (std::string(when) != "*" && std::atol(when) != (by_name ? of_name : of_kind)) return false;
-  if (std::string(what) == "hang") {
-    for (;;) ::pause();
-  }
   code = std::atoi(what);
   return true;
 }

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 // Quadrature that shares nothing with host/basis: product Gauss rules over the octants of a frame, and over a
-// flat square seen from the origin.
+// flat square seen from the origin. And the fixture of tests that every basis has to pass.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "basis/basis.hpp"
 
 namespace clpv::test {
 
@@ -92,5 +98,18 @@ inline std::vector<glm::dvec3> spread_axes(int n) {
   }
   return axes;
 }
+
+/// All but the direction bins: these jump, which quadrature over the whole sphere does not integrate, and have up to 96
+/// functions, which take long to compile. rotated_lobe_test.cpp and the check of propagation have them.
+inline std::vector<std::string> smooth_bases() {
+  std::vector<std::string> names = basis_names();
+  std::erase_if(names, [](const std::string& name) { return name.starts_with("bins"); });
+  return names;
+}
+
+class EveryBasis : public ::testing::TestWithParam<std::string> {
+ protected:
+  const std::unique_ptr<Basis> basis_ = make_basis(GetParam());
+};
 
 }  // namespace clpv::test

@@ -1,12 +1,74 @@
 // SPDX-License-Identifier: MIT
-// Command lines that ask for what cannot be: each is rejected before a scene is read or a device is asked, with exit code 2 and
-// words that name the option and what is allowed.
-#include "tests/support/hostile.hpp"
+// Invalid command lines, row by row: bad arguments (exit code 2, before a scene is read or a device is opened), devices that do
+// not exist (4), outputs that cannot be written (1, before the work), files that cannot be read (3).
+// The message names option or file and what is allowed, in clpv's own words; nothing may be left behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-namespace clpv::test::hostile_command_line_test {
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/text.hpp"
+#include "tests/support/run_here.hpp"
+
+namespace clpv::test::hostile_test {
 namespace {
 
-const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
+namespace fs = std::filesystem;
+
+const std::string
+    kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
+    kTiny = "render " CLPV_SOURCE_DIR
+            "/tests/oclgrind/tiny.gltf --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 "
+            "--rsm-size 8 --shadow-size 8 --basis sh2 --transport sampled --gather all --blockers seen ";
+
+struct HostileInput {
+  std::string name;
+  std::string command;  ///< "render @/a.gltf": arguments of clpv; @ is the folder
+  int exit_code;
+  std::vector<std::string> words;                            ///< on stderr
+  std::vector<std::pair<std::string, std::string>> files{};  ///< made in the folder: name, bytes
+  std::function<void(const TemporaryFolder&)> prepare{};     ///< what is no plain file
+  /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the shell; without, the command
+  /// runs in this process.
+  std::string surroundings{};
+};
+
+std::string with_folder(std::string text, const TemporaryFolder& folder) {
+  for (std::size_t at = 0; (at = text.find('@', at)) != std::string::npos;)
+    text.replace(at, 1, folder.path().string());
+  return text;
+}
+
+/// Longer, and it hangs: all are rejected before anything is computed.
+constexpr const char* kPatience = "timeout 60 ";
+
+void expect_rejected(const HostileInput& input) {
+  SCOPED_TRACE(input.name);
+  const TemporaryFolder folder;
+  for (const auto& [name, bytes] : input.files) folder.write(name, bytes);
+  if (input.prepare) input.prepare(folder);
+  const std::string command = with_folder(input.command, folder);
+  const Outcome outcome = input.surroundings.empty()
+                              ? run_here(command, folder.path())
+                              : run(with_folder("cd @ && " + input.surroundings + " ", folder) + kPatience +
+                                    CLPV_PROGRAM + " " + command);
+  EXPECT_EQ(outcome.exit_code, input.exit_code) << outcome.err;
+  for (const std::string& word : input.words) EXPECT_THAT(outcome.err, ::testing::HasSubstr(word));
+  for (const char* foreign : {"basic_", "std::", "what()", "terminate", "[json.exception.type_error"})
+    EXPECT_THAT(outcome.err, ::testing::Not(::testing::HasSubstr(foreign)));
+  EXPECT_EQ(outcome.err, printable(outcome.err)) << "moves the cursor";
+  EXPECT_LT(outcome.err.size(), 4000u) << "a flood of words";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(
+           folder.path(), std::filesystem::directory_options::skip_permission_denied)) {
+    const std::string left = entry.path().filename().string();
+    EXPECT_FALSE(left.ends_with(".part") || left.ends_with(".new") || left.starts_with("out")) << left;
+  }
+}
 
 struct BadLine {
   std::string arguments;  ///< @ is a folder
@@ -20,40 +82,28 @@ void expect_usage(const std::string& before, const std::vector<BadLine>& lines) 
 TEST(HostileCommandLines, OfFrames) {
   expect_usage("render " + kCornell + " -o @/out.exr ",
                {
-                   {"--basis sh99", {"basis", "sh99", "sh2"}},
-                   {"--transport warp", {"transport", "warp", "sweep"}},
-                   {"--preset worst", {"preset", "worst", "paper"}},
                    {"--view inside", {"--view", "inside", "indirect"}},
                    {"--tonemap sepia", {"--tonemap", "sepia"}},
                    {"--grid 0", {"grid", "'0'", "1..512"}},
-                   {"--grid -1", {"grid", "1..512"}},
                    {"--grid 99999999999999999999", {"grid", "1..512"}},
                    {"--grid 0x10", {"grid", "0x10", "1..512"}},
-                   {"--grid 32.5", {"grid", "32.5"}},
-                   {"--grid ' 32'", {"grid", "1..512"}},
                    {"--cascades 9", {"cascades", "1..8"}},
                    {"--cascade-size 0", {"cascade-size", "greater than 0"}},
                    {"--cascade-size nan", {"cascade-size", "nan"}},
-                   {"--cascade-size inf", {"cascade-size", "inf"}},
                    {"--width 0", {"width", "1..16384"}},
                    {"--height 16385", {"height", "1..16384"}},
                    {"--rsm-size 8193", {"rsm-size", "1..8192"}},
                    {"--shadow-size -8", {"shadow-size"}},
-                   {"--lambda 0 --basis srbf4", {"lambda", "between 0 and 1"}},
-                   {"--lambda 1 --basis srbf4", {"lambda", "between 0 and 1"}},
-                   {"--lambda 0.0000001 --basis srbf8v2", {"lambda"}},
+                   {"--lambda 0 --basis srbf4", {"lambda", "greater than 0 and less than 1"}},
+                   {"--lambda 1 --basis srbf4", {"lambda", "greater than 0 and less than 1"}},
                    {"--table-size 1", {"table-size", "2..65536"}},
                    {"--iterations 4097", {"iterations", "0..4096"}},
-                   {"--occlusion maybe", {"occlusion", "maybe", "on|off"}},
                    {"--blocker-stride 0", {"blocker-stride", "1..16"}},
                    {"--gather-offset 5", {"gather-offset", "0..4"}},
-                   {"--bounces 3", {"bounces", "1|2|all"}},
                    {"--bounces 2 --transport exact", {"bounces"}},
                    {"--frames 0", {"--frames"}},
                    {"--frames 1001", {"--frames"}},
                    {"--time nan", {"--time", "-1000000..1000000"}},
-                   {"--time 1e300", {"--time", "-1000000..1000000"}},
-                   {"--time 1s", {"--time", "-1000000..1000000"}},
                    {"--exposure bright", {"--exposure"}},
                    {"--frobnicate 3", {"--frobnicate"}},
                    {"--grid 8 --grid 16", {"--grid"}},
@@ -91,15 +141,12 @@ TEST(HostileCommandLines, OfCommands) {
                        {"check --stage see", {"--stage", "now 'visibility'"}},
                        {"propagate --at 99,0,0 --grid 8 -o @/out.npy", {"--at", "99"}},
                        {"propagate --at 1,2", {"--at", "'1,2'"}},
-                       {"propagate --at 1,2,3,4", {"--at", "'1,2,3,4'"}},
                        {"propagate --at 99999999999,0,0", {"--at"}},
                        {"propagate --at 4,4,4 --flux red,green,blue", {"--flux", "'red,green,blue'"}},
-                       {"propagate --at 4,4,4 --flux 1e999,0,0", {"--flux"}},
                        {"propagate --at 4,4,4 --block 0,0,0", {"--block", "two corners"}},
                        {"propagate --at 4,4,4 --block 3,3,3:1,1,1", {"--block", "beyond"}},
                        {"basis sh2 --axis 0,0,0", {"--axis"}},
                        {"basis sh2 --axis up", {"--axis", "'up'"}},
-                       {"basis sh99", {"sh99", "sh2"}},
                        {"basis --search 0", {"--search"}},
                        {"basis --search 100000", {"--search"}},
                        {"compare a.exr", {"B"}},
@@ -109,10 +156,8 @@ TEST(HostileCommandLines, OfCommands) {
                        {film + "--fps 24", {"--frames"}},
                        {film + "--frames 2", {"--fps"}},
                        {film + "--frames 0 --fps 24", {"--frames"}},
-                       {film + "--frames 1.5 --fps 24", {"--frames"}},
                        {film + "--frames 2000000 --fps 24", {"--frames"}},
                        {film + "--frames 2 --fps 0", {"--fps: found '0', allowed: more than 0"}},
-                       {film + "--frames 2 --fps -5", {"--fps: found '-5'"}},
                        {film + "--frames 2 --fps nan", {"--fps: found 'nan'"}},
                        {film + "--frames 2 --fps 1e9", {"--fps: found '1e9'"}},
                        {film + "--frames 2 --fps 1 --from nan", {"--from"}},
@@ -120,8 +165,6 @@ TEST(HostileCommandLines, OfCommands) {
                        {film + "--frames 2 --fps 1 --format gif", {"--format"}},
                        {film + "--frames 2 --fps 1 --video @/out.gif", {"--video", "'.gif'", ".mp4"}},
                        {film + "--frames 2 --fps 1 --traced 4", {"--traced", "--stability"}},
-                       {quality + "--vary colour=red", {"colour"}},
-                       {quality + "--vary grid", {"vary grid", "OPTION=a,b,c"}},
                        {quality + "--vary width=8,16", {"--vary", "one size"}},
                        {quality + "--view inside", {"--view", "inside"}},
                        {quality + "--camera nobody --cache @/c", {"nobody", "there are"}},
@@ -139,19 +182,68 @@ TEST(HostileCommandLines, OfCommands) {
 }
 
 TEST(HostileCommandLines, OfDevices) {
-  const std::vector<std::string> absent = {"99", "'no such thing'", "7:7"};
-  for (const std::string& device : absent)
-    expect_rejected({device, "--device " + device + " check --stage sizes", 4, {words_of(device).front()}});
-  expect_rejected({"below none", "--device=-1 check --stage sizes", 4, {"'-1'"}});
+  for (const std::string device : {"99", "'no such thing'", "7:7", "-1"})
+    expect_rejected({device, "--device=" + device + " check --stage sizes", 4, {words_of(device).front()}});
   expect_rejected({"by the environment", "check --stage sizes", 4, {"'99'"}, {}, {}, "CLPV_DEVICE=99"});
-  expect_rejected({"no device at all",
-                   "check --stage sizes",
-                   4,
-                   {"no OpenCL device found"},
-                   {},
-                   {},
-                   "OCL_ICD_VENDORS=/nowhere CLPV_DEVICE="});
+}
+
+TEST(HostileSurroundings, Outputs) {
+  const auto rejected = [](const std::string& command, const std::vector<std::string>& words) {
+    expect_rejected({command, command, 1, words, {{"file", ""}, {"points.csv", ""}}});
+  };
+  rejected("render " + kCornell + " -o @/" + std::string(300, 'a') + ".exr", {"cannot be written"});
+  for (const std::string& command :
+       {"render " + kCornell + " -o @/none/a.exr",
+        "render " + kCornell + " -o @/out.exr --stats @/none/a.json",
+        "render " + kCornell + " -o @/out.exr --dump-normals @/none/a.json",
+        std::string("bench ceilings --out @/none/a.json"), "pathtrace " + kCornell + " -o @/none/a.exr",
+        "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",
+        "quality " + kCornell + " --cache @/out --json @/none/a.json",
+        std::string("compare a.exr b.exr -o @/none/a.png"),
+        "query " + kCornell + " --points @/points.csv -o @/none/a.csv",
+        std::string("propagate --at 4,4,4 --grid 8 -o @/none/a.npy")})
+    rejected(command, {"none/a.", "no folder"});
+  for (const std::string& command :
+       {"render " + kCornell + " -o @/out.exr --dump-volume @/file",
+        "sequence " + kCornell + " --frames 1 --fps 1 -o @/file", std::string("report @/file/there"),
+        std::string("basis sh2 --figures @/file/there"), std::string("bench ceilings --plot @/file/there")})
+    rejected(command, {"file"});
+}
+
+TEST(HostileSurroundings, Variables) {
+  const auto rejected = [](const std::string& variables, int code, const std::vector<std::string>& words) {
+    expect_rejected({variables, kTiny + "-o @/out.exr", code, words, {{"file", ""}}, {}, variables});
+  };
+  rejected("CLPV_PROGRAM_CACHE=off CLPV_PROGRAM_DUMP=@/none", 1, {"none/", "there is no folder"});
+  rejected("env -u POCL_CACHE_DIR XDG_CACHE_HOME=@/file", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
+}
+
+/// The program for someone who is not root, for whom permissions count; empty where that cannot be had.
+std::string as_nobody() {
+  if (::geteuid() != 0) return " ";
+  const std::string become = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+  return run(become + CLPV_PROGRAM " --version").exit_code == 0 ? become : "";
+}
+
+TEST(HostileSurroundings, Permissions) {
+  const std::string nobody = as_nobody();
+  if (nobody.empty()) GTEST_SKIP() << "root, and no setpriv to become someone else: permissions bind nobody";
+  const auto locked = [&](const std::string& command, int code, const char* file, mode_t mode,
+                          const char* inside = nullptr) {
+    const auto lock = [=](const TemporaryFolder& folder) {
+      ::chmod(folder.path().c_str(), 0755);
+      ::chmod((folder / file).c_str(), mode);
+    };
+    const char* made = inside != nullptr ? inside : file;
+    const char* words = code == 1 ? "Permission denied" : "cannot be read";
+    expect_rejected({command, command, code, {file, words}, {{made, "{}"}}, lock, nobody});
+  };
+  locked(kTiny + "-o @/f/a.exr", 1, "f", 0555, "f/x");
+  locked(kTiny + "-o @/a.exr", 1, "a.exr", 0444);
+  locked("render @/m.gltf -o /tmp/out.exr", 3, "m.gltf", 0);
+  locked("compare @/a.exr @/a.exr", 3, "a.exr", 0);
+  locked("bench ceilings --compare @/o.json", 3, "o.json", 0);
 }
 
 }  // namespace
-}  // namespace clpv::test::hostile_command_line_test
+}  // namespace clpv::test::hostile_test
