@@ -106,7 +106,7 @@ TEST(Emit, HolesDoNotGlow) {
   EXPECT_NEAR(flux, pi * 2 * 4 / 2, 0.02 * flux);
 }
 
-// What reaches through all cascades is cut up: fine near the eye, coarse far off, nowhere twice, nothing outside.
+// A surface that reaches through all cascades: points are dense near the eye, sparse far off, nowhere twice, none outside.
 TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
   Scene scene;
   add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, add_lamp_material(scene, glm::vec3(1)));
