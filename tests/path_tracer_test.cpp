@@ -274,7 +274,6 @@ TEST(PathTracer, RejectsWhatItCannotTrace) {
   error_of(ExitCode::usage, trace(sound, still));
   const std::vector<std::function<void(Scene&)>> faults = {
       [](Scene& s) { s.lights.clear(); },
-      [](Scene& s) { s.materials[0].base_colour[1] = kOpen; },
       [](Scene& s) { s.triangles.clear(); },
   };
   for (std::size_t i = 0; i < faults.size(); ++i) {

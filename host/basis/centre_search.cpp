@@ -150,7 +150,7 @@ void require(const CentreSearch& search) {
     throw Error(ExitCode::usage, "--search: found {}, allowed: 1 to {} centres", search.centres, kMaxCentres);
   }
   if (!(search.lambda > 0 && search.lambda < 1)) {
-    throw Error(ExitCode::usage, "lambda: found {}, allowed: between 0 and 1, both excluded", search.lambda);
+    throw Error(ExitCode::usage, "lambda: found {}, allowed: greater than 0 and less than 1", search.lambda);
   }
   if (!(search.most_condition >= 1 && search.most_condition <= kMaxCondition)) {
     throw Error(ExitCode::usage, "--most-condition: found {}, allowed: 1 to {:.0e}", search.most_condition,

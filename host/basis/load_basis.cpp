@@ -57,7 +57,7 @@ std::vector<glm::dvec3> centres_of(const json& value, const std::string& path) {
 double lambda_of(const json& value, const std::string& path, const std::string& place) {
   const double lambda = value.is_number() ? value.get<double>() : 0;
   if (lambda > 0 && lambda < 1) return lambda;
-  throw Error(ExitCode::bad_input, "{}: {} is {}; allowed: a number between 0 and 1, both excluded", path,
+  throw Error(ExitCode::bad_input, "{}: {} is {}; allowed: a number greater than 0 and less than 1", path,
               place, quoted(value));
 }
 

@@ -61,7 +61,7 @@ void require_usable(const std::string& name, const std::vector<glm::dvec3>& cent
   }
   for (const double lambda : lambdas) {
     if (!(lambda > 0 && lambda < 1)) {
-      throw Error(ExitCode::usage, "{}: lambda: found {}, allowed: between 0 and 1, both excluded", name,
+      throw Error(ExitCode::usage, "{}: lambda: found {}, allowed: greater than 0 and less than 1", name,
                   lambda);
     }
   }
