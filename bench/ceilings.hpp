@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What this device can do at most, measured in the same run (kernels/ceilings.cl).
+// Roofline ceilings of a device: peak arithmetic, bandwidth and launch time (kernels/ceilings.cl).
+// Williams, Waterman and Patterson, 'Roofline: an insightful visual performance model' (CACM 52(4), 2009).
 #pragma once
 
 #include <vector>
@@ -8,7 +9,7 @@
 
 namespace clpv::bench {
 
-/// A size of data in rotation, and how fast it moves.
+/// Bandwidth of a stream over a working set.
 struct Bandwidth {
   double working_set;  ///< [bytes]
   double gbps;
@@ -17,20 +18,20 @@ struct Bandwidth {
 struct Ceilings {
   double gflops = 0;                  ///< fused multiply-adds, two operations each
   std::vector<Bandwidth> bandwidths;  ///< by rising working set: caches first, memory last
-  double launch_ms = 0;               ///< the device's time for a launch that does nothing
+  double launch_ms = 0;               ///< device time of an empty launch
 
-  /// Of the smallest measured working set that holds `bytes`, else of the largest.
+  /// Bandwidth [GB/s] of the smallest measured working set of at least `bytes`, else of the largest.
   double gbps(double bytes) const;
 };
 
 /// Rows of suite `ceilings`: ceiling/fma/WIDTH, ceiling/stream/SIZE, ceiling/launch.
 std::vector<Case> ceiling_cases(Session& session);
 
-/// From the rows of ceiling_cases(): the best of each, since a ceiling is what has been reached once.
+/// Ceilings from the rows of ceiling_cases(), each from its fastest sample.
 Ceilings ceilings_of(const std::vector<Row>& rows);
 
-/// Tells which ceiling binds the row's work, and what share of it was reached: the longest of the times that its
-/// operations, its bytes, or a launch would take at least, over the time it took (median).
-void bind(const Ceilings& ceilings, Row& row);
+/// Sets the row's binding ceiling and the share of it that the row reached:
+/// max(flops / gflops, bytes / gbps, launch_ms) / median.
+void set_ceiling(const Ceilings& ceilings, Row& row);
 
 }  // namespace clpv::bench

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Compares the medians of two reports.
 #include "bench/compare_runs.hpp"
 
 #include <fmt/format.h>
@@ -14,10 +15,10 @@
 namespace clpv::bench {
 namespace {
 
-constexpr double kPerMad = 1.4826;  // standard deviations of a normal distribution in one MAD
+constexpr double kDeviationPerMad = 1.4826;  // standard deviation of a normal distribution over its MAD
 
 void require_report(const nlohmann::json& report, const std::string& file) {
-  constexpr double kMost = std::numeric_limits<double>::max();
+  constexpr double kMax = std::numeric_limits<double>::max();
   const std::vector<Rule> rules = {rule::object(""),
                                    rule::object("/context").must(),
                                    rule::integer("/context/schema", 1, 1).must(),
@@ -25,8 +26,8 @@ void require_report(const nlohmann::json& report, const std::string& file) {
                                    rule::object("/benchmarks/*"),
                                    rule::text("/benchmarks/*/name").must(),
                                    rule::text("/benchmarks/*/status").must(),
-                                   rule::number("/benchmarks/*/median", 0, kMost).must(),
-                                   rule::number("/benchmarks/*/mad", 0, kMost).must()};
+                                   rule::number("/benchmarks/*/median", 0, kMax).must(),
+                                   rule::number("/benchmarks/*/mad", 0, kMax).must()};
   check_rules(report, rules, file);
 }
 
@@ -47,26 +48,26 @@ std::map<std::string, Time> times_of(const nlohmann::json& report) {
 
 Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file) {
   require_report(before, file);
-  const std::map<std::string, Time> old = times_of(before), now = times_of(after);
+  const std::map<std::string, Time> old_times = times_of(before), new_times = times_of(after);
   Comparison result;
   for (const nlohmann::json& row : after.at("benchmarks")) {
     const std::string name = row.at("name");
-    const auto found = now.find(name);
-    if (found == now.end()) continue;
-    const auto was = old.find(name);
-    if (was == old.end()) {
+    const auto new_time = new_times.find(name);
+    if (new_time == new_times.end()) continue;
+    const auto old_time = old_times.find(name);
+    if (old_time == old_times.end()) {
       result.only_after.push_back(name);
       continue;
     }
-    Change change{name, was->second.ms, found->second.ms, was->second.mad, found->second.mad};
-    const double difference = std::abs(change.after_ms - change.before_ms);
-    change.clear =
-        difference > kClearDeviations * kPerMad * std::hypot(change.before_mad, change.after_mad) &&
-        difference > kLeastChange * change.before_ms;
+    Change change{name, old_time->second.ms, new_time->second.ms, old_time->second.mad, new_time->second.mad};
+    const double difference = std::abs(change.after_ms - change.before_ms),
+                 deviation = kDeviationPerMad * std::hypot(change.before_mad, change.after_mad);
+    change.significant =
+        difference > kSignificantDeviations * deviation && difference > kMinRelativeChange * change.before_ms;
     result.changes.push_back(change);
   }
-  for (const auto& [name, time] : old) {
-    if (!now.contains(name)) result.only_before.push_back(name);
+  for (const auto& [name, time] : old_times) {
+    if (!new_times.contains(name)) result.only_before.push_back(name);
   }
   return result;
 }
@@ -77,14 +78,17 @@ std::string comparison_table(const Comparison& comparison) {
   std::string text =
       fmt::format("{:<{}} {:>22} {:>22} {:>8}\n", "row", width, "before [ms]", "after [ms]", "ratio");
   for (const Change& change : comparison.changes) {
-    const char* verdict = !change.clear ? "within the spread" : change.ratio() > 1 ? "SLOWER" : "faster";
+    const char* verdict = !change.significant  ? "within the spread"
+                          : change.ratio() > 1 ? "SLOWER"
+                                               : "faster";
     text += fmt::format("{:<{}} {:>22} {:>22} {:>8.3f} {}\n", change.name, width,
                         fmt::format("{:.4f} +- {:.4f}", change.before_ms, change.before_mad),
                         fmt::format("{:.4f} +- {:.4f}", change.after_ms, change.after_mad), change.ratio(),
                         verdict);
   }
-  for (const std::string& name : comparison.only_before) text += fmt::format("{}: only before\n", name);
-  for (const std::string& name : comparison.only_after) text += fmt::format("{}: only now\n", name);
+  for (const std::string& name : comparison.only_before)
+    text += fmt::format("{}: only in the run before\n", name);
+  for (const std::string& name : comparison.only_after) text += fmt::format("{}: only in this run\n", name);
   return text;
 }
 

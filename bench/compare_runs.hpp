@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two runs of a suite against each other: what changed by more than their spread.
+// Comparison of two runs of a suite: changes of time that exceed the spread of both runs.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,25 +11,25 @@ namespace clpv::bench {
 struct Change {
   std::string name;
   double before_ms = 0, after_ms = 0;    ///< medians
-  double before_mad = 0, after_mad = 0;  ///< their spread
-  /// More than the spreads of both allow: kClearDeviations standard deviations of the difference, as the median
-  /// absolute deviations tell them, and kLeastChange of the time.
-  bool clear = false;
+  double before_mad = 0, after_mad = 0;  ///< median absolute deviations [ms]
+  /// True if the difference exceeds both kSignificantDeviations standard deviations (1.4826 MAD each, added in quadrature) and
+  /// kMinRelativeChange of the time before.
+  bool significant = false;
   double ratio() const { return before_ms > 0 ? after_ms / before_ms : 0; }
 };
 
-inline constexpr double kClearDeviations = 3;
-inline constexpr double kLeastChange = 0.02;
+inline constexpr double kSignificantDeviations = 3;
+inline constexpr double kMinRelativeChange = 0.02;
 
 struct Comparison {
-  std::vector<Change> changes;                       ///< of rows timed in both, in the order of the new run
-  std::vector<std::string> only_before, only_after;  ///< names of the others
+  std::vector<Change> changes;                       ///< rows timed in both runs, in the order of the new run
+  std::vector<std::string> only_before, only_after;  ///< names of the other rows
 };
 
-/// Of two reports (report_json). Throws Error(bad_input) where `before`, read from `file`, is none of schema 1.
+/// Compares two reports (report_json). Throws Error(bad_input) if `before`, read from `file`, is no report of schema 1.
 Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file);
 
-/// A line a change: medians with their spread, the ratio, and whether it is clear; then rows of one run alone.
+/// Text with one line per change: medians with MAD, ratio and verdict. Rows of only one run follow.
 std::string comparison_table(const Comparison& comparison);
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `gather`, the light buffer, as a job.
+// Job of stage `gather`: accumulated volumes to the light buffer.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -34,12 +34,12 @@ struct GatherJob {
   }
 };
 
-/// Whether the device's filter interpolates.
-bool filters(const Variant& v) {
+/// Returns true if the device's image filter interpolates.
+bool filtered_by_device(const Variant& v) {
   return v.options.layout == Layout::image && v.filtered;
 }
 
-/// Irradiance of every kCheckedPixels-th pixel, three channels each.
+/// Expected irradiance of every kCheckedPixels-th pixel, three channels each.
 std::vector<double> reference_of(const GatherJob& p, TransportKind transport, Inputs& inputs,
                                  const SurfaceImage& camera) {
   std::vector<reference::Volume> volumes;
@@ -66,15 +66,15 @@ std::vector<double> reference_of(const GatherJob& p, TransportKind transport, In
 
 Deviation compare(const std::vector<cl_float4>& device, const std::vector<double>& expected,
                   double tolerance) {
-  const auto found = [&](std::size_t i) {
+  const auto value = [&](std::size_t i) {
     return static_cast<double>(device[i / 3 * kCheckedPixels].s[i % 3]);
   };
-  const auto wanted = [&](std::size_t i) { return expected[i]; };
-  const reference::WorstError worst = reference::worst_difference(expected.size(), found, wanted);
+  const auto expected_value = [&](std::size_t i) { return expected[i]; };
+  const reference::WorstError worst = reference::worst_difference(expected.size(), value, expected_value);
   if (worst.value == 0) return {0, tolerance, {}};
   return {worst.value, tolerance,
           fmt::format("pixel {} channel {}: {:.7g}, expected {:.7g}", worst.at / 3 * kCheckedPixels,
-                      worst.at % 3, found(worst.at), wanted(worst.at))};
+                      worst.at % 3, value(worst.at), expected[worst.at])};
 }
 
 }  // namespace
@@ -90,36 +90,38 @@ Job gather_job(Bench& bench, const Variant& variant) {
     p->volumes.back()->write(session, bench.inputs().light(*p->basis, static_cast<int>(c)));
     p->accumulated.push_back(p->volumes.back().get());
   }
-  const Inputs::Seen& seen = bench.inputs().seen(0);
-  const std::size_t pixels = seen.camera_image.depth.size(), bytes = pixels * sizeof(cl_float4);
+  const Inputs::CascadeViews& views = bench.inputs().views(0);
+  const std::size_t pixels = views.camera_image.depth.size(), bytes = pixels * sizeof(cl_float4);
   p->irradiance = session.buffer(bytes, "bench: irradiance");
   Job job;
   job.reset = [p, &session, bytes] { session.fill_zero(p->irradiance, bytes); };
-  job.run = [p, &seen] { p->gatherer.gather(seen.camera, p->grids, p->accumulated, p->irradiance); };
-  job.verify = [p, &bench, &seen, variant, pixels] {
+  job.run = [p, &views] { p->gatherer.gather(views.camera, p->grids, p->accumulated, p->irradiance); };
+  job.verify = [p, &bench, &views, variant, pixels] {
     const RenderOptions& o = variant.options;
     const std::string key = fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
                                         lobes_of(o), name_of(o.evaluate), o.grid);
-    const auto expected =
-        bench.expected(key, [&] { return reference_of(*p, o.transport, bench.inputs(), seen.camera_image); });
-    return compare(bench.session.read<cl_float4>(p->irradiance, pixels), *expected,
-                   reference::tolerance(filters(variant) ? "gather-filter" : "gather", o.format().storage));
+    const auto expected = bench.expected(
+        key, [&] { return reference_of(*p, o.transport, bench.inputs(), views.camera_image); });
+    return compare(
+        bench.session.read<cl_float4>(p->irradiance, pixels), *expected,
+        reference::tolerance(filtered_by_device(variant) ? "gather-filter" : "gather", o.format().storage));
   };
   const VolumeFormat format = variant.options.format();
   const int n = p->basis->size();
-  double volumes = 0;  // read once; buffers are packed first: read, written and read again
+  double volumes = 0;  // images are read once; buffers are packed first: read, written and read again
   for (const auto& volume : p->volumes)
     volumes += static_cast<double>(volume->bytes()) * (format.layout == Layout::image ? 1 : 3);
   job.cost.bytes = static_cast<double>(pixels) * (sizeof(float) + 2 * sizeof(cl_float4)) + volumes;
   job.cost.working_set = job.cost.bytes;
-  // Of a pixel within one cascade: eight cells, or one filtered texel in their place. Buffers are read packed, two
-  // coefficients of three channels at once.
+  // Reads per pixel in one cascade: eight cells, or one filtered texel. A read of packed buffers has two coefficients
+  // of three channels.
   const double texels = 3.0 * accesses_per_cell(format, n);
   job.cost.reads_per_cell = format.layout != Layout::image ? 8.0 * ((n + 1) / 2)
                             : variant.filtered             ? texels
                                                            : 8 * texels;
-  // Trilinear weights once, then 8 multiply-adds a coefficient and channel unless the filter does them, and g(n) . c.
-  job.cost.flops = static_cast<double>(pixels) * 3 * n * (filters(variant) ? 2 : 2 * 8 + 2);
+  // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter does them, and one of
+  // the dot product g(n) . c.
+  job.cost.flops = static_cast<double>(pixels) * 3 * n * (filtered_by_device(variant) ? 2 : 2 * 8 + 2);
   return job;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The hall: boxes for floor, walls and columns, with a camera and a sun.
 #include "bench/hall.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace {
 
 constexpr int kColumns = 6, kBoxes = 5 + kColumns, kFaces = 6;
 
-/// A side of a box: the parallelogram corner, corner + u, corner + v, in divisions^2 pairs of triangles.
+/// Adds one side of a box: the parallelogram corner, corner + u, corner + v, as divisions^2 pairs of triangles.
 void add_side(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, int divisions,
               unsigned material) {
   const glm::vec3 normal = glm::normalize(glm::cross(u, v));

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A scene made on the spot, for benchmarks without a file: an open hall with columns, lit by the sun.
+// Generated scene for benchmarks without a file: an open hall with columns, lit by the sun.
 #pragma once
 
 #include "scene/scene.hpp"
 
 namespace clpv::bench {
 
-/// 24 x 10 x 24 m, open above; of about `triangles` triangles, tessellated evenly (at least 132). One camera, one sun.
+/// Makes a hall of 24 x 10 x 24 m without a roof, with one camera and one sun. Its evenly tessellated boxes have about
+/// `triangles` triangles, at least 132.
 Scene make_hall(int triangles);
 
 inline constexpr int kHallTriangles = 20000;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Rasterises and injects the inputs of the benchmarked stages.
 #include "bench/inputs.hpp"
 
 #include <algorithm>
@@ -14,20 +15,20 @@
 namespace clpv::bench {
 namespace {
 
-constexpr double kMargin = 1e-4;  // [cells]: some hundred roundings of a position in a cascade
+constexpr double kMargin = 1e-4;  // [cells]: about 100 roundings of a position in a cascade
 
-/// Whether the cell of a point is a matter of rounding.
-bool doubtful(const glm::dvec3& point) {
+/// Returns true if rounding decides the cell of a point.
+bool near_boundary(const glm::dvec3& point) {
   const glm::dvec3 off = glm::abs(point - glm::round(point));
   return std::min({off.x, off.y, off.z}) < kMargin;
 }
 
-/// `image` without the texels whose cell, of light or of geometry, is doubtful.
-SurfaceImage without_doubt(SurfaceImage image, const ClpvGrid& grid) {
+/// Returns `image` without texels near a boundary of a light cell or a geometry cell.
+SurfaceImage without_boundary_texels(SurfaceImage image, const ClpvGrid& grid) {
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (image.depth[i] <= 0) continue;
-    const bool light = doubtful(reference::grid_point(image, i, grid, true));
-    if (light || doubtful(reference::grid_point(image, i, grid, false) + 0.5)) image.depth[i] = 0;
+    const bool light = near_boundary(reference::grid_point(image, i, grid, true));
+    if (light || near_boundary(reference::grid_point(image, i, grid, false) + 0.5)) image.depth[i] = 0;
   }
   return image;
 }
@@ -37,43 +38,47 @@ SurfaceImage without_doubt(SurfaceImage image, const ClpvGrid& grid) {
 Inputs::Inputs(Session& session, const Scene& scene, const Camera& camera, const RenderOptions& options)
     : session_(session), options_(options), scene_(upload_scene(session, scene)) {
   const std::vector<Light> lights = scene.lights_for(camera);
-  if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light shines; bench needs one", scene.name);
+  if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light; bench needs one", scene.name);
   Rasterizer rasterizer(session, scene_);
-  Surface seen =
+  Surface surface =
       make_surface(session, camera_view(camera, options.width, options.height), RsmFormat::float32, false);
-  rasterizer.rasterize_camera(seen);
-  const SurfaceImage image = read_surface(session, seen);
+  rasterizer.rasterize_camera(surface);
+  const SurfaceImage image = read_surface(session, surface);
   for (const ClpvGrid& grid :
        cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
     Surface rsm =
         make_surface(session, rsm_views(lights.front().data, grid, scene_.bounds, options.rsm_size).front(),
                      options.rsm_format, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
-    Seen result{grid, {}, {}, without_doubt(read_surface(session, rsm), grid), without_doubt(image, grid)};
+    CascadeViews result{grid,
+                        {},
+                        {},
+                        without_boundary_texels(read_surface(session, rsm), grid),
+                        without_boundary_texels(image, grid)};
     result.rsm = upload_surface(session, result.rsm_image, options.rsm_format, rsm.colour_scale);
-    result.rsm_image = read_surface(session, result.rsm);  // to 8 bits again
+    result.rsm_image = read_surface(session, result.rsm);  // rounded to the RSM's format again
     result.camera = upload_surface(session, result.camera_image);
-    seen_.push_back(std::move(result));
+    views_.push_back(std::move(result));
   }
 }
 
 std::vector<ClpvGrid> Inputs::grids() const {
   std::vector<ClpvGrid> grids;
-  for (const Seen& seen : seen_) grids.push_back(seen.grid);
+  for (const CascadeViews& views : views_) grids.push_back(views.grid);
   return grids;
 }
 
-const Inputs::Injected& Inputs::injected(const Basis& basis, int cascade) {
+const Inputs::InjectedVolumes& Inputs::injected(const Basis& basis, int cascade) {
   const auto [entry, made] = injected_.try_emplace({basis.name(), cascade});
   if (made) {
     const int grid = options_.grid;
     Injector injector(session_, basis, InjectOptions{.grid = grid});
     Volume light(session_, {grid, basis.size(), 3}, "bench: injected light");
     Volume geometry(session_, {grid + 1, basis.size(), 1}, "bench: geometry volume");
-    const Seen& from = seen(cascade);
-    injector.inject_light(from.rsm, from.grid, light);
-    injector.inject_geometry(from.rsm, from.grid, geometry);
-    injector.inject_geometry(from.camera, from.grid, geometry);
+    const CascadeViews& source = views(cascade);
+    injector.inject_light(source.rsm, source.grid, light);
+    injector.inject_geometry(source.rsm, source.grid, geometry);
+    injector.inject_geometry(source.camera, source.grid, geometry);
     entry->second = {light.read(session_), geometry.read(session_)};
   }
   return entry->second;
@@ -83,7 +88,7 @@ const std::vector<float>& Inputs::areas(int cascade) {
   const auto [entry, made] = areas_.try_emplace(cascade);
   if (made) {
     Volume geometry(session_, {options_.grid + 1, 3, 1}, "bench: geometry volume");
-    BlockerVoxelizer(session_, scene_, options_.grid, 1, {}).block(0, seen(cascade).grid, geometry);
+    BlockerVoxelizer(session_, scene_, options_.grid, 1, {}).voxelize(0, views(cascade).grid, geometry);
     entry->second = geometry.read(session_);
   }
   return entry->second;

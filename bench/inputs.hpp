@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stages work on in a benchmark: what a light and a camera see of a scene, and what injection makes of it.
+// Inputs of the benchmarked stages: RSMs and G-buffer of a scene, and the volumes injected from them.
 #pragma once
 
 #include <map>
@@ -17,45 +17,48 @@
 
 namespace clpv::bench {
 
-/// Views of one scene, rasterised on the device once. Texels within rounding of where their cell changes are emptied
-/// (some per mille of them), so that a stage and its CPU reference put every one into the same cell.
+/// RSMs and G-buffer of one scene, rasterised on the device once. Texels within rounding of a cell boundary (about 0.1 %)
+/// are emptied, so that a stage and its CPU reference assign every texel to the same cell.
 class Inputs {
  public:
-  /// Sees `scene` through `camera`, lit by the first light that shines there; sizes and cascades as `options` say. Throws
-  /// Error(bad_input) without a light.
+  /// Rasterises `scene` from `camera` and from the first light that applies there. `options` gives sizes and cascades. Throws
+  /// Error(bad_input) if no light applies.
   Inputs(Session& session, const Scene& scene, const Camera& camera, const RenderOptions& options);
 
-  struct Seen {
+  /// Views of one cascade, on the device and on the host.
+  struct CascadeViews {
     ClpvGrid grid{};
     Surface rsm, camera;  ///< the RSM in the options' format
     SurfaceImage rsm_image, camera_image;
   };
-  const Seen& seen(int cascade) const { return seen_.at(cascade); }
+  const CascadeViews& views(int cascade) const { return views_.at(cascade); }
   std::vector<ClpvGrid> grids() const;
 
-  /// Injected light and blocking of a cascade in a basis, the published way (one-sided), by layout `soa`
-  /// in float: Volume's host order. Made once.
+  /// Injected light volume and geometry volume of a cascade in a basis, blocking one-sided as published. Volume's host order:
+  /// channel, coefficient, z, y, x. Computed at the first call.
   const std::vector<float>& light(const Basis& basis, int cascade) { return injected(basis, cascade).light; }
   const std::vector<float>& geometry(const Basis& basis, int cascade) {
     return injected(basis, cascade).geometry;
   }
-  /// What the scene's triangles block of a cascade, as areas: what the defaults' sweep takes. In the same order, made once.
+  /// Areas blocked by the scene's triangles in a cascade, at cell corners, as the sweep by default takes them. Same order,
+  /// computed at the first call.
   const std::vector<float>& areas(int cascade);
 
  private:
-  struct Injected {
+  struct InjectedVolumes {
     std::vector<float> light, geometry;
   };
-  const Injected& injected(const Basis& basis, int cascade);
+  const InjectedVolumes& injected(const Basis& basis, int cascade);
 
   Session& session_;
   RenderOptions options_;
   SceneBuffers scene_;
-  std::vector<Seen> seen_;
-  std::map<std::pair<std::string, int>, Injected> injected_;
+  std::vector<CascadeViews> views_;
+  std::map<std::pair<std::string, int>, InjectedVolumes> injected_;
   std::map<int, std::vector<float>> areas_;
 };
 
+/// The volume of the CPU reference with `values` in Volume's host order; n^3 samples of `channels` x `coefficients` numbers.
 reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels);
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a benchmark times: work on a device that can be repeated, checked and counted.
+// Jobs of a benchmark: work on a device that can be repeated and verified, and whose cost is counted.
 #pragma once
 
 #include <functional>
@@ -11,28 +11,28 @@
 
 namespace clpv::bench {
 
-/// The timed output against its reference.
+/// Largest relative deviation of the timed output from its reference.
 struct Deviation {
   double worst = 0, tolerance = 0;
-  std::string place;
+  std::string place;                                  ///< of the largest deviation, for messages
   bool passed() const { return worst <= tolerance; }  // false for NaN
 };
 
 struct Job {
-  std::function<void()> reset;        ///< before each repetition, untimed: clears what the work writes
+  std::function<void()> reset;        ///< clears outputs before each repetition, untimed; may be null
   std::function<void()> run;          ///< enqueues the work
-  std::function<Deviation()> verify;  ///< of the last repetition's output; none: nothing to compare
+  std::function<Deviation()> verify;  ///< checks the last repetition's output; null: no reference
   Cost cost;
-  bool own_stages = false;  ///< `run` marks stages on the timeline itself; its time is then wall time
+  bool own_stages = false;  ///< true: `run` marks stages on the timeline itself, and the row has wall times
   std::function<void(const std::vector<StageTime>&)>
-      after_run;                                          ///< of each run, warm-up included; may be none
-  std::function<std::vector<Row>(const Row&)> more_rows;  ///< to stand after the job's own; may be none
+      after_run;  ///< called after each run, warm-up included; may be null
+  std::function<std::vector<Row>(const Row&)> more_rows;  ///< further rows, after the job's own; may be null
 };
 
-/// A row to be: its identity, and how to set up its work.
+/// A row before its measurement: its identity, and a function that sets up its work.
 struct Case {
   Row row;                    ///< suite, stage, name, n and variant
-  std::function<Job()> make;  ///< builds kernels, takes memory. Error(device): the row is `unsupported`
+  std::function<Job()> make;  ///< builds kernels and allocates; Error(device) makes the row `unsupported`
 };
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `propagate` as a job.
+// Job of stage `propagate`: injected light to accumulated light.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace clpv::bench {
 namespace {
 
-/// All that one propagation needs, alive as long as its job.
+/// Volumes and kernels of one propagation.
 struct Propagation {
   Variant variant;
   std::unique_ptr<Basis> basis;
@@ -39,20 +39,21 @@ struct Propagation {
   VolumeShape light_shape() const { return {variant.options.grid, basis->size(), 3}; }
 };
 
-/// What reading or writing `coefficients` numbers of a cell takes, in the variant's format.
+/// Bytes and memory accesses to read or write `coefficients` numbers of a cell in a format.
 struct Access {
   VolumeFormat format;
   double bytes(int coefficients) const { return static_cast<double>(bytes_per_cell(format, coefficients)); }
   double count(int coefficients) const { return accesses_per_cell(format, coefficients); }
 };
 
-/// A step's share of the cost. Values a cell needs are read once by count of bytes, however often by count of reads.
-void add_step(Cost& cost, Propagation& p, const TransportSource& source, bool apart, double blocker_bytes,
-              double blocker_reads) {
+/// Adds the cost of one step. Bytes count each value once; reads count every access. `separate_sum`: the step reads the sum
+/// so far besides its source.
+void add_step(Cost& cost, Propagation& p, const TransportSource& source, bool separate_sum,
+              double blocker_bytes, double blocker_reads) {
   const double cells = std::pow(p.variant.options.grid, 3);
   const Access access{p.variant.options.format()};
   const int carried = source.target_count;
-  const double sum_in = apart ? access.bytes(carried) : 0.0;  // else the source is the sum so far
+  const double sum_in = separate_sum ? access.bytes(carried) : 0.0;
   cost.bytes +=
       cells *
       (kChannels * (access.bytes(source.source_count) + sum_in + 2 * access.bytes(carried)) + blocker_bytes);
@@ -63,7 +64,7 @@ void add_step(Cost& cost, Propagation& p, const TransportSource& source, bool ap
   cost.writes_per_cell = kChannels * 2 * access.count(carried);
 }
 
-/// Counted for the kernels as generated, after a run has made them. Reads and writes are those of a later step.
+/// Cost of the generated kernels, after a first run has built them. Reads and writes per cell are those of a later step.
 Cost cost_of(Propagation& p) {
   const RenderOptions& o = p.variant.options;
   const int n = p.basis->size();
@@ -71,7 +72,7 @@ Cost cost_of(Propagation& p) {
   const int carried = fluxes ? 6 : n;
   const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
   const Access access{o.format()};
-  // Blocking is evaluated once for all steps, as a number a link, or in each step from the eight corners.
+  // Transmittance is computed once for all steps, a number per link, or in each step from the eight corners.
   const LinkTransmittance* transmitter = p.propagator.transmitter();
   const int links = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
   const double blocker_bytes = transmitter != nullptr ? access.bytes(links) : corners * access.bytes(n);
@@ -94,11 +95,11 @@ Cost cost_of(Propagation& p) {
     cost.bytes += cells * (corners * access.bytes(n) + access.bytes(links));
     cost.flops += cells * evaluation.flops();
   }
-  if (fluxes) {  // six fluxes back to coefficients: a product with the lobes, and a sum
+  if (fluxes) {  // conversion of six fluxes to coefficients: a product with the lobes, and a sum
     cost.bytes += cells * kChannels * (2 * access.bytes(n) + access.bytes(carried));
     cost.flops += cells * kChannels * (2.0 * carried * n + n);
   }
-  if (o.lobe_time == LobeTime::kernel) cost.flops = 0;  // the kernel's own code is not counted
+  if (o.lobe_time == LobeTime::kernel) cost.flops = 0;  // lobes rotated at run time are not counted
   cost.working_set = cells * (3 * kChannels * access.bytes(carried) + (p.geometry ? blocker_bytes : 0));
   return cost;
 }
@@ -113,8 +114,8 @@ std::string reference_key(const Variant& v) {
 
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& expected, int n,
                           double tolerance) {
-  const reference::Comparison apart = reference::compare_volumes(device, expected, n);
-  return {apart.worst, tolerance, apart.place};
+  const reference::Comparison comparison = reference::compare_volumes(device, expected, n);
+  return {comparison.worst, tolerance, comparison.place};
 }
 
 Job propagate_job(Bench& bench, const Variant& variant) {
@@ -125,7 +126,7 @@ Job propagate_job(Bench& bench, const Variant& variant) {
   if (p->geometry) p->geometry->write(session, bench.inputs().geometry(*p->basis, cascade));
   const PropagateVolumes volumes{p->injected, p->geometry.get(), p->accumulated};
   p->propagator.propagate(volumes,
-                          std::min(2, variant.options.iterations));  // makes the kernels that are counted
+                          std::min(2, variant.options.iterations));  // builds the kernels for cost_of()
   Job job;
   job.cost = cost_of(*p);
   job.reset = [p, &session] { p->accumulated.clear(session); };
@@ -145,7 +146,7 @@ Job propagate_job(Bench& bench, const Variant& variant) {
       return after_steps(&geometry);
     });
     const RenderOptions& o = p->variant.options;
-    // In halves their rounding is the larger error.
+    // In half-floats, the rounding of storage is larger than that of lobes rotated at run time.
     const bool at_run_time = o.lobe_time == LobeTime::kernel && o.storage == Storage::float32;
     return compare_volumes(
         p->accumulated.read(bench.session), *expected, grid,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The times that the paper prints in its Table 1, of a Radeon HD 6870.
+// Times of the paper's Table 1, measured by its authors on a Radeon HD 6870 (Silvestre and Pereira, 'Cascaded Light
+// Propagation Volumes using Spherical Radial Basis Functions').
 #pragma once
 
 #include <array>
@@ -10,10 +11,10 @@
 
 namespace clpv::bench {
 
-/// A row of that table [ms]. Cascades from the smallest, 12.5 m, to the biggest, 50 m.
+/// Times of one basis [ms]; cascades by rising size: 12.5, 25 and 50 m.
 struct PublishedTimes {
   std::string_view basis;
-  bool shadows;  ///< indirect ones
+  bool shadows;  ///< indirect shadows
   std::array<double, 3> injection, propagation;
   double light_buffer;
 };
@@ -27,16 +28,16 @@ inline constexpr std::array<PublishedTimes, 6> kPublishedTimes{{
     {"srbf8v2", false, {3.511, 4.460, 4.276}, {7.427, 7.794, 7.019}, 1.721},
 }};
 
-/// The cell of a stage: of inject_light and propagate one a cascade, of gather one in all. None of what is not in the
-/// table, the geometry volume's injection among it.
+/// Published time of a pass [ms]: inject_light and propagate per cascade, gather without a cascade. Empty for everything
+/// that the table lacks, such as the injection of the geometry volume.
 constexpr std::optional<double> published_ms(Pass pass, std::string_view basis, bool shadows,
                                              std::optional<int> cascade) {
   for (const PublishedTimes& times : kPublishedTimes) {
     if (times.basis != basis || times.shadows != shadows) continue;
     if (pass == Pass::gather && !cascade) return times.light_buffer;
-    const bool one = cascade && *cascade >= 0 && *cascade < static_cast<int>(times.injection.size());
-    if (one && pass == Pass::inject_light) return times.injection[*cascade];
-    if (one && pass == Pass::propagate) return times.propagation[*cascade];
+    const bool listed = cascade && *cascade >= 0 && *cascade < static_cast<int>(times.injection.size());
+    if (listed && pass == Pass::inject_light) return times.injection[*cascade];
+    if (listed && pass == Pass::propagate) return times.propagation[*cascade];
   }
   return std::nullopt;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Writes benchmark results as JSON, CSV and tables.
 #include "bench/report.hpp"
 
 #include <fmt/chrono.h>
@@ -23,11 +24,11 @@
 namespace clpv::bench {
 namespace {
 
-std::string or_dash(bool there, const std::string& text) {
-  return there ? text : "-";
+std::string or_dash(bool available, const std::string& text) {
+  return available ? text : "-";
 }
 
-/// As the system names it; "unknown" where it does not.
+/// The processor's name from /proc/cpuinfo, else "unknown".
 std::string host_cpu() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -38,7 +39,7 @@ std::string host_cpu() {
   return "unknown";
 }
 
-/// Of the kernels' text in use, files of CLPV_KERNEL_DIR before embedded ones.
+/// Content hash of all kernel files; files in CLPV_KERNEL_DIR replace embedded ones.
 std::string kernel_hash() {
   Fingerprint fingerprint;
   for (const auto& [name, text] : detail::embedded_kernel_files())
@@ -83,10 +84,10 @@ nlohmann::json context_json(const Session& session) {
 
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
                            const std::vector<Row>& rows) {
-  nlohmann::json list = nlohmann::json::array(), all = context;
+  nlohmann::json list = nlohmann::json::array(), with_ceilings = context;
   for (std::size_t i = 0; i < rows.size(); ++i) list.push_back(to_json(rows[i], static_cast<int>(i)));
-  all["ceilings"] = ceilings;
-  return {{"context", all}, {"benchmarks", list}};
+  with_ceilings["ceilings"] = ceilings;
+  return {{"context", with_ceilings}, {"benchmarks", list}};
 }
 
 std::string report_csv(const std::vector<Row>& rows) {

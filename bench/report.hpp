@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A benchmark's results as text: JSON in Google Benchmark's shape, CSV, a plain table.
+// Results of a benchmark as text: JSON with Google Benchmark's keys, CSV, or a table.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,23 +12,22 @@
 
 namespace clpv::bench {
 
-/// What a benchmark ran on and what it was made of: Google Benchmark's context keys (date, host_name, num_cpus, load_avg ...) and
-/// clpv's: schema, clpv_version, git_describe, host_cpu, platform, device, driver, compute_units, build_options, kernel_hash.
+/// Context of a run: Google Benchmark's keys (date, host_name, num_cpus, load_avg ...) and clpv's (schema, clpv_version,
+/// git_describe, host_cpu, platform, device, driver, compute_units, build_options, kernel_hash).
 nlohmann::json context_json(const Session& session);
 
-/// {"context": ..., "benchmarks": [row, ...]}; the context with the ceilings: gflops, bandwidths[], launch_ms.
+/// {"context": ..., "benchmarks": [row, ...]}; `ceilings` becomes context/ceilings: gflops, bandwidths[], launch_ms.
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
                            const std::vector<Row>& rows);
 
-/// A line a row under a line of keys, the same for every row (Google Benchmark's own CSV gives up where rows differ);
-/// samples are left to JSON. By RFC 4180.
+/// CSV by RFC 4180: a line of keys, then a line per row. All keys of JSON but `samples_ms`.
 std::string report_csv(const std::vector<Row>& rows);
 
-/// [{"name", "unit": "ms", "value", "range"}, ...] of the rows that went well, medians and their spread: what actions that
-/// keep a history of benchmarks take, smaller being better.
+/// [{"name", "unit": "ms", "value", "range"}, ...]: medians and MADs of the rows of status ok, in the form that GitHub's
+/// benchmark actions read (smaller is better).
 std::string report_github_action(const std::vector<Row>& rows);
 
-/// Name, median, spread, wall time, GFLOP/s, GB/s, share of the ceiling, error.
+/// Table with a line per row: name, median, MAD, wall time, GFLOP/s, GB/s, share of the ceiling, error.
 std::string report_table(const std::vector<Row>& rows);
 
 }  // namespace clpv::bench

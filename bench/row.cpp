@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Statistics of a row and its JSON.
 #include "bench/row.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ nlohmann::json text_or_null(const std::string& text) {
   return text.empty() ? nlohmann::json(nullptr) : nlohmann::json(text);
 }
 
-/// NaN, which JSON has not, as null.
+/// NaN becomes null, as JSON has no NaN.
 nlohmann::json number_or_null(const std::optional<double>& value) {
   return value && *value == *value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
@@ -36,7 +37,7 @@ nlohmann::json variant_json(const Variant& variant) {
           {"filtered", variant.filtered}};
 }
 
-/// The same keys, of a row without volumes.
+/// The keys of variant_json with null values, for a row without volumes.
 nlohmann::json no_variant_json() {
   nlohmann::json json = variant_json({});
   for (auto& value : json) value = nullptr;
@@ -110,7 +111,7 @@ nlohmann::json to_json(const Row& row, int index) {
                {"axis", text_or_null(row.axis)},
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
-               {"anew", text_or_null(row.anew)}});
+               {"recompute", text_or_null(row.recompute)}});
   json.update(row.variant ? variant_json(*row.variant) : no_variant_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},

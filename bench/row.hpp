@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One row of a benchmark's results: what was timed, and what came of it.
+// One row of a benchmark's results: the timed variant, its times, cost and error.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -20,49 +20,49 @@ inline constexpr auto kNames<bench::Status> = name_list("ok", "unsupported", "wr
 
 namespace bench {
 
-/// Of one series, in its unit. All 0 where it is empty.
+/// Statistics of a series, in its unit. All 0 for an empty series.
 struct Statistics {
   double min = 0, median = 0, p95 = 0, max = 0;
-  double mad = 0;  ///< median absolute deviation from the median: a spread that a few outliers do not move
+  double mad = 0;  ///< median absolute deviation from the median, robust against outliers
 };
 
-/// Quantiles interpolate linearly between the sorted samples, the first at 0 and the last at 1.
+/// Quantiles interpolate linearly between the sorted samples; the first is quantile 0, the last quantile 1.
 Statistics statistics_of(std::vector<double> samples);
 
-/// What stages are timed with where a suite says nothing else: transport, lobes and blocking as published, volumes as
-/// planes of floats, and nothing in the way.
+/// Default settings of timed stages: transport, lobes and blocking as published, volumes of layout `soa` in float, no
+/// occlusion.
 RenderOptions timed_options();
 
-/// What is timed of a stage: every choice that shapes it.
+/// Settings of a timed stage.
 struct Variant {
   RenderOptions options = timed_options();
   std::optional<int> cascade;
-  bool filtered = true;  ///< gathering from images: by the device's filter, else from texels
+  bool filtered = true;  ///< gathering from images: true samples by the device's filter, false reads texels
 };
 
-/// How a variant's lobes come about: "exact", "rotate", and "rotate-kernel", at run time in the kernel.
+/// Name of the lobes: "exact", "rotate", or "rotate-kernel" for lobes rotated in the kernel at run time.
 std::string lobes_of(const RenderOptions& options);
 
-/// What the timed work comes to, counted rather than measured.
+/// Operations and bytes of the timed work, counted and not measured.
 struct Cost {
-  double flops = 0;  ///< that the kernels execute; a fused multiply-add is two
-  double bytes = 0;  ///< that must move: each value a launch needs read once, each it makes written once
-  double working_set = 0;     ///< bytes touched in all: tells which level of the memory binds
-  double reads_per_cell = 0;  ///< values (or texels) fetched from volumes, a cell, all channels and all steps
+  double flops = 0;        ///< executed by the kernels; a fused multiply-add counts as 2
+  double bytes = 0;        ///< compulsory traffic: each input of a launch read once, each output written once
+  double working_set = 0;  ///< bytes touched in total; selects the bandwidth ceiling
+  double reads_per_cell = 0;  ///< values (or texels) read from volumes per cell, over all channels and steps
   double writes_per_cell = 0;
-  double triangles = 0, pixels = 0;  ///< of rasterising: those of all views
+  double triangles = 0, pixels = 0;  ///< rasterising: sums over all views
 };
 
 struct Row {
   std::string suite, stage, name;
   int n = 0;                       ///< coefficients of the basis
-  std::optional<Variant> variant;  ///< none: no volumes, as of rasterising and of ceilings
+  std::optional<Variant> variant;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
-  std::string reason;  ///< why unsupported, or where wrong
-  std::string axis;    ///< of suite scaling: what grows ("grid"), and its `value`
+  std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
+  std::string axis;    ///< suite scaling: the varied quantity ("grid"), and its `value`
   double value = 0;
-  std::string preset;  ///< of suite frame
-  std::string anew;  ///< of suite frame: what each repetition makes anew, "light", "everything" or "nothing"
+  std::string preset;     ///< suite frame
+  std::string recompute;  ///< suite frame: results each repetition recomputes: light, everything, nothing
 
   std::vector<double> samples_ms;
   Statistics times;    ///< of samples_ms
@@ -70,21 +70,20 @@ struct Row {
   double wall_ms = 0;  ///< median
   bool from_events = true;
   double first_launch_ms = 0, build_ms = 0;
-  std::size_t device_bytes = 0,
-              host_bytes = 0;  ///< the most so far of the run: buffers, and the process's memory
+  std::size_t device_bytes = 0, host_bytes = 0;  ///< peaks of the run so far: buffers, process memory
   Cost cost;
-  std::string ceiling;  ///< what binds: "fma", "bandwidth" or "launch"; empty where no ceilings were measured
+  std::string ceiling;  ///< binding ceiling: "fma", "bandwidth" or "launch"; empty without measured ceilings
   double ceiling_share = 0;
-  std::optional<double> max_rel_error;  ///< none: nothing to hold against a CPU reference
+  std::optional<double> max_rel_error;  ///< against the CPU reference; empty without one
   double tolerance = 0;
-  std::optional<double> published_ms;  ///< what the paper gives for it
+  std::optional<double> published_ms;  ///< time in the paper's Table 1
 
   double gflops() const;
   double gbps() const;
 };
 
-/// Google Benchmark's keys, then clpv's (docs/benchmarks.md lists them). Both have `iterations`: it is the steps of a
-/// propagation; Google Benchmark's is always 1 here.
+/// JSON with Google Benchmark's keys and clpv's (docs/benchmarks.md lists them). `iterations` is the number of propagation
+/// steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
 
 }  // namespace bench

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Runs the cases of a suite: setup, warm-up, interleaved repetitions, verification.
 #include "bench/runner.hpp"
 
 #include <sys/resource.h>
@@ -21,22 +22,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kKept = "the rows that were done are in the log, if one was asked for";
+constexpr const char* kFinishedRows = "finished rows are in the file of --log, if given";
 
-double since(Clock::time_point start) {
+double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// A case under way.
-struct Running {
+/// A case that is set up, and its measurements so far.
+struct CaseRun {
   Row row;
   Job job;
   std::vector<double> wall_ms;
 };
 
-/// The work once: its time [ms], on the device's clock where that is to be trusted.
-double run_once(Session& session, Running& running) {
-  Job& job = running.job;
+/// Runs the work once and returns its time [ms], by the device's events where they are reliable, else by the host's clock.
+double run_once(Session& session, CaseRun& run) {
+  Job& job = run.job;
   session.timeline().clear();
   if (job.reset) job.reset();
   session.queue().finish();
@@ -49,77 +50,77 @@ double run_once(Session& session, Running& running) {
     job.run();
   }
   session.queue().finish();
-  running.wall_ms.push_back(since(start));
+  run.wall_ms.push_back(ms_since(start));
   const std::vector<StageTime> times = session.timeline().times();
   if (job.after_run) job.after_run(times);
   if (job.own_stages || times.empty() || !times.front().from_events) {
-    running.row.from_events = false;
-    return running.wall_ms.back();
+    run.row.from_events = false;
+    return run.wall_ms.back();
   }
   double ms = 0;
   for (const StageTime& time : times) ms += time.ms;
   return ms;
 }
 
-/// The most memory that the process had so far [bytes].
-std::size_t most_host_bytes() {
+/// Peak memory of the process so far [bytes].
+std::size_t peak_host_bytes() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Sets a case up and warms it up; unsupported where the device lacks something.
-void prepare(Session& session, const Case& described, Running& running) {
-  running.row = described.row;
-  const double built = session.build_ms();
+/// Sets up a case and runs it once. Its row becomes `unsupported` if the device lacks a capability.
+void prepare(Session& session, const Case& source, CaseRun& run) {
+  run.row = source.row;
+  const double build_ms_before = session.build_ms();
   try {
-    running.job = described.make();
+    run.job = source.make();
     const auto start = Clock::now();
-    run_once(session, running);
-    running.row.first_launch_ms = since(start);
+    run_once(session, run);
+    run.row.first_launch_ms = ms_since(start);
   } catch (const Error& error) {
     if (error.code() != ExitCode::device) throw;
-    running.row.status = Status::unsupported;
-    running.row.reason = error.what();
+    run.row.status = Status::unsupported;
+    run.row.reason = error.what();
   }
-  running.row.build_ms = session.build_ms() - built;
-  running.wall_ms.clear();
+  run.row.build_ms = session.build_ms() - build_ms_before;
+  run.wall_ms.clear();
 }
 
-void verify(Running& running) {
-  if (!running.job.verify) return;
-  const Deviation deviation = running.job.verify();
-  running.row.max_rel_error = deviation.worst;
-  running.row.tolerance = deviation.tolerance;
+void verify(CaseRun& run) {
+  if (!run.job.verify) return;
+  const Deviation deviation = run.job.verify();
+  run.row.max_rel_error = deviation.worst;
+  run.row.tolerance = deviation.tolerance;
   if (deviation.passed()) return;
-  running.row.status = Status::wrong;
-  running.row.reason = deviation.place;
+  run.row.status = Status::wrong;
+  run.row.reason = deviation.place;
 }
 
-void conclude(Running& running, const RunnerOptions& options) {
-  Row& row = running.row;
+void complete_row(CaseRun& run, const RunnerOptions& options) {
+  Row& row = run.row;
   row.times = statistics_of(row.samples_ms);
-  row.wall_ms = statistics_of(running.wall_ms).median;
+  row.wall_ms = statistics_of(run.wall_ms).median;
   row.cpu_ms /= static_cast<double>(row.samples_ms.size());
-  row.cost = running.job.cost;
-  row.host_bytes = most_host_bytes();
-  if (options.ceilings != nullptr) bind(*options.ceilings, row);
-  verify(running);
+  row.cost = run.job.cost;
+  row.host_bytes = peak_host_bytes();
+  if (options.ceilings != nullptr) set_ceiling(*options.ceilings, row);
+  verify(run);
 }
 
-/// Every repetition of all that can be run, in an order that is random but always the same.
-void repeat(Session& session, std::vector<Running>& running, const RunnerOptions& options) {
-  std::vector<std::size_t> turns;
-  for (std::size_t i = 0; i < running.size(); ++i) {
-    if (running[i].row.status == Status::ok)
-      turns.insert(turns.end(), static_cast<std::size_t>(options.repetitions), i);
+/// Runs all repetitions of all supported cases, in a random order from a fixed seed.
+void repeat(Session& session, std::vector<CaseRun>& runs, const RunnerOptions& options) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].row.status == Status::ok)
+      order.insert(order.end(), static_cast<std::size_t>(options.repetitions), i);
   }
-  std::shuffle(turns.begin(), turns.end(), std::mt19937(1));
-  for (const std::size_t turn : turns) {
-    stop_if_interrupted(kKept);
-    Row& row = running[turn].row;
-    const std::clock_t before = std::clock();  // of all threads
-    row.samples_ms.push_back(run_once(session, running[turn]));
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  for (const std::size_t i : order) {
+    stop_if_interrupted(kFinishedRows);
+    Row& row = runs[i].row;
+    const std::clock_t before = std::clock();  // processor time of all threads
+    row.samples_ms.push_back(run_once(session, runs[i]));
     row.cpu_ms += 1e3 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
     if (options.progress != nullptr) options.progress->advance();
   }
@@ -142,8 +143,8 @@ void RowLog::check() const {
     throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
 }
 
-void RowLog::begun(const std::string& name) {
-  write(nlohmann::json{{"begun", name}}.dump());
+void RowLog::started(const std::string& name) {
+  write(nlohmann::json{{"started", name}}.dump());
 }
 
 void RowLog::done(const Row& row) {
@@ -152,60 +153,60 @@ void RowLog::done(const Row& row) {
 
 void RowLog::write(const std::string& line) {
   if (!out_.is_open()) return;
-  out_ << line << '\n' << std::flush;  // the system has it, whatever becomes of the process
+  out_ << line << '\n' << std::flush;  // reaches the system before a crash
   check();
 }
 
 std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, const RunnerOptions& options) {
-  std::vector<Running> running(cases.size());
+  std::vector<CaseRun> runs(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     spdlog::debug("{}", cases[i].row.name);
-    stop_if_interrupted(kKept);
-    if (options.log != nullptr) options.log->begun(cases[i].row.name);
-    prepare(session, cases[i], running[i]);
+    stop_if_interrupted(kFinishedRows);
+    if (options.log != nullptr) options.log->started(cases[i].row.name);
+    prepare(session, cases[i], runs[i]);
     if (options.progress != nullptr) options.progress->advance();
   }
-  repeat(session, running, options);
+  repeat(session, runs, options);
   std::vector<Row> rows;
-  const auto keep = [&](const Row& row) {
+  const auto add = [&](const Row& row) {
     rows.push_back(row);
     if (options.log != nullptr) options.log->done(row);
   };
-  for (Running& done : running) {
-    done.row.device_bytes = session.peak_device_bytes();
-    if (done.row.status == Status::ok) conclude(done, options);
-    keep(done.row);
-    if (done.row.status != Status::ok || !done.job.more_rows) continue;
-    for (const Row& row : done.job.more_rows(done.row)) keep(row);
+  for (CaseRun& run : runs) {
+    run.row.device_bytes = session.peak_device_bytes();
+    if (run.row.status == Status::ok) complete_row(run, options);
+    add(run.row);
+    if (run.row.status != Status::ok || !run.job.more_rows) continue;
+    for (const Row& row : run.job.more_rows(run.row)) add(row);
   }
   return rows;
 }
 
 Results run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
-  const std::vector<Group> groups = suite.groups(session, options.suite);  // cases refer to what they keep
-  std::vector<std::vector<Case>> wanted;
+  const std::vector<Group> groups = suite.groups(session, options.suite);  // own what cases refer to
+  std::vector<std::vector<Case>> selected;
   std::size_t count = 0;
   for (const Group& group : groups) {
-    wanted.push_back(filtered(group(), options.filter));
-    count += wanted.back().size();
+    selected.push_back(filtered(group(), options.filter));
+    count += selected.back().size();
   }
-  if (count == 0) throw Error(ExitCode::usage, "filter: no row of suite {} matches", suite.name);
-  const bool ceilings_asked = suite.name == "ceilings";
-  const std::vector<Case> ceilings = ceilings_asked ? std::vector<Case>{} : ceiling_cases(session);
+  if (count == 0) throw Error(ExitCode::usage, "--filter: matches no row of suite {}", suite.name);
+  const bool is_ceilings_suite = suite.name == "ceilings";
+  const std::vector<Case> ceilings = is_ceilings_suite ? std::vector<Case>{} : ceiling_cases(session);
   Progress progress("bench " + suite.name,
                     (count + ceilings.size()) * static_cast<std::size_t>(options.repetitions + 1));
   Results results;
   RowLog log(options.log);
   RunnerOptions runner{options.repetitions, nullptr, &progress, &log};
-  if (!ceilings_asked) {
+  if (!is_ceilings_suite) {
     results.ceilings = ceilings_of(run_cases(session, ceilings, runner));
     runner.ceilings = &results.ceilings;
   }
-  for (std::vector<Case>& cases : wanted) {
+  for (std::vector<Case>& cases : selected) {
     std::ranges::move(run_cases(session, cases, runner), std::back_inserter(results.rows));
     cases.clear();
   }
-  if (ceilings_asked) results.ceilings = ceilings_of(results.rows);
+  if (is_ceilings_suite) results.ceilings = ceilings_of(results.rows);
   return results;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Times cases: repetitions in random order among each other, so that what disturbs the machine for a while disturbs all
-// alike.
+// Times cases. Repetitions of all cases run in random order, so that a disturbance of the machine affects all equally.
 #pragma once
 
 #include <filesystem>
@@ -17,17 +16,17 @@
 
 namespace clpv::bench {
 
-inline constexpr int kMostRepetitions = 10000;
+inline constexpr int kMaxRepetitions = 10000;
 
-/// Rows as they begin and end, a line of JSON each, written as it happens: what a crash, or a kernel that hangs, leaves.
+/// Log with a line of JSON at the start and the end of each row, flushed at once. It survives crashes and hangs.
 class RowLog {
  public:
-  /// Empties the file. Throws Error(run_time) where it cannot be written. No file: nothing is kept.
+  /// Truncates the file; an empty path disables the log. Throws Error(run_time) if the file cannot be written.
   explicit RowLog(const std::filesystem::path& file);
 
-  /// {"begun": NAME}: it is being made ready; the last one without its {"row": ...} is what a crash was in.
-  void begun(const std::string& name);
-  /// {"row": ...}: done, as in the report.
+  /// Writes {"started": NAME}, before the row's setup. After a crash, the last one without a {"row": ...} names the row.
+  void started(const std::string& name);
+  /// Writes {"row": ...}, as in the report.
   void done(const Row& row);
 
  private:
@@ -40,15 +39,14 @@ class RowLog {
 
 struct RunnerOptions {
   int repetitions = 15;
-  const Ceilings* ceilings = nullptr;  ///< rows then tell their share of the one that binds
-  Progress* progress = nullptr;        ///< advanced once a case made ready and once a repetition
-  RowLog* log = nullptr;               ///< told of rows as they begin and end
+  const Ceilings* ceilings = nullptr;  ///< sets the rows' ceiling_share; null: not set
+  Progress* progress = nullptr;        ///< advances once per case set up and once per repetition; may be null
+  RowLog* log = nullptr;               ///< may be null
 };
 
-/// All cases at once: each is set up, run once with the very launches that are then timed (drivers compile at a first
-/// launch), timed, and its output checked. In the order of `cases`.
-/// Where a user interrupts, Interrupted is thrown after the repetition under way.
-/// A wrong output gives Status::wrong, a missing capability Status::unsupported; other errors are thrown.
+/// Sets up every case and runs it once, as drivers compile at the first launch. Then times all cases interleaved and
+/// verifies their outputs. Returns rows in the order of `cases`. A wrong output gives Status::wrong, a missing capability
+/// Status::unsupported. Throws all other errors, and Interrupted after the current repetition if the user interrupts.
 std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, const RunnerOptions& options);
 
 struct Results {
@@ -57,13 +55,13 @@ struct Results {
 };
 
 struct BenchOptions {
-  std::optional<std::regex> filter;  ///< rows whose name it is found in; none: all
+  std::optional<std::regex> filter;  ///< searched in row names; empty: all rows
   int repetitions = 15;
   SuiteOptions suite;
-  std::filesystem::path log;  ///< RowLog's; empty: none
+  std::filesystem::path log;  ///< file of the RowLog; empty: no log
 };
 
-/// Measures the ceilings, then the suite's rows. Throws Error(usage) where the filter leaves no row.
+/// Measures the ceilings, then the suite's rows. Throws Error(usage) if the filter matches no row.
 Results run_suite(Session& session, const Suite& suite, const BenchOptions& options);
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pipeline's stages as jobs: inject, propagate, sweep, gather, each with its cost and its CPU reference.
+// Jobs for the pipeline's stages inject, propagate, sweep, gather and rasterize, each with its cost and its CPU reference.
 #pragma once
 
 #include <functional>
@@ -20,20 +20,20 @@ namespace clpv::bench {
 
 inline constexpr double kChannels = 3;  // red, green, blue
 
-/// What the jobs of a suite share.
+/// Inputs and CPU references shared by the jobs of a suite.
 struct Bench {
   Session& session;
-  std::function<std::shared_ptr<Inputs>()> see;  ///< makes the inputs, at their first use
-  /// CPU references' results by what they depend on: variants that should agree share one. In double, Volume's host order.
+  std::function<std::shared_ptr<Inputs>()> make_inputs;  ///< called at the first use of inputs()
+  /// Results of the CPU reference, by a key over what they depend on. Variants that should agree share one.
   std::map<std::string, std::shared_ptr<const std::vector<double>>> references;
 
   Inputs& inputs() {
-    if (!seen) seen = see();
-    return *seen;
+    if (!made_inputs) made_inputs = make_inputs();
+    return *made_inputs;
   }
-  std::shared_ptr<Inputs> seen;
+  std::shared_ptr<Inputs> made_inputs;
 
-  /// The CPU reference's result under `key`, made by `make` the first time.
+  /// The CPU reference's result for `key`, computed by `make` at the first call; Volume's host order.
   template <typename Make>
   std::shared_ptr<const std::vector<double>> expected(const std::string& key, Make make) {
     auto& entry = references[key];
@@ -42,34 +42,36 @@ struct Bench {
   }
 };
 
-/// A row for `stage` of `variant`: n, and the name STAGE/BASIS/LAYOUT/STORAGE with what else is not the default, then
-/// `more` ("/grid:64").
+/// Makes a row for `stage` of `variant`. Its name is STAGE/BASIS/LAYOUT/STORAGE, then all settings that differ from
+/// timed_options(), then `suffix` ("/grid:64").
 Row make_row(const std::string& suite, std::string_view stage, const Variant& variant,
-             const std::string& more = {});
+             const std::string& suffix = {});
 
-/// RSM -> light volume, and with occlusion RSM and G-buffer -> geometry volume; of variant.cascade (default 0).
+/// RSM -> light volume and, with occlusion, RSM and G-buffer -> geometry volume. Cascade variant.cascade, default 0.
 Job inject_job(Bench& bench, const Variant& variant);
-/// Either volume alone. The geometry volume's wants occlusion.
+/// RSM -> light volume only.
 Job inject_light_job(Bench& bench, const Variant& variant);
+/// RSM and G-buffer -> geometry volume only. Needs occlusion.
 Job inject_geometry_job(Bench& bench, const Variant& variant);
-/// Light volume -> accumulated light volume; with occlusion past the geometry volume.
+/// Light volume -> accumulated light volume; occlusion by the geometry volume.
 Job propagate_job(Bench& bench, const Variant& variant);
-/// Light volume -> light swept through its cascade from a dark border, in nine harmonics; with occlusion past what the scene's
-/// triangles block there, the links' transmittance included. Wants swept().
+/// Light volume -> swept light of one cascade in nine harmonics, with a dark border. Occlusion by the scene's triangles; the
+/// time includes the links' transmittance. Needs a variant of with_sweep().
 Job sweep_job(Bench& bench, const Variant& variant);
-/// The variant as the defaults would have it move light: by the sweep, past areas.
-Variant swept(Variant variant);
-/// Accumulated volumes of all cascades -> irradiance of every pixel. Every kCheckedPixels-th is held against the CPU reference.
+/// The variant with the default transport: the sweep, with blockers as areas.
+Variant with_sweep(Variant variant);
+/// Accumulated volumes of all cascades -> irradiance of every pixel. Verifies every kCheckedPixels-th pixel.
 Job gather_job(Bench& bench, const Variant& variant);
-inline constexpr std::size_t kCheckedPixels = 61;  // a prime, so that every row and column takes its turn
+inline constexpr std::size_t kCheckedPixels =
+    61;  // a prime, so that checked pixels lie in all rows and columns
 
-/// A stage that works on volumes, or a part of it, and its job.
+/// A stage that works on volumes, or one pass of it, and its job.
 struct StageJob {
   Stage stage;
   Job (*make)(Bench& bench, const Variant& variant);
-  Pass part = Pass::whole;
+  Pass pass = Pass::whole;
 
-  std::string_view name() const { return part == Pass::whole ? name_of(stage) : name_of(part); }
+  std::string_view name() const { return pass == Pass::whole ? name_of(stage) : name_of(pass); }
 };
 inline constexpr StageJob kInject{Stage::inject, inject_job},
     kInjectLight{Stage::inject, inject_light_job, Pass::inject_light},
@@ -78,21 +80,20 @@ inline constexpr StageJob kInject{Stage::inject, inject_job},
     kGather{Stage::gather, gather_job, Pass::gather};
 inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 
-/// A part of rasterising a scene as `camera` sees it (empty: its first), lit by the first light that shines there: rasterize_camera, the
-/// camera's G-buffer; rasterize_shadow, that light's shadow maps; rasterize_rsm, its RSMs of all cascades. In
-/// bench/rasterize_job.cpp, as the peer.
+/// Rasterises a scene for `camera` (empty: its first) and the first light that applies there. `pass` is rasterize_camera (the
+/// camera's G-buffer), rasterize_shadow (shadow maps) or rasterize_rsm (RSMs of all cascades). Throws Error(bad_input) if
+/// a pass needs a light and none applies.
 Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
                   const RenderOptions& options);
-/// The same by OpenGL (bench/baseline/rasterize_gl.hpp).
+/// The same work by OpenGL (bench/baseline/rasterize_gl.hpp).
 Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
                      Pass pass, const RenderOptions& options);
 
-/// Light volumes of n^3 cells in Volume's host order: the largest difference, over the CPU reference's largest value.
+/// Compares light volumes of n^3 cells in Volume's host order: the largest difference over the largest expected value.
 Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& expected, int n,
                           double tolerance);
 
-/// Of the variant; of a sweep, of swept(variant).
-Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant,
-                const std::string& more = {});
+/// A case of `job` with `variant`, or with with_sweep(variant) for the sweep.
+Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant);
 
 }  // namespace clpv::bench

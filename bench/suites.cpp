@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The list of suites, and helpers that they share.
 #include "bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ const std::vector<Suite>& suites() {
   return all;
 }
 
-Variant plain_variant(const SuiteOptions& options, const std::string& basis) {
+Variant basis_variant(const SuiteOptions& options, const std::string& basis) {
   Variant variant;
   variant.options = options.settings;
   variant.options.basis = basis;
@@ -35,8 +36,8 @@ RenderOptions published_options(const RenderOptions& sizes, const std::string& b
   return options;
 }
 
-std::vector<Group> group_a_basis(const std::vector<std::string>& bases,
-                                 const std::function<std::vector<Case>(const std::string& basis)>& cases) {
+std::vector<Group> groups_by_basis(const std::vector<std::string>& bases,
+                                   const std::function<std::vector<Case>(const std::string& basis)>& cases) {
   std::vector<Group> groups;
   for (const std::string& basis : bases) groups.push_back({[cases, basis] { return cases(basis); }});
   return groups;
@@ -67,11 +68,11 @@ std::shared_ptr<const Scene> scene_of(const SuiteOptions& options) {
 
 std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
                                   const RenderOptions& settings) {
-  const auto see = [&session, options, settings] {
+  const auto make_inputs = [&session, options, settings] {
     const auto scene = scene_of(options);
     return std::make_shared<Inputs>(session, *scene, scene->camera(options.camera), settings);
   };
-  return std::make_shared<Bench>(Bench{session, see, {}, {}});
+  return std::make_shared<Bench>(Bench{session, make_inputs, {}, {}});
 }
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The suites of `clpv bench`: which rows each has, and what its table looks like.
+// The suites of `clpv bench`: the cases and the table of each.
 #pragma once
 
 #include <functional>
@@ -13,29 +13,29 @@
 
 namespace clpv::bench {
 
-/// What a suite is asked to do.
+/// Scene, camera, bases and settings for a suite.
 struct SuiteOptions {
-  std::shared_ptr<const Scene> scene;  ///< none: the hall of hall.hpp
-  std::string camera;
-  std::vector<std::string> bases;            ///< named by the user; empty: the suite's own
-  RenderOptions settings = timed_options();  ///< of every row, but for what the suite varies
+  std::shared_ptr<const Scene> scene;        ///< null: the hall of hall.hpp
+  std::string camera;                        ///< by name; empty: the scene's first
+  std::vector<std::string> bases;            ///< empty: the suite's default bases
+  RenderOptions settings = timed_options();  ///< settings of all rows, apart from those that the suite varies
 };
 
-/// Cases that are timed interleaved with each other. Groups follow one another, each releasing its memory first.
+/// Cases that are timed interleaved with each other. Groups run one after another, and each releases its memory.
 using Group = std::function<std::vector<Case>()>;
 
 struct Suite {
   std::string name, help;
   std::function<std::vector<Group>(Session&, const SuiteOptions&)> groups;
-  /// The rows as text; the plain table (report.hpp) where there is none.
+  /// Formats the rows as a table; null: report_table().
   std::function<std::string(const std::vector<Row>&)> table;
-  /// Scene file, from the project's folder, that it works on where none is given; empty: the hall.
-  std::string usual_scene = {};
+  /// Default scene file, relative to the project's folder; empty: the hall.
+  std::string default_scene = {};
 };
 
 const std::vector<Suite>& suites();
 
-// Each in suites/NAME.cpp, that of the ceilings in ceilings.cpp.
+// Defined in suites/NAME.cpp, and in ceilings.cpp.
 Suite table1_suite();
 Suite layouts_suite();
 Suite bases_suite();
@@ -46,24 +46,25 @@ Suite baseline_suite();
 Suite rasterize_suite();
 Suite regression_suite();
 
-/// A basis with all else as the options say or by default.
-Variant plain_variant(const SuiteOptions& options, const std::string& basis);
+/// The suite's settings with `basis`.
+Variant basis_variant(const SuiteOptions& options, const std::string& basis);
 
-/// The paper's settings and way (`--preset paper`) for a basis, of the sizes and cascades of `sizes`.
+/// The paper's settings (`--preset paper`) with `basis`, and sizes and cascades from `sizes`.
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis);
 
-/// A group a basis, by `cases`: all of them at once would hold gigabytes.
-std::vector<Group> group_a_basis(const std::vector<std::string>& bases,
-                                 const std::function<std::vector<Case>(const std::string& basis)>& cases);
+/// One group per basis, with the cases that `cases` returns: all bases at once would need gigabytes.
+std::vector<Group> groups_by_basis(const std::vector<std::string>& bases,
+                                   const std::function<std::vector<Case>(const std::string& basis)>& cases);
 
-/// The length of the longest name.
+/// Length of the longest row name, at least 4.
 std::size_t name_width(const std::vector<Row>& rows);
-/// A line a row, names `width` wide: `columns` of one that was timed, and whether it is wrong; else why it was not.
+/// Text with one line per row: the name padded to `width`, then `columns` of a timed row, or status and reason.
 std::string row_lines(const std::vector<Row>& rows, std::size_t width,
                       const std::function<std::string(const Row&)>& columns);
 
-/// The scene a suite works on: the one given, else the hall.
+/// The scene of the options, else the hall.
 std::shared_ptr<const Scene> scene_of(const SuiteOptions& options);
+/// A Bench whose inputs are rasterised from scene_of(options) with `settings`.
 std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
                                   const RenderOptions& settings);
 

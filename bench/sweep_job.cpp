@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `sweep` as a job: one cascade, from a dark border.
+// Job of stage `sweep`: one cascade with a dark border.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,18 +17,19 @@
 namespace clpv::bench {
 namespace {
 
-struct Sweeping {
+/// Volumes and kernels of the sweep of one cascade.
+struct CascadeSweep {
   Variant variant;
   std::size_t cascade;
   std::unique_ptr<Basis> basis;
   Transport transport;
   SweepOptions options;
-  std::vector<ClpvGrid> grids;  ///< one: its own
+  std::vector<ClpvGrid> grids;  ///< the cascade's grid only
   Volume injected, accumulated;
   std::unique_ptr<Volume> geometry;
   Sweeper sweeper;
 
-  Sweeping(Session& session, Inputs& inputs, const Variant& v)
+  CascadeSweep(Session& session, Inputs& inputs, const Variant& v)
       : variant(v),
         cascade(static_cast<std::size_t>(v.cascade.value_or(0))),
         basis(make_basis(v.options)),
@@ -44,44 +45,44 @@ struct Sweeping {
     geometry->write(session, inputs.areas(v.cascade.value_or(0)));
   }
 
-  /// A frame's, of one of its cascades.
+  /// A frame's options, for one of its cascades.
   static SweepOptions options_of(const RenderOptions& options, std::size_t cascade) {
-    SweepOptions of_cascade = sweep_options(options);
-    of_cascade.parts = {of_cascade.parts.at(cascade)};
-    return of_cascade;
+    SweepOptions cascade_options = sweep_options(options);
+    cascade_options.parts = {cascade_options.parts.at(cascade)};
+    return cascade_options;
   }
   VolumeShape corners() const { return {options.grid + 1, blocking_size(transport.blocking, *basis), 1}; }
   double directions() const { return kSweepBins * std::pow(options.parts.front(), 2); }
 
   void run() {
-    if (geometry) sweeper.block(0, *geometry);
+    if (geometry) sweeper.set_blockers(0, *geometry);
     sweeper.sweep(0, grids, injected, accumulated);
   }
 };
 
-/// Bins' means, light on its way and the sums are moved as the sweep keeps them, whatever the layout of what it is given; means that
-/// are read where they were injected, those across z, are not copied.
-Cost cost_of(const Sweeping& p) {
+/// Cost of the kernels in use. Bin means, plane buffers and sums have the sweep's layout, not that of the volumes. Means of
+/// bins along z are read in place and not copied.
+Cost cost_of(const CascadeSweep& p) {
   const VolumeFormat& format = p.options.format;
   const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
-  const int coefficients = p.basis->size(), kept = swept_basis()->size();
+  const int coefficients = p.basis->size(), harmonics = swept_basis()->size();
   const double bins = kChannels * kSweepBins, links = p.geometry ? link_volumes().count() : 0;
   const double swept = kChannels * p.directions(), sides = 2 * swept * n * n;
   const auto number = static_cast<double>(number_bytes(format.storage));
-  const double light =
-      kChannels * static_cast<double>(bytes_per_cell(format, coefficients) + bytes_per_cell(format, kept));
-  const double copied = p.sweeper.in_place() ? 2.0 / 3 : 1;  // written, and read
-  // Where a launch is a plane, each reads a plane of each direction and writes the next, and what comes in: nothing.
+  const double light = kChannels * static_cast<double>(bytes_per_cell(format, coefficients) +
+                                                       bytes_per_cell(format, harmonics));
+  const double copied = p.sweeper.in_place() ? 2.0 / 3 : 1;  // share of bins that are written and read
+  // With a launch per plane, each launch reads one plane of every direction and writes the next; the dark border is read.
   const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
   Cost cost;
   cost.bytes = cells * (light + ((2 + 2 * copied) * bins + links) * number) + dark * number +
                swept * n * n * sizeof(float) * planes;
-  const double a_direction = kChannels * (4 + 1) * 2 + (p.geometry ? 4 : 0);
+  const double flops_per_direction = kChannels * (4 + 1) * 2 + (p.geometry ? 4 : 0);
   cost.flops = cells * (kChannels * (sweep_source_text(*p.basis).operations.flops() +
                                      sweep_collect_text().operations.flops()) +
-                        p.directions() * a_direction);
+                        p.directions() * flops_per_direction);
   cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + (1 + copied) * bins;
-  cost.writes_per_cell = kChannels * accesses_per_cell(format, kept) + (1 + copied) * bins;
+  cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + (1 + copied) * bins;
   cost.working_set =
       cells * (light + (bins + links) * number) + dark * number / 2 + swept * n * n * sizeof(float);
   if (!p.geometry) return cost;
@@ -99,7 +100,8 @@ std::string sweep_reference_key(const Variant& v) {
                      o.occlusion, o.grid, v.cascade.value_or(0));
 }
 
-std::vector<double> swept_reference(Inputs& inputs, const Variant& variant) {
+/// Expected accumulated light, in Volume's host order.
+std::vector<double> expected_light(Inputs& inputs, const Variant& variant) {
   const RenderOptions& o = variant.options;
   const int cascade = variant.cascade.value_or(0);
   const auto basis = make_basis(o);
@@ -112,21 +114,21 @@ std::vector<double> swept_reference(Inputs& inputs, const Variant& variant) {
     areas = to_reference(inputs.areas(cascade), o.grid + 1, blocking_size(o.blocking, *basis), 1);
     swept.geometry = &areas;
   }
-  return reference::kept_of(reference::sweep(*basis, transport, {swept}).front()).values;
+  return reference::project_bins(reference::sweep(*basis, transport, {swept}).front()).values;
 }
 
 }  // namespace
 
 Job sweep_job(Bench& bench, const Variant& variant) {
   Session& session = bench.session;
-  const auto p = std::make_shared<Sweeping>(session, bench.inputs(), variant);
+  const auto p = std::make_shared<CascadeSweep>(session, bench.inputs(), variant);
   Job job;
   job.cost = cost_of(*p);
   job.reset = [p, &session] { p->accumulated.clear(session); };
   job.run = [p] { p->run(); };
   job.verify = [p, &bench] {
     const auto expected = bench.expected(sweep_reference_key(p->variant),
-                                         [&] { return swept_reference(bench.inputs(), p->variant); });
+                                         [&] { return expected_light(bench.inputs(), p->variant); });
     return compare_volumes(p->accumulated.read(bench.session), *expected, p->options.grid,
                            reference::tolerance("sweep", p->options.format.storage));
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Injection, last step: how the sum of a cell's texels gets into the volume.
+// Adds the sum of a cell's texels to a volume: the last step of injection (inject.cl).
 //
-//   void deliver(volume, key, sums)   adds (light) or merges (geometry)
+//   deliver(volume, key, sums)   adds (1 / pi) A^-1 sums to a light volume, or merges A^-1 sums into a geometry volume
 #ifndef CLPV_ADD_TO_VOLUME_H
 #define CLPV_ADD_TO_VOLUME_H
 
@@ -17,7 +17,7 @@
 #define CLPV_CHANNELS 3
 #endif
 
-// What the texels of a cell add up to: weighted integrals alpha, a channel each.
+// Sums of weighted integrals alpha over the texels of a cell, for each channel.
 typedef struct {
 #define CLPV_DO(channel) Coefficients k##channel;
   CLPV_EACH_CHANNEL(CLPV_DO)

@@ -1,62 +1,70 @@
 // SPDX-License-Identifier: MIT
-// What a sweep leaves falls on the surfaces of its cells, and they send it back (docs/method.md, 'More bounces').
+// Reflects swept light off the surfaces in a cascade's cells: one more bounce, or all bounces as a truncated Neumann
+// series.
 //
-//   bounce         light to sweep += what is sent back of what was swept
-//   bounce_send    light to sweep += what is sent back of 1 W on each face
-//   bounce_meet    from that, swept: what surfaces send back, and all that is sent back of it further on
-//   bounce_on      light to sweep += what is sent back of what was swept first, and in all bounces of what was swept second
-//   bounce_finer   light to sweep += what a cascade sends back of `arriving`, what falls on faces in the next coarser one
+//   I += R D                   inject_reflected       one bounce
+//   I += R D_1 + S D_2         inject_series          all bounces in the coarsest cascade; D_2: incident flux of R D_1
+//   S  = R (1 + E)             extend_series          E: flux that other surfaces return of 1 W leaving a face
+//   I += R D_coarser / 4       inject_interpolated    all bounces in a finer cascade
+//   I += R or S                inject_unit            faces emit what they reflect of 1 W
 //
-// In: `swept` (sweep.cl), as radiance times s^2; `reflectors`, six numbers a cell and channel (reflectors.cl), or those that
-// bounce_meet makes of them; `arriving` (sweep_collect.cl). In and out: `light`, a volume for each channel and bin (sweep.h).
+// docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance of a face per
+// channel, I the sources of a sweep. By reciprocity E is the incident flux while every face emits what it reflects of 1
+// W: inject_unit, a sweep along 24 directions and extend_series add one term of the series. E depends on geometry
+// alone.
 //
-// Of 1 W that leaves a side, others send back E, what falls on that side where each of them sends back what it does of 1 W on its
-// face: light goes both ways alike. Where they send back what they do in all their bounces, so is E.
+// Flux and intensity of bins b (w_b, Omega_b) and faces a:
+//   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2,   I_b = sum_a Phi_a max(0, w_b.a) / sum_b' Omega_b' max(0, w_b'.a)
 //
-// The host writes (host/codegen/sweep_source.cpp) Coefficients, of six sides; Swept, of 24 bins; CLPV_EACH_X_BIN and the
-// like (sweep_source.cl); and
-//   Coefficients clpv_arriving(Swept)    flux on each whole face [W]
-//   Swept clpv_leaving(Coefficients)     light of flux that leaves each side [W/sr]
-// A work-item is a tile of CLPV_LANES x CLPV_LANES cells of a slice of one channel. Tiles without a surface are left alone.
+// In:      swept             L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
+//          reflectors, series  R, S: light volumes of six numbers per cell and channel, faces as in shared/reflectors.h
+//          incident          D [W] of the next coarser cascade: a bordered volume for each channel and face
+//                            (sweep_collect.cl)
+// In, out: sources           I [W/sr] of 3 channels and 24 bins (sweep_layout.h)
+// From the host (host/codegen/sweep_source.cpp): Coefficients, of six faces; struct Bins; CLPV_EACH_X_BIN, _Y_, _Z_
+// (sweep_source.cl); Coefficients clpv_incident_flux(Bins) [W]; Bins clpv_reflected_intensity(Coefficients) [W/sr].
+// A work-item computes a tile of CLPV_LANES x CLPV_LANES cells of a slice and channel; tiles without surfaces are
+// skipped.
 #include "coefficients.h"
 #include "coarse_to_fine.h"
 #include "shared/sweep.h"
-#include "sweep.h"
+#include "sweep_tiles.h"
 #include "volume/light.h"
 
-CLPV_INLINE Swept clpv_none(void) {
-  Swept s;
-#define CLPV_DO(b) s.c##b = 0.0f;
-  CLPV_EACH_SWEPT(CLPV_DO)
+CLPV_INLINE Bins clpv_zero_bins(void) {
+  Bins bins;
+#define CLPV_DO(b) bins.c##b = 0.0f;
+  CLPV_EACH_BIN(CLPV_DO)
 #undef CLPV_DO
-  return s;
+  return bins;
 }
 
-// Flux that leaves each side of a cell: what arrives times what it reflects.
-CLPV_INLINE Coefficients clpv_sent_back(const Coefficients arriving, const Coefficients reflector) {
-  Coefficients sent;
-#define CLPV_DO(i) sent.c##i = arriving.c##i * reflector.c##i;
+// Flux [W] that leaves each face of a cell: incident flux times reflectance.
+CLPV_INLINE Coefficients clpv_reflected_flux(const Coefficients incident, const Coefficients reflectance) {
+  Coefficients flux;
+#define CLPV_DO(i) flux.c##i = incident.c##i * reflectance.c##i;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
-  return sent;
+  return flux;
 }
 
-// What a side reflects, times 1 + what is sent back to it.
-CLPV_INLINE Coefficients clpv_in_all(const Coefficients arriving, const Coefficients reflector) {
-  Coefficients sent;
-#define CLPV_DO(i) sent.c##i = reflector.c##i * (1.0f + arriving.c##i);
+// R (1 + E)
+CLPV_INLINE Coefficients clpv_series(const Coefficients returned, const Coefficients reflectance) {
+  Coefficients series;
+#define CLPV_DO(i) series.c##i = reflectance.c##i * (1.0f + returned.c##i);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
-  return sent;
+  return series;
 }
 
-// Whether any side of a tile's cells reflects.
-CLPV_INLINE int clpv_tile_reflects(CLPV_VOLUME_IN reflectors, const int channel, const int x, const int y, const int z) {
+// Returns nonzero if any face of a tile's cells reflects.
+CLPV_INLINE int clpv_tile_reflects(CLPV_VOLUME_IN reflectors, const int channel, const int x, const int y,
+                                   const int z) {
   CLPV_REAL all = 0.0f;
   for (int r = 0; r < CLPV_LANES; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const Coefficients reflector = light_load(reflectors, channel, x, y + r, z);
-#define CLPV_DO(i) all += reflector.c##i;
+    const Coefficients reflectance = light_load(reflectors, channel, x, y + r, z);
+#define CLPV_DO(i) all += reflectance.c##i;
     CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
   }
@@ -68,11 +76,11 @@ CLPV_INLINE int clpv_tile_reflects(CLPV_VOLUME_IN reflectors, const int channel,
 #endif
 }
 
-// Adds what cells send back: row by row, and to turned rows when all of a tile is known.
-CLPV_INLINE void clpv_add_row(const Swept s, CLPV_BUFFER_OUT light, const int x, const int y, const int z) {
-#define CLPV_ADD(b, at)                               \
-  CLPV_SWEEP_STORE(light + b * CLPV_SWEEP_VOLUME, at, \
-                   CLPV_WITHIN(x, CLPV_SWEEP_LOAD(light + b * CLPV_SWEEP_VOLUME, at) + s.c##b));
+// Adds a row of cells to the bins across y and z.
+CLPV_INLINE void clpv_add_row(const Bins bins, CLPV_BUFFER_OUT sources, const int x, const int y, const int z) {
+#define CLPV_ADD(b, at)                                 \
+  CLPV_SWEEP_STORE(sources + b * CLPV_SWEEP_VOLUME, at, \
+                   CLPV_WITHIN(x, CLPV_SWEEP_LOAD(sources + b * CLPV_SWEEP_VOLUME, at) + bins.c##b));
 #define CLPV_DO(b) CLPV_ADD(b, clpv_sweep_at(z, y, x))
   CLPV_EACH_Z_BIN(CLPV_DO)
 #undef CLPV_DO
@@ -81,130 +89,120 @@ CLPV_INLINE void clpv_add_row(const Swept s, CLPV_BUFFER_OUT light, const int x,
 #undef CLPV_DO
 }
 
-CLPV_INLINE void clpv_add_turned(const Tile* tile, CLPV_BUFFER_OUT light, const int x, const int y, const int z) {
+// Adds a tile to the bins across x, transposed.
+CLPV_INLINE void clpv_add_x_bins(const SweepTile* tiles, CLPV_BUFFER_OUT sources, const int x, const int y,
+                                 const int z) {
   for (int b = 0; b < CLPV_X_BINS; ++b) {
-    const Tile turned = clpv_turn(tile[b]);
+    const SweepTile columns = clpv_transpose(tiles[b]);
     for (int r = 0; r < CLPV_LANES; ++r) {
       if (x + r >= CLPV_GRID) break;
       const int at = b * CLPV_SWEEP_VOLUME + clpv_sweep_at(x + r, z, y);
-      CLPV_SWEEP_STORE(light, at, CLPV_SWEEP_LOAD(light, at) + turned.row[r]);
+      CLPV_SWEEP_STORE(sources, at, CLPV_SWEEP_LOAD(sources, at) + columns.row[r]);
     }
   }
 }
 
-// What arrives at row r of a tile, y along the grid.
-CLPV_INLINE Coefficients clpv_arriving_at(const Tile* tile, const int r, CLPV_BUFFER_IN swept, const int x, const int y,
-                                          const int z) {
-  const int across_z = clpv_sweep_at(z, y, x), across_y = clpv_sweep_at(y, z, x);
-  Swept m;
-#define CLPV_DO(b) m.c##b = tile[b].row[r];
+CLPV_INLINE void clpv_set_tile_row(const Bins bins, const int r, SweepTile* tiles) {
+#define CLPV_DO(b) tiles[b].row[r] = bins.c##b;
   CLPV_EACH_X_BIN(CLPV_DO)
 #undef CLPV_DO
-#define CLPV_DO(b) m.c##b = CLPV_SWEEP_LOAD(swept + b * CLPV_SWEEP_VOLUME, across_y);
-  CLPV_EACH_Y_BIN(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(b) m.c##b = CLPV_SWEEP_LOAD(swept + b * CLPV_SWEEP_VOLUME, across_z);
-  CLPV_EACH_Z_BIN(CLPV_DO)
-#undef CLPV_DO
-  return clpv_arriving(m);
 }
 
-// A tile's least cell, and where its channel's volumes begin.
-#define CLPV_TILE                                                                               \
+// Declares the tile's first cell (x, y, z), its channel, and the index `first` of the channel's volumes.
+#define CLPV_THIS_TILE                                                                          \
   const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);     \
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID; \
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;                                                 \
   const int first = channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
 
-// Adds what a tile's cells send back: flux `sent` in row r.
-CLPV_INLINE void clpv_put_row(const Swept s, const int r, Tile* tile) {
-#define CLPV_DO(b) tile[b].row[r] = s.c##b;
-  CLPV_EACH_X_BIN(CLPV_DO)
-#undef CLPV_DO
-}
-#define CLPV_SEND_BACK(sent)                       \
-  for (int r = 0; r < CLPV_LANES; ++r) {           \
-    Swept s = clpv_none();                         \
-    if (y + r < CLPV_GRID) {                       \
-      s = clpv_leaving(sent);                      \
-      clpv_add_row(s, light + first, x, y + r, z); \
-    }                                              \
-    clpv_put_row(s, r, tile);                      \
-  }                                                \
-  clpv_add_turned(tile, light + first, x, y, z);
+// Adds to `sources` the light of `flux`, an expression for the flux that leaves the cells in row r. Overwrites `tiles`.
+#define CLPV_INJECT(flux)                                \
+  for (int r = 0; r < CLPV_LANES; ++r) {                 \
+    Bins bins = clpv_zero_bins();                        \
+    if (y + r < CLPV_GRID) {                             \
+      bins = clpv_reflected_intensity(flux);                  \
+      clpv_add_row(bins, sources + first, x, y + r, z);  \
+    }                                                    \
+    clpv_set_tile_row(bins, r, tiles);                   \
+  }                                                      \
+  clpv_add_x_bins(tiles, sources + first, x, y, z);
 
-__kernel void bounce(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT light) {
-  CLPV_TILE
+// Incident flux on the cells in row r of tiles of `volumes`.
+#define CLPV_INCIDENT_FLUX(volumes, tiles) clpv_incident_flux(clpv_load_bins(volumes, tiles, r, x, y + r, z))
+
+__kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT sources) {
+  CLPV_THIS_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
-  Tile tile[CLPV_X_BINS];
-  clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
-  CLPV_SEND_BACK(clpv_sent_back(clpv_arriving_at(tile, r, swept + first, x, y + r, z),
-                                light_load(reflectors, channel, x, y + r, z)))
+  SweepTile tiles[CLPV_X_BINS];
+  clpv_load_x_bins(swept + first, x, y, z, tiles);
+  CLPV_INJECT(clpv_reflected_flux(CLPV_INCIDENT_FLUX(swept + first, tiles),
+                                  light_load(reflectors, channel, x, y + r, z)))
 }
 
-__kernel void bounce_on(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_swept, CLPV_VOLUME_IN reflectors,
-                        CLPV_VOLUME_IN in_all, CLPV_BUFFER_OUT light) {
-  CLPV_TILE
+__kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_swept, CLPV_VOLUME_IN reflectors,
+                            CLPV_VOLUME_IN series, CLPV_BUFFER_OUT sources) {
+  CLPV_THIS_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
-  Tile tile[CLPV_X_BINS], second[CLPV_X_BINS];
-  clpv_load_tiles(first_swept + first, CLPV_X_BINS, x, y, z, tile);
-  clpv_load_tiles(second_swept + first, CLPV_X_BINS, x, y, z, second);
-  CLPV_SEND_BACK(clpv_add(clpv_sent_back(clpv_arriving_at(tile, r, first_swept + first, x, y + r, z),
-                                         light_load(reflectors, channel, x, y + r, z)),
-                          clpv_sent_back(clpv_arriving_at(second, r, second_swept + first, x, y + r, z),
-                                         light_load(in_all, channel, x, y + r, z))))
+  SweepTile tiles[CLPV_X_BINS], second[CLPV_X_BINS];
+  clpv_load_x_bins(first_swept + first, x, y, z, tiles);
+  clpv_load_x_bins(second_swept + first, x, y, z, second);
+  CLPV_INJECT(clpv_add(clpv_reflected_flux(CLPV_INCIDENT_FLUX(first_swept + first, tiles),
+                                           light_load(reflectors, channel, x, y + r, z)),
+                       clpv_reflected_flux(CLPV_INCIDENT_FLUX(second_swept + first, second),
+                                           light_load(series, channel, x, y + r, z))))
 }
 
-__kernel void bounce_send(CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT light) {
-  CLPV_TILE
-  if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
-  Tile tile[CLPV_X_BINS];
-  CLPV_SEND_BACK(light_load(reflectors, channel, x, y + r, z))
+__kernel void inject_unit(CLPV_VOLUME_IN series, CLPV_BUFFER_OUT sources) {
+  CLPV_THIS_TILE
+  if (!clpv_tile_reflects(series, channel, x, y, z)) return;
+  SweepTile tiles[CLPV_X_BINS];
+  CLPV_INJECT(light_load(series, channel, x, y + r, z))
 }
 
-__kernel void bounce_meet(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_OUT in_all) {
-  CLPV_TILE
-  Tile tile[CLPV_X_BINS];
-  clpv_load_tiles(swept + first, CLPV_X_BINS, x, y, z, tile);
+__kernel void extend_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_OUT series) {
+  CLPV_THIS_TILE
+  SweepTile tiles[CLPV_X_BINS];
+  clpv_load_x_bins(swept + first, x, y, z, tiles);
   for (int r = 0; r < CLPV_LANES; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const Coefficients arriving = clpv_arriving_at(tile, r, swept + first, x, y + r, z);
-    light_store(in_all, channel, x, y + r, z, clpv_in_all(arriving, light_load(reflectors, channel, x, y + r, z)));
+    const Coefficients returned = CLPV_INCIDENT_FLUX(swept + first, tiles);
+    light_store(series, channel, x, y + r, z, clpv_series(returned, light_load(reflectors, channel, x, y + r, z)));
   }
 }
 
-// What falls on a side of finer cells, a row of them from (x, y, z) on: of a coarser face, they have a quarter of the area.
-CLPV_INLINE CLPV_REAL clpv_from_coarser(CLPV_BUFFER_IN arriving, const int x, const int y, const int z) {
-  CLPV_BUFFER_IN from = arriving + clpv_bordered_at(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
+// Incident flux on one face of a row of finer cells from (x, y, z) on, from the coarser cells' faces: trilinear, and a
+// quarter, since a finer face has a quarter of the area.
+CLPV_INLINE CLPV_REAL clpv_interpolate(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
+  CLPV_BUFFER_IN from = incident + clpv_bordered_at(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
   const float tz = CLPV_UPPER_WEIGHT(z), ty = CLPV_UPPER_WEIGHT(y);
-#define CLPV_ACROSS(at)                                                                              \
+#define CLPV_BILINEAR(at)                                                                                          \
   ((1.0f - tz) * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, at) + ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PITCH)) + \
-   tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_LIVE) +                               \
-         ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_LIVE + CLPV_SWEEP_PITCH)))
-  const CLPV_REAL v = CLPV_ACROSS(0);
+   tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_BORDERED_PLANE) +                                         \
+         ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_BORDERED_PLANE + CLPV_SWEEP_PITCH)))
+  const CLPV_REAL v = CLPV_BILINEAR(0);
 #if CLPV_LANES == 8
   return 0.25f * (x & 1 ? CLPV_ODD(v) : CLPV_EVEN(v));
 #else
   const float tx = CLPV_UPPER_WEIGHT(x);
-  return 0.25f * ((1.0f - tx) * v + tx * CLPV_ACROSS(1));
+  return 0.25f * ((1.0f - tx) * v + tx * CLPV_BILINEAR(1));
 #endif
 }
 
-CLPV_INLINE Coefficients clpv_all_from_coarser(CLPV_BUFFER_IN arriving, const int x, const int y, const int z) {
-  Coefficients all;
-#define CLPV_DO(i) all.c##i = clpv_from_coarser(arriving + i * CLPV_BORDERED_VOLUME, x, y, z);
+CLPV_INLINE Coefficients clpv_interpolate_faces(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
+  Coefficients flux;
+#define CLPV_DO(i) flux.c##i = clpv_interpolate(incident + i * CLPV_BORDERED_VOLUME, x, y, z);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
-  return all;
+  return flux;
 }
 
-// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells (coarse_to_fine.h).
-__kernel void bounce_finer(CLPV_BUFFER_IN arriving, const int dx, const int dy, const int dz, CLPV_VOLUME_IN reflectors,
-                           CLPV_BUFFER_OUT light) {
-  CLPV_TILE
+// dx, dy, dz: offset of the grid's origin from the coarser one's, in finer cells (coarse_to_fine.h).
+__kernel void inject_interpolated(CLPV_BUFFER_IN incident, const int dx, const int dy, const int dz,
+                                  CLPV_VOLUME_IN reflectors, CLPV_BUFFER_OUT sources) {
+  CLPV_THIS_TILE
   if (!clpv_tile_reflects(reflectors, channel, x, y, z)) return;
-  CLPV_BUFFER_IN in = arriving + channel * CLPV_N * CLPV_BORDERED_VOLUME;
-  Tile tile[CLPV_X_BINS];
-  CLPV_SEND_BACK(clpv_sent_back(clpv_all_from_coarser(in, x + dx, y + r + dy, z + dz),
-                                light_load(reflectors, channel, x, y + r, z)))
+  CLPV_BUFFER_IN faces = incident + channel * CLPV_N * CLPV_BORDERED_VOLUME;
+  SweepTile tiles[CLPV_X_BINS];
+  CLPV_INJECT(clpv_reflected_flux(clpv_interpolate_faces(faces, x + dx, y + r + dy, z + dz),
+                                  light_load(reflectors, channel, x, y + r, z)))
 }

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Zeroes, or copies into, a part of a buffer: where the device's own commands will not do (Session::fill_by_kernel says where).
+// Zeroes and copies ranges of uint32 words in buffers, on devices whose fill and copy commands fail
+// (Session::fill_by_kernel).
+//
+//   zero   words[first .. first + count) = 0
+//   copy   to[first .. first + count) = from[0 .. count)
+//
+// A work-item processes a word.
 __kernel void zero(__global uint* words, const uint first, const uint count) {
   const uint i = get_global_id(0);
   if (i < count) words[first + i] = 0;

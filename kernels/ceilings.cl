@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What a device can do at most, to hold the other kernels against: fused multiply-adds, bytes moved, launches.
+// Measures the limits of a device, for the roofline of `clpv bench`: fused multiply-adds, memory bandwidth, launches.
 //
-// CLPV_WIDTH  floats of a vector
-// CLPV_BLOCK  vectors that a work-item moves one after another, before it skips those of the other work-items: all of
-//             them on a CPU, whose cores each stream through a part of memory; 1 where neighbouring work-items should
-//             touch neighbouring memory
+//   fma_peak   a = a / 2 + 1, 48 vector FMAs per pass and work-item; out: one float per work-item
+//   stream     c = a + pass b, three vectors moved per element (McCalpin's STREAM triad)
+//   nothing    an empty kernel
+//
+// From the host: CLPV_WIDTH, floats of a vector; CLPV_BLOCK, consecutive vectors of a work-item: all of its vectors on
+// a CPU, whose cores stream through a part of memory each, or 1 where neighbouring work-items should access
+// neighbouring memory.
 #ifndef CLPV_WIDTH
 #define CLPV_WIDTH 8
 #endif
@@ -15,10 +18,10 @@
 #define CLPV_PASTE(a, b) CLPV_PASTE2(a, b)
 typedef CLPV_PASTE(float, CLPV_WIDTH) Vector;
 
-// Chains that do not wait for each other: as many as hide the latency of a fused multiply-add, and fit registers.
+// Independent chains: enough to hide the latency of an FMA, few enough to fit into registers.
 #define CLPV_EACH_CHAIN(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11)
 
-// Each chain is a = a/2 + 1, which ends at 2 from wherever it starts: the result tells that the work was done.
+// Every chain converges to 2 from any start, which verifies the result.
 __kernel void fma_peak(const uint passes, const float start, __global float* out) {
   const uint item = get_global_id(0);
 #define CLPV_DO(i) Vector a##i = (Vector)(start + i + item);
@@ -36,7 +39,7 @@ __kernel void fma_peak(const uint passes, const float start, __global float* out
   out[item] = sum.s0;
 }
 
-// c = a + pass b, over and over: `blocks` blocks of CLPV_BLOCK vectors a work-item.
+// `blocks`: blocks of CLPV_BLOCK vectors per work-item.
 __kernel void stream(const uint passes, const uint blocks, __global const Vector* a, __global const Vector* b,
                      __global Vector* c) {
   const uint item = get_global_id(0), items = get_global_size(0);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Keys of the cells that injection sorts texels by (sort_by_cell.cl): made by find_cells.cl, read by inject.cl.
+// Keys of cells, by which injection sorts texels (find_cells.cl, sort_by_cell.cl, inject.cl).
 //
-// Cell (x, y, z) of `n` along each axis has the key (z n + y) n + x. Geometry volumes have n + 1 corners instead of n
+// Cell (x, y, z) of n^3 has the key (z n + y) n + x. Geometry volumes have n + 1 corners along each axis instead of n
 // cells.
 #ifndef CLPV_CELL_KEYS_H
 #define CLPV_CELL_KEYS_H
 
 #include "shared/sort.h"
 
-// Corners lie half a cell off the cells' centres: with this added to a point in units of cells, its whole part is the
-// number of what it belongs to.
+// Shift [cells] that is added to a point before its coordinates are rounded down: corners lie half a cell off the
+// centres.
 #if CLPV_GEOMETRY
 #define CLPV_KEYS(cells) ((cells) + 1)
 #define CLPV_CELL_SHIFT 0.5f
@@ -23,7 +23,7 @@ static inline uint cell_key(const uint n, const uint x, const uint y, const uint
   return (z * n + y) * n + x;
 }
 
-// The cell or corner of a key.
+// Cell or corner of a key.
 static inline int3 cell_of(const uint n, const uint key) {
   return (int3)(key % n, key / n % n, key / (n * n));
 }

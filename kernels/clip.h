@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Clips a triangle against the near plane and the guard band.
+// Clips a triangle against the near plane and the guard band (Sutherland and Hodgman 1974).
 //
-// A point is (x, y, w, z): along right and up [m], what its screen position is divided by (perspective: the
-// depth; orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point,
-// bit by bit: so the plane is met on the way from the corner inside to the one outside, whichever triangle
-// asks, and nothing is fused.
+// A point is (x, y, w, z): along right and up [m], the divisor of its screen position (perspective: the depth;
+// orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point, to the bit.
+// Intersections are therefore computed from the corner inside to the one outside, and FP_CONTRACT is off (project.h).
 #ifndef CLPV_CLIP_H
 #define CLPV_CLIP_H
 
 #include "project.h"
 
 #define CLPV_CLIP_PLANES 5
-#define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may, at worst, add a few
+#define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may add a few more
 
-// The point in the first lane.
+// Point of the first lane.
 static inline float4 clpv_polygon_corner(const ViewPoint p) { return (float4)(p.x.s0, p.y.s0, p.w.s0, p.z.s0); }
 
-// Signed distance of a point from clipping plane `plane`, negative: cut away.
+// Signed distance of a point from a clipping plane; negative outside.
 static inline float clpv_clip_distance(const ClpvView view, const float4 p, const int plane) {
   const float2 guard = clpv_guard(view);
   if (plane == 0) return guard.x * p.z - p.x;
@@ -26,7 +25,7 @@ static inline float clpv_clip_distance(const ClpvView view, const float4 p, cons
   return CLPV_PARALLEL(view) ? 1.0f : p.w - view.near_depth;
 }
 
-// Keeps of the convex polygon `from` what is on the positive side of a plane; returns its number of corners.
+// Clips the convex polygon `from` to the positive side of a plane. Returns the number of corners.
 static inline int clpv_clip_plane(const ClpvView view, const float4* from, const int count, const int plane,
                                   float4* to) {
   int kept = 0;
@@ -37,16 +36,16 @@ static inline int clpv_clip_plane(const ClpvView view, const float4* from, const
     if ((da >= 0.0f) != (db >= 0.0f) && kept < CLPV_CLIP_CORNERS) {
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
-      float4 met = inside + (outside - inside) * (di / (di - dd));
-      if (plane == CLPV_CLIP_PLANES - 1) met.zw = CLPV_PARALLEL(view) ? met.zw : (float2)(view.near_depth);
-      to[kept++] = met;
+      float4 hit = inside + (outside - inside) * (di / (di - dd));
+      if (plane == CLPV_CLIP_PLANES - 1) hit.zw = CLPV_PARALLEL(view) ? hit.zw : (float2)(view.near_depth);
+      to[kept++] = hit;
     }
   }
   return kept;
 }
 
-// Clips the triangle in polygon[0..2]; returns how many corners it has left in polygon, 0: nothing.
-// The near plane comes first: the guard planes meet in the eye, where nothing may be left.
+// Clips the triangle in polygon[0..2]. Returns the number of corners in `polygon`; 0 if nothing is left. The near plane
+// comes first, since the guard planes intersect in the eye.
 static inline int clpv_clip(const ClpvView view, float4* polygon) {
   float4 other[CLPV_CLIP_CORNERS];
   int count = 3;

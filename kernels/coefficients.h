@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The N coefficients of a cell as a struct of named scalars, and the few operations on it.
-// Named scalars and straight-line code: work-items vectorise (lanes.h).
+// Arithmetic on the N coefficients of a cell, a struct of named scalars, so that work-items vectorise (lanes.h).
 //
-// CLPV_INLINE, CLPV_LANES, CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N-1), and the struct come from the host
-// (coefficient_macros), since generated text such as a basis's functions stands before this file and uses them.
+// From the host (coefficient_macros), since generated text before this file uses them: CLPV_INLINE, CLPV_LANES,
+// CLPV_REAL, CLPV_N, struct Coefficients, and CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N - 1).
 #ifndef CLPV_COEFFICIENTS_H
 #define CLPV_COEFFICIENTS_H
 

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Which triangle each pixel sees, and how far away it is: the depth test of all that rasterize.cl listed over a tile.
-// One work-item a tile. A pixel keeps the least key and, among equal ones, the least triangle, so that the order of
-// the lists does not matter.
+// Finds the nearest triangle of each pixel: depth test of the triangles that rasterize.cl listed for a tile.
 //
-// keys and seen hold a float8 and uint8 a row of a tile, CLPV_TILE rows a tile, tiles row by row; empty pixels are
-// INFINITY and UINT_MAX. `fresh`: onto nothing, else onto what they hold.
+//   inside: no edge function e_i(x, y) is negative;   key(x, y) = key + x key_x + y key_y, smaller is nearer
+//
+// Tiled rasterisation with integer edge functions (Pineda 1988, 'A parallel algorithm for polygon rasterization';
+// docs/method.md, 'Rasterize'). A pixel keeps the smallest key, and of equal keys the smallest triangle number: results
+// do not depend on the order of the lists.
+//
+// In:      list          ClpvRasterTriangle of the view
+//          starts        index in `binned` of the first entry of each slice of each tile
+//          binned        entries: index in `list`, smallest key
+//          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
+//          vertices, triangles, materials, textures, texels   the scene, for masked materials
+// In, out: keys, seen    key, and number in the scene, of the nearest triangle: a float8 and a uint8 per row of a tile,
+//                        CLPV_TILE rows per tile, tiles row by row; INFINITY and UINT_MAX for empty pixels
+// A work-item draws a tile.
 #include "edges.h"
 #include "lanes.h"
 #include "prefetch.h"
@@ -21,11 +31,11 @@ typedef struct {
   __global const uint* texels;
 } Scene;
 
-// A triangle of a masked material: what its holes are looked up by.
+// A triangle of a masked material: all that a look-up of its alpha needs.
 typedef struct {
   Face face;
   Weights weights;
-  Uv a, b, c;  // of its corners
+  Uv a, b, c;  // texture coordinates of the corners
   float8 alpha_a, alpha_b, alpha_c;
   Level level;
   float base_alpha, cutoff;
@@ -56,7 +66,7 @@ static inline float8 blended(const Vec w, const float8 a, const float8 b, const 
   return w.x * a + w.y * b + w.z * c;
 }
 
-// In which lanes its surface, `depth` behind the pixels from (px, py) on, is there rather than a hole.
+// Mask of the pixels from (px, py) on whose alpha, at `depth` [m], reaches the cutoff: no hole.
 CLPV_INLINE int8 solid(const ClpvView view, const Mask* mask, const float px, const float py, const float8 depth,
                        __global const uint* texels) {
   const float8 x = px + (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
@@ -67,17 +77,16 @@ CLPV_INLINE int8 solid(const ClpvView view, const Mask* mask, const float px, co
   return alpha >= mask->cutoff;
 }
 
-// The edge functions of a triangle in a tile, in steps of whole pixels: a centre is inside where none is negative. Of
-// an Edge all that counts is its sign, which its 256th part has as well, since steps are multiples of 256. Values far
-// from 0 keep their sign throughout the tile: bounded, they fit 32 bits.
+// Edge functions of a triangle in a tile, divided by 256: a centre is inside where none is negative. The sign is exact,
+// since steps are multiples of 256. Values far from 0 keep their sign throughout the tile and are clamped to 32 bits.
 typedef struct {
-  int8 e0, e1, e2;        // at eight pixels of a row
-  int step0, step1, step2;  // to the row below
+  int8 e0, e1, e2;          // at eight pixels of a row
+  int step0, step1, step2;  // change to the row below
 } Edges;
 
-#define CLPV_FAR_OUT 0x40000000L  // beyond 2 x 7 steps of a triangle that is not CLPV_TRIANGLE_GIANT
+#define CLPV_FAR_OUT 0x40000000L  // more than 2 x 7 steps of a triangle that is not CLPV_TRIANGLE_GIANT
 
-// At the row of eight pixels from (px, py) on.
+// Edge functions at the row of eight pixels from (px, py) on.
 CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, const int py, Edges* edges) {
   const int8 lane = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
   const int4 x = vload4(0, r->x), y = vload4(0, r->y);
@@ -92,8 +101,8 @@ CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, co
   edges->e2 = at.z - dy.z * lane, edges->step2 = dx.z;
 }
 
-// Which of eight pixels from (px, py) on a giant covers. Out of line: these are few, and this would take the registers
-// that others need.
+// Mask of the eight pixels from (px, py) on that a giant triangle covers. Not inlined: giants are few, and their code
+// would take registers from all others.
 __attribute__((noinline)) int8 covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
   const long8 lane = (long8)(0, 1, 2, 3, 4, 5, 6, 7);
   const Edge e0 = edge_at(r, 0, px, py), e1 = edge_at(r, 1, px, py), e2 = edge_at(r, 2, px, py);
@@ -101,15 +110,15 @@ __attribute__((noinline)) int8 covered_by_giant(__global const ClpvRasterTriangl
   return convert_int8((v0 | v1 | v2) >= 0L);
 }
 
-// A tile, and where it is in the view.
+// A tile of the view and its buffers.
 typedef struct {
   __global float8* keys;
   __global uint8* seen;
-  int x, y;  // of its first pixel
+  int x, y;  // first pixel
   float far_key;
 } Tile;
 
-// Draws into a tile what a triangle shows there.
+// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: null for an opaque material.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
                       const Mask* mask, __global const uint* texels) {
   const float8 column = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
@@ -141,7 +150,7 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
   }
 }
 
-// Out of line, as above.
+// Not inlined, like covered_by_giant().
 __attribute__((noinline)) void draw_masked(const ClpvView view, const Tile tile,
                                            __global const ClpvRasterTriangle* r, const uint kind,
                                            const Scene scene) {
@@ -150,16 +159,16 @@ __attribute__((noinline)) void draw_masked(const ClpvView view, const Tile tile,
   draw(view, tile, r, kind, &mask, scene.texels);
 }
 
-// The farthest key of a tile's pixels.
+// Largest key of a tile's pixels.
 static inline float farthest_of(__global const float8* keys) {
-  float8 most = keys[0];
-  for (int row = 1; row < CLPV_TILE; ++row) most = keys[row] > most ? keys[row] : most;
-  const float4 four = most.lo > most.hi ? most.lo : most.hi;
+  float8 largest = keys[0];
+  for (int row = 1; row < CLPV_TILE; ++row) largest = keys[row] > largest ? keys[row] : largest;
+  const float4 four = largest.lo > largest.hi ? largest.lo : largest.hi;
   const float2 two = four.lo > four.hi ? four.lo : four.hi;
   return two.x > two.y ? two.x : two.y;
 }
 
-// Triangles of a tile lie anywhere in the list: each is asked for while those before it are drawn.
+// Triangles of a tile are scattered over the list: prefetch the one that is drawn this many later.
 #define CLPV_DRAW_AHEAD 2
 
 __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
@@ -180,11 +189,11 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
     }
   }
   const uint end = starts[(at + 1) * CLPV_SLICES];
-  float hidden = farthest_of(tile.keys);  // what lies beyond is not seen
+  float farthest = farthest_of(tile.keys);  // triangles behind it are hidden
   for (uint first = starts[at * CLPV_SLICES]; first < end; first += CLPV_LONGEST_LOOP) {
     const uint stop = min(end - first, CLPV_LONGEST_LOOP) + first;
     for (uint i = first; i < stop; ++i) {
-      if (as_float(binned[i].y) > hidden) continue;
+      if (as_float(binned[i].y) > farthest) continue;
       __global const ClpvRasterTriangle* r = list + binned[i].x;
       CLPV_PREFETCH(list + binned[min(i + CLPV_DRAW_AHEAD, stop - 1)].x);
       const uint kind = r->triangle;
@@ -193,14 +202,14 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       } else {
         draw(view, tile, r, kind, 0, texels);
       }
-      hidden = farthest_of(tile.keys);
+      farthest = farthest_of(tile.keys);
     }
   }
 }
 
 // Depths alone: a shadow map. One work-item a row of a tile.
 __kernel void resolve_depth(const ClpvView view, __global const float8* keys, __global float* depths) {
-  const Eight p = this_row(view);
+  const PixelRow p = this_row(view);
   if (p.count == 0) return;
   store_depth(view, p, keys[p.row], depths);
 }

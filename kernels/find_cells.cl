@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Injection, first step: which cell each texel of a surface belongs to (kernels/inject.cl).
+// Finds the cell of each texel of a surface: the first step of injection (inject.cl).
 //
-// CLPV_GEOMETRY 0, light: a texel's virtual point light is at p + n s/2, half a cell off its surface, so that the surface
-// does not light itself. CLPV_GEOMETRY 1, blocking: its surfel is at p.
+//   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not light itself
+//   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel, footprint A along w
 //
-// CLPV_POINTS 1: texels are points that no view sees (emit.cl), at `positions`.
+// docs/method.md, 'Injection' and 'Blockers'.
 //
-// From the host: CLPV_GEOMETRY, CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER. Nothing here depends on the basis. Blocking is told
-// its stride (shared/thinned.h); light takes every texel, as literals tell the compiler, which then loads them side by side.
+// In:   depths   [m]; with CLPV_POINTS positions [m] instead (emit.cl)
+//       normals; colours: flux [W], see surface.h for colour_scale
+//       stride   blocking: subsampling; a texel represents stride x stride texels (shared/thinned.h)
+// Out:  keys    key of the cell of each texel (cell_keys.h); CLPV_NO_CELL for texels that are empty, dark, outside the
+//               grid or not finite
+//       shares  blocking: B of each texel
+// A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on CPUs, given scalars in
+// memory and no floor(); across work-items they would combine y and z first.
+// From the host: CLPV_GEOMETRY (0 light, 1 blocking), CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
 #include "cell_keys.h"
 #include "shared/grid.h"
 #include "shared/thinned.h"
 #include "surface.h"
 
-// A cosine floored here bounds the surfel behind a pixel seen edge-on.
-#define CLPV_LEAST_COSINE 0.1f
+#define CLPV_MIN_COSINE 0.1f  // bounds the area of a surfel that is seen edge-on
 
-// Conditions as int, joined by &: no branches. Of scalars: Oclgrind 21.10 trips over comparisons of float3.
+// Conditions are ints joined by &, without branches, and of scalars: Oclgrind 21.10 fails on comparisons of float3.
 static inline int in_grid(const float n, const float x, const float y, const float z) {
   return (x >= 0.0f) & (y >= 0.0f) & (z >= 0.0f) & (x < n) & (y < n) & (z < n);
 }
@@ -32,15 +38,9 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
   const float3 ray = clpv_ray(view, px, py);
   const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
   return (stride * stride) * clpv_footprint(view, px, py, depth) /
-         (fmax(cosine, CLPV_LEAST_COSINE) * grid.cell * grid.cell);
+         (fmax(cosine, CLPV_MIN_COSINE) * grid.cell * grid.cell);
 }
 
-// keys[i] of taken texel i: its cell, or CLPV_NO_CELL for what is empty, dark, outside the grid or not finite.
-// shares[i], blocking: the share of a cell's cross-section that the surfel covers, seen along its normal: of all the texels
-// that one taken stands for.
-//
-// One work-item a strip of CLPV_STRIP taken texels of a row: CPU devices vectorise the loop (which they do not across
-// work-items, where they first pack y and z), if there is no float3 in memory and no floor() in it.
 __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
 #if CLPV_POINTS
                          __global const float* restrict positions,
@@ -84,7 +84,7 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
     counts = counts & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
 #endif
     x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
-    counts = counts & in_grid((float)n, x, y, z);  // no point that is not finite is
+    counts = counts & in_grid((float)n, x, y, z);  // false for points that are not finite
     const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
     keys[i] = counts ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Gathering from images, by the device's own filter or from texels (volume/image.h).
+// Samples accumulated volumes in images, by the device's filter or from texels (volume/image.h), for gather.cl.
 //
-// OpenCL 1.2 has no arrays of images in a kernel: the host writes CLPV_EACH_CASCADE(DO), which writes DO(0) DO(1) ... , one
-// a cascade, and each has its parameters and its code.
+// OpenCL 1.2 has no arrays of images: CLPV_EACH_CASCADE(DO), from the host, writes DO(0) DO(1) ... for each cascade,
+// each with its own parameter and code.
 #ifndef CLPV_GATHER_IMAGE_H
 #define CLPV_GATHER_IMAGE_H
 
@@ -14,15 +14,15 @@ typedef struct {
 
 typedef struct {
   float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
-} Places;
+} SamplePoints;
 
-CLPV_INLINE void clpv_places(const Vec at, Places* places) {
-  vstore8(at.x, 0, places->x);
-  vstore8(at.y, 0, places->y);
-  vstore8(at.z, 0, places->z);
+CLPV_INLINE void clpv_sample_points(const Vec at, SamplePoints* points) {
+  vstore8(at.x, 0, points->x);
+  vstore8(at.y, 0, points->y);
+  vstore8(at.z, 0, points->z);
 }
 
-CLPV_INLINE float clpv_sample(CLPV_IMAGE_IN volume, const Places* at, const int i, Sampled* s) {
+CLPV_INLINE float clpv_sample(CLPV_IMAGE_IN volume, const SamplePoints* at, const int i, Sampled* s) {
   s->r = light_sample(volume, 0, at->x[i], at->y[i], at->z[i]);
   s->g = light_sample(volume, 1, at->x[i], at->y[i], at->z[i]);
   s->b = light_sample(volume, 2, at->x[i], at->y[i], at->z[i]);

@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Injection: what a view sees becomes light or blocking in the cells of a volume (docs/method.md, 'Injection').
+// Injects the texels of a surface into a volume, as light or as blockers: sums over each cell's sorted texels.
 //
-// CLPV_GEOMETRY 0, light: a texel is a virtual point light of flux P [W]; its cell gains (P/pi) c(n), c(n) the clamped
-// cosine round n. CLPV_GEOMETRY 1, blocking: a texel is a surfel of area A; the corner nearest to it gains A/s^2 of what
-// host/basis/blocking.hpp says of n. All surfaces injected see the same walls: clpv_merge, not a sum.
+//   light (CLPV_GEOMETRY 0):     c += (P / pi) c(n)
+//   blocking (CLPV_GEOMETRY 1):  c = merge(c, sum B b(n))
 //
-// c(n) = A^-1 alpha(n) is linear in alpha: a cell sums its texels' weighted alpha, and the matrix comes once a cell.
-// Three steps: find_cells.cl gives every texel its cell; sort_by_cell.cl sorts them; sum_segments and join_segments
-// add up each cell's texels in their order in the surface. A cell's sum depends on its own texels alone, to the bit:
-// it is made of segments counted from the cell's first texel.
+// docs/method.md, 'Injection' and 'Blockers'; Kaplanyan and Dachsbacher 2010. P [W] is the flux of a texel's virtual
+// point light, c(n) the clamped cosine about its normal, B the blocked share (find_cells.cl) and b(n) the function of
+// host/basis/blocking.hpp. c(n) = A^-1 alpha(n) is linear in alpha: a cell sums weighted alphas, and A^-1 is applied
+// once per cell. Sources of blockers see the same walls, so clpv_merge takes a maximum.
 //
-// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER; as text what
-// host/codegen/inject_source.hpp lists. Where lobes are rotated, sum_segments has the table as its last argument.
+//   find_cells.cl    cell of each texel
+//   sort_by_cell.cl  texels sorted by cell
+//   sum_segments     sums of segments: up to `length` texels of a cell, counted from the cell's first texel
+//   join_segments    sums of the cells that have several segments
+//
+// A cell's sum depends on its own texels alone, to the bit.
+//
+// In:      sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
+//          normals, colours, colour_scale   surface texels, flux [W] (surface.h); blocking: normals and shares
+//          width, stride  blocking: texels of a row, and the subsampling (shared/thinned.h)
+// In, out: volume         light or geometry volume
+//          partials, firsts   sums and first texels of the cells with several segments
+// From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER, and the text of
+// host/codegen/inject_source.hpp. With rotated lobes the look-up table is the last argument of sum_segments
+// (CLPV_AND_TABLE).
 #include "cell_keys.h"
 #include "coefficients.h"
 #include "add_to_volume.h"
@@ -20,8 +32,8 @@
 
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-// What the taken texels are summed from. Blocking takes every stride-th texel (shared/thinned.h) of rows of `width`, each
-// with its share (find_cells.cl); light takes every one.
+// Parameters of the surface that texels are read from. Blocking takes every stride-th texel (shared/thinned.h) of rows of
+// `width`, each with its share (find_cells.cl); light takes every texel.
 #if CLPV_GEOMETRY
 #define CLPV_TEXELS \
   __global const SurfaceTexel *normals, __global const float *shares, const uint width, const uint stride
@@ -53,7 +65,7 @@ static inline Coefficients add_lobe(Coefficients sum, const float weight, const 
 
 #if CLPV_GEOMETRY
 
-// Where the i-th taken texel of a surface of rows of `width` texels is.
+// Index of the i-th texel taken from a surface with rows of `width` texels.
 static inline uint taken_index(const uint width, const uint i, const uint stride) {
   const uint of_row = CLPV_TAKEN(width, stride);
   return CLPV_TAKEN_TEXEL(i / of_row, stride) * width + CLPV_TAKEN_TEXEL(i % of_row, stride);
@@ -107,7 +119,7 @@ static inline Sums add_stored(Sums sums, __global const float* partials, const u
   return sums;
 }
 
-// First of the sorted texels [0, before) that is of the cell `key`; `before` is one itself.
+// Index of the first sorted texel of cell `key`, by binary search in [0, before]. Texel `before` belongs to the cell.
 static inline uint first_of_cell(__global const uint2* sorted, const uint key, const uint before) {
   uint low = 0, high = before;
   while (low < high) {
@@ -121,7 +133,7 @@ static inline uint first_of_cell(__global const uint2* sorted, const uint key, c
   return low;
 }
 
-// Where the first segment starts that does so at or after `at`: where a cell does, or a whole number of segments on.
+// Index at which the first segment of a block starts: where a cell starts, or a whole number of segments later.
 static inline uint first_segment(__global const uint2* sorted, const uint total, const uint length,
                                  const uint block, bool* starts_cell) {
   uint at = block * length;
@@ -135,9 +147,9 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
   return at;
 }
 
-// One work-item a block of `length` sorted texels: sums the segments, of up to `length` texels of a cell, that start
-// in it. A cell of one segment is delivered; of a longer cell, `firsts` has where it starts and `partials` the sums:
-// in slot 2 block + 1 of its first segment, in slot 2 block of another one. A block starts at most one of either.
+// Sums the segments that start in a block of `length` sorted texels; a work-item per block. A cell of one segment is
+// delivered at once. Of a longer cell, firsts[block] is the index of its first texel; partials[2 block + 1] holds the
+// sums of its first segment, partials[2 block] those of a later one. At most one of each starts in a block.
 __kernel void sum_segments(__global const uint2* sorted, __global const uint* count, const uint length,
                            const uint blocks, CLPV_TEXELS, CLPV_VOLUME_OUT volume,
                            __global float* partials, __global uint* firsts CLPV_AND_TABLE) {
@@ -166,7 +178,7 @@ __kernel void sum_segments(__global const uint2* sorted, __global const uint* co
   }
 }
 
-// Delivers the cells of several segments: one work-item a block, for the cell whose first segment starts in it.
+// Delivers the cells of several segments; a work-item per block, for the cell whose first segment starts in it.
 __kernel void join_segments(__global const uint2* sorted, __global const uint* count, const uint length,
                             const uint blocks, CLPV_VOLUME_OUT volume, __global const float* partials,
                             __global const uint* firsts) {

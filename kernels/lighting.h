@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a light sends to points in space, before anything stands in its way (kernels/shared/light.h).
-// The one home of cone, range and distance: direct light, RSMs and their CPU references must agree on them.
+// Irradiance from a light, without occlusion (shared/light.h). Direct light and RSMs share this definition of cone,
+// range and distance.
+//
+//   E = I cone^2 / max(d, d_min)^2      spot and point lights, 0 beyond the range;   E: constant for directional lights
 #ifndef CLPV_LIGHTING_H
 #define CLPV_LIGHTING_H
 
@@ -8,8 +10,8 @@
 #include "shared/light.h"
 #include "vec.h"
 
-// Irradiance [W/m^2] at `position` [m] on a plane across the light's ray; `towards`: unit, from there to the light. A
-// kind that is none gives no light.
+// Irradiance [W/m^2] at `position` [m] on a plane across the ray. `towards`: unit vector to the light. 0 for an unknown
+// kind.
 static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
   const Vec intensity = vec_of(light.intensity), direction = vec_of(light.direction);
   if (light.kind == CLPV_LIGHT_DIRECTIONAL) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Packs a cascade's volume for gathering (gather_packed.h): one record a cell.
+// Packs the accumulated volume of a cascade into records for gathering (gather_packed.h).
 //
-// In: light volume [W/sr]; out: `packed`, records from the first-th on. The host writes (host/codegen/gather_source.cpp)
-//   CLPV_EACH_PAIR(DO)     DO(j, even, odd) for each two of the coefficients; even(c), odd(c) are members of Coefficients c,
-//                          in one lane
-// A work-item is a cell, or CLPV_LANES cells side by side.
+// In:   volume  light volume [W/sr], any layout
+// Out:  packed  a record of CLPV_PAIRS float8 per cell, from record `first` on
+// From the host (host/codegen/gather_source.cpp): CLPV_EACH_PAIR(DO), which writes DO(j, even, odd) for each pair of
+// coefficients; even(c), odd(c) are its members of Coefficients c in lane `lane`. A work-item packs CLPV_LANES cells of
+// a row.
 #include "coefficients.h"
 #include "volume/light.h"
 #include "volume/whole_groups.h"

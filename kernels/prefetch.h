@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Asking for memory some time before it is read, where what will be read cannot be guessed from what was.
+// Prefetches memory that hardware prefetch cannot predict, on CPUs; a no-op elsewhere.
 //
-// OpenCL's own prefetch() does nothing on PoCL 3.1. Clang's takes pointers of no kind but a work-item's own, which on a CPU are
-// addresses of the same memory as all others; compilers to SPIR-V reject it. So it is for what is compiled for a CPU outright.
+// OpenCL's prefetch() does nothing on PoCL 3.1. Clang's builtin takes private pointers alone, which on a CPU address
+// the same memory as global ones; compilers to SPIR-V reject it.
 #ifndef CLPV_PREFETCH_H
 #define CLPV_PREFETCH_H
 
-#define CLPV_LINE 64  // bytes of a cache line, as most CPUs have them
+#define CLPV_LINE 64  // [bytes] cache line of most CPUs
 
 #if (defined(__x86_64__) || defined(__aarch64__)) && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From the scene onto the screen, eight points at a time (lanes.h).
+// Projects points of the scene to the screen, eight at a time (lanes.h).
 //
-// Two triangles that share a corner must have it at the same place, bit by bit, whichever lane it is in: nothing is
-// fused.
+// Two triangles that share a corner must project it to the same place, to the bit, in any lane: FP_CONTRACT is off.
 #ifndef CLPV_PROJECT_H
 #define CLPV_PROJECT_H
 
@@ -12,10 +11,10 @@
 #include "shared/raster.h"
 #include "triangle.h"
 
-// Points relative to the view.
+// Points in the coordinates of a view.
 typedef struct {
   float8 x, y, z;  // along right, up and forward [m]
-  float8 w;        // what x and y are divided by: perspective: the depth z; orthographic: 1
+  float8 w;        // divisor of x and y: the depth z in perspective, 1 in orthographic views
 } ViewPoint;
 
 static inline ViewPoint view_point(const ClpvView view, const Vec position) {
@@ -28,13 +27,13 @@ static inline ViewPoint view_point(const ClpvView view, const Vec position) {
   return point;
 }
 
-// How far the guard band reaches on the screen, in units of clpv_screen().
+// Extent of the guard band on the screen, in units of clpv_screen().
 static inline float2 clpv_guard(const ClpvView view) {
   return (float2)(view.half_width / (float)view.width, view.half_height / (float)view.height) *
          (2.0f * CLPV_GUARD_PIXELS);
 }
 
-// Outside which borders of the view the points are: CLPV_LEFT and so on.
+// Outcodes of the points: CLPV_LEFT and so on.
 static inline int8 where_is(const ClpvView view, const ViewPoint p) {
   const float2 guard = clpv_guard(view);
   const float8 width = view.half_width * p.w, height = view.half_height * p.w;
@@ -45,18 +44,18 @@ static inline int8 where_is(const ClpvView view, const ViewPoint p) {
   return where | (~in_guard & CLPV_OUT_OF_GUARD);
 }
 
-// Corners of eight triangles on the screen.
+// One corner of eight triangles on the screen.
 typedef struct {
-  int8 x, y;   // 1/CLPV_SUBPIXELS pixel, from the left and top border
+  int8 x, y;   // [1/CLPV_SUBPIXELS pixel] from the left and top border
   float8 key;  // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
-} Corner;
+} ScreenCorner;
 
 static inline int8 subpixel(const float8 screen, const float half_extent, const float pixels) {
   return convert_int8_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
 }
 
-static inline Corner project(const ClpvView view, const ViewPoint p) {
-  Corner corner;
+static inline ScreenCorner project(const ClpvView view, const ViewPoint p) {
+  ScreenCorner corner;
   corner.x = subpixel(p.x / p.w, view.half_width, (float)view.width);
   corner.y = subpixel(-p.y / p.w, view.half_height, (float)view.height);
   corner.key = CLPV_PARALLEL(view) ? p.z : -1.0f / p.z;

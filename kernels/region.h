@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The cells that are made anew (shared/region.h), and the triangles that may leave something in them.
+// Tests whether a cell must be voxelised again (shared/region.h), and numbers the triangles of the work-items that do
+// so.
 #ifndef CLPV_REGION_H
 #define CLPV_REGION_H
 
 #include "shared/mesh.h"
 #include "shared/region.h"
 
-// Regions are arguments by value, whose arrays are only ever indexed by literals: where an index is known at run time alone,
-// the compiler of Mesa's rusticl 22.3 crashes.
+// Regions are passed by value, and their arrays are indexed by literals alone: an index known only at run time crashes
+// the compiler of Mesa's rusticl 22.3.
 
-// Of three numbers that of an axis.
+// Component of a vector along an axis.
 static inline int clpv_of_axis(const int v[3], const uint axis) { return axis == 0 ? v[0] : (axis == 1 ? v[1] : v[2]); }
 
-// Whether a cell inside `region.all` is one of them.
+// Returns true if a cell inside `region.all` belongs to the region.
 static inline bool clpv_in_region(const ClpvRegion* region, const int x, const int y, const int z) {
   if (region->boxes == 1) return true;
 #define CLPV_IN_BOX(b)                                                                                                 \
@@ -23,19 +24,16 @@ static inline bool clpv_in_region(const ClpvRegion* region, const int x, const i
 #undef CLPV_IN_BOX
 }
 #if CLPV_REGION_BOXES != 8
-#error "clpv_in_region tells of eight boxes"
+#error "clpv_in_region tests eight boxes"
 #endif
 
-// The arguments of kernels that go through triangles, an item each, a group a run: those of `clusters` from `first_cluster` on;
-// `triangle_count`: of the scene.
-#define CLPV_TRIANGLES                                                                                      \
-  __global const uint *clusters, const uint first_cluster, const uint cluster_count, const uint triangle_count,         \
-      __global const ClpvVertex *vertices, __global const ClpvTriangle *triangles, __global const ClpvMaterial *materials
-
-// The number of the item's triangle; triangle_count or more: it has none.
-#define CLPV_TRIANGLE_NUMBER                                                                                         \
-  (get_global_id(0) / CLPV_CLUSTER < cluster_count                                                                           \
-       ? clusters[first_cluster + get_global_id(0) / CLPV_CLUSTER] * CLPV_CLUSTER + (uint)get_global_id(0) % CLPV_CLUSTER                \
-       : triangle_count)
+// Number of this work-item's triangle; triangle_count or more for none. Kernels that voxelise launch CLPV_CLUSTER
+// work-items for each of `cluster_count` entries of `clusters` from `first_cluster` on.
+static inline uint clpv_triangle_number(__global const uint* clusters, const uint first_cluster,
+                                        const uint cluster_count, const uint triangle_count) {
+  const uint item = (uint)get_global_id(0), cluster = item / CLPV_CLUSTER;
+  if (cluster >= cluster_count) return triangle_count;
+  return clusters[first_cluster + cluster] * CLPV_CLUSTER + item % CLPV_CLUSTER;
+}
 
 #endif

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: MIT
-// What each pixel sees, once draw_tiles.cl knows which triangle that is: depth, normal, and albedo or flux.
-// One work-item a row of a tile, eight pixels. Selections instead of branches: a pixel that sees nothing looks at
-// triangle 0 and forgets it, a material without texture looks at a white texel.
+// Evaluates the surface of each pixel from the triangle that draw_tiles.cl found: depth, normal, albedo and emission
+// for the camera, flux for a reflective shadow map.
 //
-// From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER, and what the scene needs of CLPV_TEXTURED (any texture at
-// all), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (materials that emit); CLPV_FROM_LIGHT 1:
-// resolve_rsm, 0: resolve_camera. Every material has textures: white ones where the scene has none for it.
+//   P = albedo E A      [W]   E the light's irradiance across the ray, A the texel's footprint      (docs/method.md,
+//                                                                                                   'Rasterize')
+//
+// Reflective shadow maps: Dachsbacher and Stamminger 2005.
+//
+// In:   keys, seen    depth key and triangle of each pixel, eight per row of a tile (draw_tiles.cl)
+//       vertices, triangles, materials, textures, texels   the scene, in rows of float4 (shared/mesh.h)
+//       colour_scale  Surface::colour_scale: flux [W] of a stored 1
+// Out:  depths        [m] along the view's forward axis, 0 for empty pixels
+//       normals       unit, towards the viewer; colours: albedo; emissives: radiance [W/m^2/sr]; fluxes: P [W]
+// A work-item evaluates a row of a tile, eight pixels. It selects instead of branching: empty pixels evaluate triangle
+// 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER,
+// CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (emissive
+// materials), CLPV_FROM_LIGHT (1: resolve_rsm, 0: resolve_camera).
 #include "lanes.h"
 #include "lighting.h"
 #include "surface_row.h"
@@ -23,14 +33,14 @@
 #define CLPV_EMISSIVE 1
 #endif
 
-// A corner of each lane's triangle.
+// Attributes of one corner of each lane's triangle.
 typedef struct {
   Vec position, normal;
   Uv uv;
   Vec colour;
-} Corner;
+} VertexAttributes;
 
-CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, Corner* corner) {
+CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, VertexAttributes* corner) {
   Rows first, second;
   gather_rows(vertices, 3u * index, &first);
   gather_rows(vertices + 1, 3u * index, &second);
@@ -48,31 +58,31 @@ CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, C
 typedef struct {
   Vec base_colour, emissive;
   uint8 texture, emissive_texture;
-} Paint;
+} MaterialLanes;
 
-CLPV_INLINE void paint_of(__global const float4* materials, const uint8 index, Paint* paint) {
+CLPV_INLINE void material_of(__global const float4* materials, const uint8 index, MaterialLanes* material) {
   Rows base, textures;
   gather_rows(materials, 3u * index, &base);
   gather_rows(materials + 2, 3u * index, &textures);
-  paint->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
-  paint->texture = as_uint8(CLPV_COLUMN(textures, x));
+  material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
+  material->texture = as_uint8(CLPV_COLUMN(textures, x));
 #if CLPV_EMISSIVE
   Rows emissive;
   gather_rows(materials + 1, 3u * index, &emissive);
-  paint->emissive = vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
-  paint->emissive_texture = as_uint8(CLPV_COLUMN(textures, y));
+  material->emissive = vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
+  material->emissive_texture = as_uint8(CLPV_COLUMN(textures, y));
 #endif
 }
 
 typedef struct {
-  Vec normal;  // unit, on the viewer's side
+  Vec normal;  // unit, towards the viewer
   Vec albedo;
   Vec emissive;  // [W/m^2/sr]
-} Seen;
+} PixelSurface;
 
-// The interpolated normal on the side that is seen, which the triangle itself tells: near a silhouette an interpolated
-// normal may point away from the viewer.
-static inline Vec seen_normal(const Face face, const float8 facing, const Vec interpolated) {
+// Interpolated normal, flipped to the side of the triangle that faces the viewer. Near a silhouette the interpolated
+// normal itself may point away from the viewer.
+static inline Vec facing_normal(const Face face, const float8 facing, const Vec interpolated) {
   const float8 none = (float8)(0.0f), one = (float8)(1.0f);
   const Vec front = vec_times(face.normal, facing > none ? -one : one);
   const int8 usable = vec_dot(interpolated, interpolated) > none;
@@ -81,7 +91,7 @@ static inline Vec seen_normal(const Face face, const float8 facing, const Vec in
   return vec_times(normal, (vec_dot(normal, front) < none ? -one : one) / sqrt(vec_dot(normal, normal)));
 }
 
-// How far uv moves on a face when its point moves by `by` from pixel to pixel across the view.
+// Change of uv on a face for a step of `by` [m] across the view, from pixel to pixel.
 static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by, const Uv uv1,
                          const Uv uv2) {
   const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
@@ -98,35 +108,36 @@ CLPV_INLINE void apply_texture(__global const float4* textures, __global const u
   *colour = vec_product(*colour, factor);
 }
 
+// Parameters of the scene's buffers, in rows of float4.
 #define CLPV_SCENE                                                                                     \
   __global const float4 *vertices, __global const float4 *triangles, __global const float4 *materials, \
       __global const float4 *textures, __global const uint *texels
 #define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
-// The surface of each lane's triangle, `depth` behind its pixel.
-CLPV_INLINE void look(const ClpvView view, const Eight p, const float8 depth, const uint8 triangle,
-                      CLPV_SCENE, Seen* seen) {
+// Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
+CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const float8 depth, const uint8 triangle,
+                                  CLPV_SCENE, PixelSurface* surface) {
   Rows indices;
   gather_rows(triangles, triangle, &indices);
-  Corner a, b, c;
+  VertexAttributes a, b, c;
   corner_at(vertices, as_uint8(CLPV_COLUMN(indices, x)), &a);
   corner_at(vertices, as_uint8(CLPV_COLUMN(indices, y)), &b);
   corner_at(vertices, as_uint8(CLPV_COLUMN(indices, z)), &c);
-  Paint paint;
-  paint_of(materials, as_uint8(CLPV_COLUMN(indices, w)), &paint);
+  MaterialLanes material;
+  material_of(materials, as_uint8(CLPV_COLUMN(indices, w)), &material);
   const Face face = clpv_face(view, a.position, b.position, c.position);
   const Weights weights = clpv_weights(face);
   const Vec w = clpv_weights_at(view, face, weights, p.x, p.y, depth);
   const Vec ray = clpv_along(view, p.x, p.y);
   const float8 facing = vec_dot(face.normal, ray);
 
-  seen->normal = seen_normal(face, facing, vec_blend(w, a.normal, b.normal, c.normal));
-  seen->albedo = paint.base_colour;
+  surface->normal = facing_normal(face, facing, vec_blend(w, a.normal, b.normal, c.normal));
+  surface->albedo = material.base_colour;
 #if CLPV_EMISSIVE
-  seen->emissive = paint.emissive;
+  surface->emissive = material.emissive;
 #endif
 #if CLPV_COLOURED
-  seen->albedo = vec_product(seen->albedo, vec_blend(w, a.colour, b.colour, c.colour));
+  surface->albedo = vec_product(surface->albedo, vec_blend(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_TEXTURED
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
@@ -137,44 +148,44 @@ CLPV_INLINE void look(const ClpvView view, const Eight p, const float8 depth, co
   const Vec down = vec_times(vec_of(view.up), scale * clpv_step_y(view));
   const Uv step_x = uv_step(face, weights, along, right, uv1, uv2);
   const Uv step_y = uv_step(face, weights, along, down, uv1, uv2);
-  apply_texture(textures, texels, paint.texture, uv, step_x, step_y, &seen->albedo);
+  apply_texture(textures, texels, material.texture, uv, step_x, step_y, &surface->albedo);
 #if CLPV_EMISSIVE
-  apply_texture(textures, texels, paint.emissive_texture, uv, step_x, step_y, &seen->emissive);
+  apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &surface->emissive);
 #endif
 #endif
 }
 
-// What these pixels see, and which of them see anything; stores their depths.
-CLPV_INLINE void resolve(const ClpvView view, const Eight p, __global const float8* keys,
-                         __global const uint8* triangles_seen, CLPV_SCENE, __global float* depths,
-                         int8* hit, Seen* seen) {
+// Evaluates the surfaces of eight pixels and stores their depths. `hit`: mask of the pixels that are not empty.
+CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const float8* keys, __global const uint8* seen,
+                         CLPV_SCENE, __global float* depths, int8* hit, PixelSurface* surface) {
   const float8 key = keys[p.row];
   *hit = key < (float8)(INFINITY);
-  look(view, p, hit_depth(view, key), *hit ? triangles_seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, seen);
+  evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, surface);
   store_depth(view, p, key, depths);
 }
 
 #if !CLPV_FROM_LIGHT
 
-// Emission goes to `emissives` where CLPV_EMISSIVE; a scene that does not emit has none to write.
 __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
-                             __global const uint8* triangles_seen, CLPV_SCENE, __global float* depths,
+                             __global const uint8* seen, __global const float4* vertices,
+                             __global const float4* triangles, __global const float4* materials,
+                             __global const float4* textures, __global const uint* texels, __global float* depths,
                              __global SurfaceTexel* normals, __global SurfaceTexel* colours
 #if CLPV_EMISSIVE
                              ,
                              __global float4* emissives
 #endif
 ) {
-  const Eight p = this_row(view);
+  const PixelRow p = this_row(view);
   if (p.count == 0) return;
   int8 hit;
-  Seen seen;
-  resolve(view, p, keys, triangles_seen, CLPV_PASS_SCENE, depths, &hit, &seen);
+  PixelSurface surface;
+  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
   const uint first = p.py * view.width + p.px;
-  store_normals(p, seen_alone(hit, seen.normal), normals + first);
-  store_colours(p, seen_alone(hit, seen.albedo), 1.0f, colours + first);
+  store_normals(p, vec_masked(hit, surface.normal), normals + first);
+  store_colours(p, vec_masked(hit, surface.albedo), 1.0f, colours + first);
 #if CLPV_EMISSIVE
-  const Unpacked emissive = unpack(hit, seen.emissive);
+  const VecLanes emissive = unpack(hit, surface.emissive);
   for (uint i = 0; i < p.count; ++i)
     emissives[first + i] = (float4)(emissive.x[i], emissive.y[i], emissive.z[i], 0.0f);
 #endif
@@ -182,23 +193,24 @@ __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
 
 #else
 
-// `colour_scale`: Surface::colour_scale.
 __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const float8* keys,
-                          __global const uint8* triangles_seen, CLPV_SCENE, __global float* depths,
+                          __global const uint8* seen, __global const float4* vertices,
+                          __global const float4* triangles, __global const float4* materials,
+                          __global const float4* textures, __global const uint* texels, __global float* depths,
                           __global SurfaceTexel* normals, __global SurfaceTexel* fluxes,
                           const float colour_scale) {
-  const Eight p = this_row(view);
+  const PixelRow p = this_row(view);
   if (p.count == 0) return;
   int8 hit;
-  Seen seen;
-  resolve(view, p, keys, triangles_seen, CLPV_PASS_SCENE, depths, &hit, &seen);
+  PixelSurface surface;
+  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
   const float8 depth = stored_depth(view, keys[p.row]);
   Vec towards;
-  const Vec sent = vec_times(clpv_light_irradiance(light, positions(view, p, depth), &towards),
+  const Vec incident = vec_times(clpv_light_irradiance(light, positions(view, p, depth), &towards),
                              footprints(view, p, depth));
   const uint first = p.py * view.width + p.px;
-  store_normals(p, seen_alone(hit, seen.normal), normals + first);
-  store_colours(p, seen_alone(hit, vec_product(seen.albedo, sent)), colour_scale, fluxes + first);
+  store_normals(p, vec_masked(hit, surface.normal), normals + first);
+  store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale, fluxes + first);
 }
 
 #endif

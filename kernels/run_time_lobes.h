@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Propagation with lobes made at run time, as the paper has it: each of the faces of a cell turns (or projects) a lobe to
-// its normal and weighs it by the flux through it. With CLPV_EVALUATE_AT_RUN_TIME that flux, too, comes of the basis
-// functions evaluated along the way through the face.
+// Propagation step with lobes computed at run time, at the cost of the paper's Table 1 (docs/method.md, 'The paper's
+// lobes and look-up tables').
 //
-// Normals and links come from memory, so that no compiler does the work beforehand. Tables of rotated lobes and of the
-// functions are arguments, too. From the host: CLPV_FACES, CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME, and as text
-// clpv_functions_of(link) and what host/codegen/inject_source.hpp lists.
+//   c += sum_f (F_f / pi) A^-1 alpha(n_f),   F_f the flux through face f, n_f its normal
+//
+// Each face rotates (or projects) a lobe to its normal. With CLPV_EVALUATE_AT_RUN_TIME the flux, too, uses basis
+// functions evaluated along the link. Normals and links are read from memory, so that compilers cannot fold them;
+// look-up tables are arguments. From the host: CLPV_FACES, CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME,
+// clpv_functions_of(link), and the text of host/codegen/inject_source.hpp.
 #ifndef CLPV_RUN_TIME_LOBES_H
 #define CLPV_RUN_TIME_LOBES_H
 
-// What 1 W through a face of that normal adds to the cell's coefficients.
+// Coefficients of a lobe of 1 W about a normal.
 CLPV_INLINE Coefficients clpv_run_time_lobe(const float4 normal CLPV_AND_TABLE) {
   const Coefficients alpha = clpv_lobe_integrals(normal.x, normal.y, normal.z CLPV_PASS_TABLE);
 #if CLPV_UNIT_FLUX
@@ -40,7 +42,7 @@ CLPV_INLINE Target clpv_no_gain(void) {
 }
 
 #if CLPV_EVALUATE_AT_RUN_TIME
-// [W] of light `from` a cell through the face along whose link the functions, times its solid angle, are `at`.
+// Flux [W] of a cell's light through a face. `at`: basis functions along the face's link, times its solid angle.
 CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
   float flux = 0.0f;
 #define CLPV_DO(i) flux = fma(at.c##i, from.c##i, flux);
@@ -49,7 +51,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
   return fmax(flux, 0.0f);
 }
 
-// Once for all channels.
+// Evaluates the functions of all faces, once for all channels.
 #define CLPV_EVALUATE_FUNCTIONS                     \
   Coefficients at[CLPV_FACES];                      \
   for (int face = 0; face < CLPV_FACES; ++face) {   \
@@ -59,7 +61,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
 #define CLPV_EVALUATE_FUNCTIONS
 #endif
 
-// The fluxes that arrive at cell (x, y, z) in `channel`.
+// Fluxes through the faces of cell (x, y, z) in a channel.
 #define CLPV_CHANNEL_FLUXES(CHANNEL)                  \
   {                                                   \
     const int channel = CHANNEL;                      \
@@ -72,7 +74,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
   target_store(target, CHANNEL, x, y, z, gained); \
   target_store(sum, CHANNEL, x, y, z, clpv_target_sum(target_load(sum_so_far, CHANNEL, x, y, z), gained));
 
-// A step of all three channels: a lobe serves them all.
+// A step of all three channels, which share each lobe.
 #define CLPV_STEP_WITH_LOBES                                                        \
   float fluxes[3 * CLPV_FACES];                                                     \
   CLPV_EVALUATE_FUNCTIONS                                                           \

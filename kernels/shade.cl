@@ -1,29 +1,41 @@
 // SPDX-License-Identifier: MIT
-// Shade: what the lights put on every surface the camera sees, behind their shadow maps; and the image of it.
+// Shades the surfaces that the camera sees: direct light with shadow maps, and the image.
 //
-//   radiance = albedo/pi (E_direct + E_indirect) + emission
+//   L = albedo / pi (E_direct + E_indirect) + L_emitted      (docs/method.md, 'Shading')
 //
-// A shadow map is read with a 4 x 4 filter: a box of three texels, slid over them continuously, hence the weight
-// clamp(2 - |distance|, 0, 1) a texel and axis. Each texel's depth is held against the depth of the receiver's own
-// tangent plane behind that very texel. A map samples surfaces at its texels' centres, so a flat receiver meets itself
-// exactly, at any slope; lifting it along the normal (shared/shade.h) covers rounding, smooth normals on flat triangles,
-// and corners. What stands closer to the receiver than the lift casts no shadow on it.
+// The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the weight clamp(2 -
+// |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the depth of the receiver's tangent plane
+// at that texel. A flat receiver of any slope then does not shadow itself. A lift along the normal (shared/shade.h)
+// covers rounding, interpolated normals and corners; occluders closer than the lift cast no shadow.
+//
+// light_surfaces
+//   In:      depths [m], normals   the camera's surface (surface.h)
+//            light, views, count   the light and its views; count 0: no shadows
+//            which, map            the view whose receivers to light, and its shadow map: depths [m]
+//            fresh                 1: overwrite `direct`; 0: add to it
+//   In, out: direct                E_direct [W/m^2] per pixel
+//   A work-item lights eight pixels of a row.
+// shade
+//   In:      show                  CLPV_SHOW_* (shared/shade.h)
+//            depths, normals, albedos, emissive (may be null), direct, indirect   per pixel
+//   Out:     image                 RGBA, all 0 for empty pixels
 #include "lighting.h"
 #include "shared/shade.h"
 #include "surface.h"
 #include "surface_row.h"
 
-// Where in a shadow map eight receivers lie, and their lifted tangent planes: a plane is at depth d behind the texel at
-// (dx, dy) from there where d (a + per_depth g) = b - (1 - per_depth) g,  g = dx slope_x + dy slope_y.
+// Eight receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the receiver a plane
+// has depth d with d (a + per_depth g) = b - (1 - per_depth) g,  g = dx slope_x + dy slope_y.
 typedef struct {
   float8 x, y;  // pixel coordinates
   float8 slope_x, slope_y;
   float8 a, b;
-  float8 depth;     // of the plane at (x, y) itself
+  float8 depth;     // of the plane at (x, y)
   float per_depth;  // 1: perspective, 0: orthographic
 } Receivers;
 
-// `offset`: from the light's eye to the surfaces [m]; `cosine` of the light's angle to the normal, above 0.
+// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `cosine`: between normal and direction to the
+// light.
 CLPV_INLINE void receivers(const ClpvView view, const Vec offset, const Vec normal, const float8 cosine,
                            Receivers* r) {
   const Vec right = vec_of(view.right), up = vec_of(view.up), forward = vec_of(view.forward);
@@ -46,15 +58,16 @@ CLPV_INLINE void receivers(const ClpvView view, const Vec offset, const Vec norm
   r->depth = r->b / r->a;
 }
 
-// The first texel that the filter of each of eight receivers reads along an axis, and how far it lies from its middle.
+// First texel of the filter of each of eight receivers along an axis, and its distance [texels] from the filter's
+// centre.
 typedef struct {
   int8 first;
   float8 distance;
 } Taps;
 
 static inline Taps taps(const float8 texel, const int size) {
-  const float8 least = (float8)(-(float)CLPV_SHADOW_TAPS), most = (float8)((float)(size + CLPV_SHADOW_TAPS));
-  const float8 at = texel > least ? (texel < most ? texel : most) : least;
+  const float8 lowest = (float8)(-(float)CLPV_SHADOW_TAPS), highest = (float8)((float)(size + CLPV_SHADOW_TAPS));
+  const float8 at = texel > lowest ? (texel < highest ? texel : highest) : lowest;
   const int8 whole = convert_int8(at), below = whole + (convert_float8(whole) > at);
   Taps t;
   t.first = min(max(below - 1, (int8)(0)), (int8)(size - CLPV_SHADOW_TAPS));
@@ -62,24 +75,24 @@ static inline Taps taps(const float8 texel, const int size) {
   return t;
 }
 
-// Weights of texels at these distances from the filter's middle.
+// Filter weights of texels at these distances [texels] from the centre.
 static inline float4 tap_weights(const float4 distance) {
   return clamp(2.0f - fabs(distance), (float4)(0.0f), (float4)(1.0f));
 }
 
-// One receiver of eight, and the four texels along each axis that its filter reads.
+// One receiver, and the distances of its filter texels.
 typedef struct {
-  float4 dx, dy;  // from the filter's middle
+  float4 dx, dy;  // [texels] from the filter's centre
   float slope_x, slope_y, a, b, depth, per_depth;
 } Receiver;
 
-// (Element by element: Oclgrind crashes on what (float8)(a, b) becomes.)
+// Element by element: Oclgrind crashes on (float8)(a, b).
 static inline float8 side_by_side(const float4 a, const float4 b) {
   return (float8)(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
 }
 static inline float8 two_rows(const float2 a) { return (float8)(a.x, a.x, a.x, a.x, a.y, a.y, a.y, a.y); }
 
-// The weights of those texels of two rows of the filter, `d` their depths, that block.
+// Filter weights of the occluding texels of two rows; 0 for the others. `d`: depths of the texels [m].
 CLPV_INLINE float8 blocking_rows(const Receiver r, const float8 d, const float2 dy, const float8 wx, const float2 wy) {
   const float8 weights = wx * two_rows(wy);
   const float8 g = side_by_side(r.dx, r.dx) * r.slope_x + two_rows(dy) * r.slope_y;
@@ -87,7 +100,8 @@ CLPV_INLINE float8 blocking_rows(const Receiver r, const float8 d, const float2 
   return select((float8)(0.0f), weights, (d > 0.0f) & before & (d < r.depth));
 }
 
-// The weight of those texels of a receiver's filter that block, and of all: 0 outside the map. `row`: the filter's first.
+// Weight of a receiver's occluding texels; `whole`: weight of all of its texels, 0 outside the map. `row`: first row of
+// the filter.
 CLPV_INLINE float blocking(const Receiver r, __global const float* row, const uint width, float* whole) {
   const float4 wx = tap_weights(r.dx), wy = tap_weights(r.dy), one = 1.0f;
   const float8 upper = side_by_side(vload4(0, row), vload4(0, row + width));
@@ -99,7 +113,7 @@ CLPV_INLINE float blocking(const Receiver r, __global const float* row, const ui
   return dot(blocked, one);
 }
 
-// How much of the light arrives at eight receivers, 0..1; 1 outside the map. Only of those that are `lit` at all.
+// Visible share of the light at eight receivers in [0, 1]; 1 outside the map and outside the mask `lit`.
 CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, const Receivers r, const int8 lit) {
   const Taps tx = taps(r.x, (int)view.width), ty = taps(r.y, (int)view.height);
   int wanted[CLPV_ABREAST], first[CLPV_ABREAST];
@@ -122,7 +136,8 @@ CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, 
   return all > (float8)(0.0f) ? one - vload8(0, blocked) / all : one;
 }
 
-// Of several views from one eye, whether the one that looks most along `offset` is `which`; of equals the first.
+// Mask of the points that view `which` covers: of several views from one eye the one that looks most along `offset`,
+// the first of equals.
 CLPV_INLINE int8 sees(__global const ClpvView* views, const uint count, const uint which, const Vec offset) {
   const ClpvView mine = views[which];
   const float8 along = vec_dot_unfused(offset, vec_of(mine.forward));
@@ -135,12 +150,10 @@ CLPV_INLINE int8 sees(__global const ClpvView* views, const uint count, const ui
   return seen;
 }
 
-// What `light` puts on the surfaces that its view `which` of `count` sees: into `direct` if `fresh`, else added to it.
-// Without views (count 0) it casts no shadows. A work-item lights eight pixels of a row.
 __kernel void light_surfaces(const ClpvView camera, __global const float* depths, __global const float4* normals,
                              const ClpvLight light, __global const ClpvView* views, const uint count, const uint which,
                              __global const float* map, const uint fresh, __global float4* direct) {
-  const Eight p = this_row(camera);
+  const PixelRow p = this_row(camera);
   if (p.count == 0) return;
   Surfaces seen;
   surfaces(camera, p, depths, normals, &seen);
@@ -159,14 +172,13 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
     receivers(view, offset, normal, cosine, &r);
     irradiance = vec_times(irradiance, visibilities(view, map, r, lit));
   }
-  const Unpacked lanes = unpack(lit, irradiance);
+  const VecLanes lanes = unpack(lit, irradiance);
   for (uint i = 0; i < p.count; ++i) {
     const float4 added = (float4)(lanes.x[i], lanes.y[i], lanes.z[i], 0.0f);
     direct[seen.first + i] = fresh ? added : direct[seen.first + i] + added;
   }
 }
 
-// The image of one CLPV_SHOW_*. `emissive` may be null.
 __kernel void shade(const uint show, const uint pixels, __global const float* depths,
                     __global const SurfaceTexel* normals, __global const SurfaceTexel* albedos,
                     __global const float4* emissive, __global const float4* direct, __global const float4* indirect,

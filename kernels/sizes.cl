@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Tells how the device lays out the structs that it shares with the host: sizes and places, in bytes.
+// Reports the layout of the structs that device and host share, for `clpv check`: sizes and offsets of members.
+//
+// Out:  bytes  one number per SIZE and OFFSET of CLPV_EACH_SHARED (shared/fields.h), in its order [bytes]
+// A single work-item.
 #include "shared/emit.h"
 #include "shared/fields.h"
 #include "shared/grid.h"
@@ -9,7 +12,7 @@
 #include "shared/sweep.h"
 #include "shared/view.h"
 
-// The constants the host asserts its own sizes with; a size that differs does not compile.
+// Compilation fails if a size differs from the one that the host asserts.
 #define CLPV_ASSERT_SIZE(type, bytes) typedef char assert_##type[sizeof(type) == bytes ? 1 : -1];
 CLPV_ASSERT_SIZE(ClpvGrid, CLPV_SIZEOF_GRID)
 CLPV_ASSERT_SIZE(ClpvLight, CLPV_SIZEOF_LIGHT)
@@ -21,10 +24,9 @@ CLPV_ASSERT_SIZE(ClpvEmitter, CLPV_SIZEOF_EMITTER)
 CLPV_ASSERT_SIZE(ClpvView, CLPV_SIZEOF_VIEW)
 CLPV_ASSERT_SIZE(ClpvSweepBin, CLPV_SIZEOF_SWEEP_BIN)
 CLPV_ASSERT_SIZE(ClpvSweepDirection, CLPV_SIZEOF_SWEEP_DIRECTION)
-CLPV_ASSERT_SIZE(ClpvSweepHalo, CLPV_SIZEOF_SWEEP_SHELL)
+CLPV_ASSERT_SIZE(ClpvSweepHalo, CLPV_SIZEOF_SWEEP_HALO)
 CLPV_ASSERT_SIZE(ClpvRegion, CLPV_SIZEOF_REGION)
 
-// `bytes`: one entry a SIZE and OFFSET of CLPV_EACH_SHARED, in its order. One work-item.
 __kernel void sizes(__global uint* bytes) {
   if (get_global_id(0) != 0) return;
   uint i = 0;

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Sorts the texels of a surface by the cell they fall into, keeping their order within a cell: the deterministic
-// way to let one work-item sum all that a cell receives, with no atomics.
+// Sorts the texels of a surface by cell: a stable radix sort of two passes, low and high digit, without atomics. Sums
+// of a cell's texels are then deterministic (docs/method.md, 'Injection').
 //
-// In: one key a texel, its cell's number or CLPV_NO_CELL. Out: (key, texel) of every other texel, and how many.
+//   count_runs, sum_digits, place_digits, scatter_runs        low digit: texels -> runs
+//   count_texels, sum_digits, place_digits, scatter_texels    high digit: runs -> sorted texels
 //
-// A radix sort of two passes, low digit and high digit, each counting, adding up and scattering by chunks that keep
-// their order. Neighbouring texels mostly fall into one cell: the first pass gathers them into runs, which are a
-// fraction of the texels, and the second takes the runs apart again.
+// Neighbouring texels mostly belong to one cell. The first pass sorts runs of them, which are far fewer than texels;
+// the second splits them again.
 //
-// counts[digit][chunk]: how many a chunk has of a digit, then where its first of them goes. Zeroed by the host.
+// In:   keys    cell of each texel, or CLPV_NO_CELL (cell_keys.h)
+// Out:  sorted  (key, texel) of every other texel, two words each; the host reads their number from `all`
+// counts[digit][chunk] holds the number of elements of a chunk with a digit, then the index of the first of them. The
+// host zeroes it.
 #include "shared/sort.h"
 
-// Runs start where the key changes, and at every multiple of CLPV_LONGEST_RUN.
+// A run starts where the key changes, and at every multiple of CLPV_LONGEST_RUN.
 static inline bool starts_run(const uint texel, const uint key, const uint previous) {
   return key != CLPV_NO_CELL && (key != previous || texel % CLPV_LONGEST_RUN == 0);
 }
@@ -23,7 +26,7 @@ static inline uint run_length(__global const uint* keys, const uint texels, cons
   return end - first;
 }
 
-// First pass, counting: one work-item a chunk of `chunk` texels, a multiple of CLPV_LONGEST_RUN.
+// First pass, histogram. A work-item counts `chunk` texels, a multiple of CLPV_LONGEST_RUN.
 __kernel void count_runs(__global const uint* keys, const uint texels, const uint chunk, const uint chunks,
                          const uint low_bits, __global uint* counts) {
   const uint c = get_global_id(0);
@@ -38,8 +41,8 @@ __kernel void count_runs(__global const uint* keys, const uint texels, const uin
   }
 }
 
-// First pass, scattering: runs[2 i] the key, runs[2 i + 1] first texel and length. (Storing both as a uint2 makes
-// Oclgrind 21.10 report a fault that is none.)
+// First pass, scatter. runs[2 i]: key; runs[2 i + 1]: first texel and length. Not a uint2: Oclgrind 21.10 reports a
+// false error for its store.
 __kernel void scatter_runs(__global const uint* keys, const uint texels, const uint chunk, const uint chunks,
                            const uint low_bits, __global uint* counts, __global uint* runs) {
   const uint c = get_global_id(0);
@@ -58,7 +61,7 @@ __kernel void scatter_runs(__global const uint* keys, const uint texels, const u
   }
 }
 
-// Second pass, counting texels: one work-item a chunk of `chunk` runs.
+// Second pass, histogram of texels. A work-item counts `chunk` runs.
 __kernel void count_texels(__global const uint* runs, __global const uint* run_count, const uint chunk,
                            const uint chunks, const uint low_bits, __global uint* counts) {
   const uint c = get_global_id(0);
@@ -69,7 +72,7 @@ __kernel void count_texels(__global const uint* runs, __global const uint* run_c
   }
 }
 
-// Second pass, scattering: sorted[2 i] the key, sorted[2 i + 1] the texel.
+// Second pass, scatter. sorted[2 i]: key; sorted[2 i + 1]: texel.
 __kernel void scatter_texels(__global const uint* runs, __global const uint* run_count, const uint chunk,
                              const uint chunks, const uint low_bits, __global uint* counts,
                              __global uint* sorted) {
@@ -89,7 +92,7 @@ __kernel void scatter_texels(__global const uint* runs, __global const uint* run
   }
 }
 
-// Adding up, first half: totals[digit] = sum over its chunks.
+// Prefix sum, first half: totals[digit] = sum over its chunks.
 __kernel void sum_digits(__global const uint* counts, const uint chunks, const uint digits,
                          __global uint* totals) {
   const uint digit = get_global_id(0);
@@ -99,7 +102,8 @@ __kernel void sum_digits(__global const uint* counts, const uint chunks, const u
   totals[digit] = sum;
 }
 
-// Adding up, second half: counts become where each chunk's first of a digit goes; all[0] how many there are.
+// Prefix sum, second half: counts become the index of each chunk's first element with a digit. all[0]: number of
+// elements.
 __kernel void place_digits(__global uint* counts, const uint chunks, const uint digits,
                            __global const uint* totals, __global uint* all) {
   const uint digit = get_global_id(0);

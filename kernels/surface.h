@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a view sees, pixel by pixel: depth, normal, colour; and where a pixel's surface is (kernels/shared/view.h).
-// Scalars throughout, float3 only to hand them over: work-items vectorise (lanes.h).
-// CLPV_SURFACE_PAPER 1: normals and colours as 8-bit normalised integers, the paper's RSM format; 0: as float4.
+// Surfaces of a view, pixel by pixel: position, ray and footprint (shared/view.h), and stored normal and colour.
+//
+//   position = eye + d forward + s_x right + s_y up      (times d in perspective)
+//
+// CLPV_SURFACE_PAPER 1: normals and colours are 8-bit normalised integers, the paper's RSM format; 0: float4.
+// Arithmetic is scalar so that work-items vectorise (lanes.h); float3 only returns results.
 #ifndef CLPV_SURFACE_H
 #define CLPV_SURFACE_H
 
@@ -17,21 +20,21 @@ typedef uchar4 SurfaceTexel;
 typedef float4 SurfaceTexel;
 #endif
 
-// Whether a view's rays are parallel. Where a kernel is built for the views of one kind, the host says so by the literal
-// CLPV_ORTHOGRAPHIC (1: they are); otherwise the view does.
+// Nonzero for an orthographic view. The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host specialises a kernel for one
+// kind of view.
 #ifdef CLPV_ORTHOGRAPHIC
 #define CLPV_PARALLEL(view) CLPV_ORTHOGRAPHIC
 #else
 #define CLPV_PARALLEL(view) ((view).orthographic != 0.0f)
 #endif
 
-// (sx, sy) of a pixel's centre.
+// Screen coordinates (sx, sy) of a pixel's centre.
 static inline float2 clpv_screen(const ClpvView view, const float px, const float py) {
   return (float2)((2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width,
                   (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height);
 }
 
-// The surface point [m] at depth [m] behind pixel (px, py).
+// Point [m] at `depth` [m] behind pixel (px, py).
 static inline float3 clpv_position(const ClpvView view, const float px, const float py, const float depth) {
   const float2 s = clpv_screen(view, px, py);
   const float scale = view.orthographic != 0.0f ? 1.0f : depth;
@@ -41,7 +44,7 @@ static inline float3 clpv_position(const ClpvView view, const float px, const fl
 #undef CLPV_AT
 }
 
-// Unit direction from the eye through the pixel.
+// Unit direction of a pixel's ray, away from the eye.
 static inline float3 clpv_ray(const ClpvView view, const float px, const float py) {
   const float2 s = clpv_screen(view, px, py);
   const float sx = view.orthographic != 0.0f ? 0.0f : s.x, sy = view.orthographic != 0.0f ? 0.0f : s.y;
@@ -51,7 +54,7 @@ static inline float3 clpv_ray(const ClpvView view, const float px, const float p
 #undef CLPV_ALONG
 }
 
-// Area [m^2] of the pixel's footprint across its ray: perspective, distance^2 times the pixel's solid angle.
+// Footprint [m^2] of a pixel across its ray: distance^2 times the pixel's solid angle in perspective.
 static inline float clpv_footprint(const ClpvView view, const float px, const float py, const float depth) {
   const float pixel = 4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
   if (view.orthographic != 0.0f) return pixel;
@@ -72,7 +75,8 @@ static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, cons
 #endif
 }
 
-// `scale`: what a stored 1 means (the light's largest flux a texel; 1 for albedo).
+// `scale`: value of a stored 1 (largest flux of a texel of the light [W]; 1 for albedo). Used by the 8-bit format
+// alone.
 static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, const uint pixel,
                                       const float scale) {
 #if CLPV_SURFACE_PAPER

@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: MIT
-// What comes in at a cascade's border, along each direction: the coarser cascade's light in the cells round the grid.
+// Sets the boundary condition of a cascade from the next coarser cascade: light along each direction in the cells just
+// outside the grid, interpolated trilinearly.
 //
-// In: `kept`, the coarser cascade's halo. Out: the planes before the first ones, in `live` from number `before` on, and
-// the other sides, in `border` (sweep_border.h).
-// Radiance is the same in both cascades; what 1 of the coarser one's light is here, ClpvSweepDirection says.
+//   D = from_coarser D_coarser      (radiance is equal in both: D = L s^2 |w_m|)
 //
-// dx, dy, dz: from the coarser grid's least corner to the finer one's, in finer cells (coarse_to_fine.h). A work-item is eight cells
-// of a row, from the one before the grid's first on.
+// docs/method.md, 'The sweep'; from_coarser is in ClpvSweepDirection.
+//
+// In:   halo_light    D_coarser [W/sr] in the cells of `halo` (sweep_border.h)
+//       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells (coarse_to_fine.h)
+// Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
+//       border        D [W/sr] in the rows and columns upstream of each plane
+// A work-item computes eight cells of a row of one face, from the cell before the grid on.
 #include "coarse_to_fine.h"
 #include "shared/sweep.h"
-#include "sweep.h"
+#include "sweep_layout.h"
 #include "sweep_border.h"
 
 __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
-                           CLPV_BUFFER_IN kept, const ClpvSweepHalo halo, const int dx, const int dy, const int dz,
-                           __global float* live, const int before, CLPV_BUFFER_OUT border) {
+                           CLPV_BUFFER_IN halo_light, const ClpvSweepHalo halo, const int dx, const int dy,
+                           const int dz, __global float* plane_buffer, const int upstream, CLPV_BUFFER_OUT border) {
   const int column = 8 * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1, face = (int)get_global_id(2) % 3;
-  const int swept = (int)get_global_id(2) / 3, b = swept / (3 * CLPV_PARTS);
+  const int ordinate = (int)get_global_id(2) / 3, b = ordinate / (3 * CLPV_PARTS);
   if (column > CLPV_GRID || row > CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
-  __constant const ClpvSweepDirection* direction = directions + b * CLPV_PARTS + swept % CLPV_PARTS;
+  __constant const ClpvSweepDirection* direction = directions + b * CLPV_PARTS + ordinate % CLPV_PARTS;
   const bool plane_face = face == CLPV_BORDER_PLANE, row_face = face == CLPV_BORDER_ROW;
   const int across = plane_face ? bin.plane_axis : (row_face ? bin.row_axis : bin.column_axis);
   const int sign = plane_face ? bin.plane_sign : (row_face ? bin.row_sign : bin.column_sign);
@@ -29,17 +33,18 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
   const int layer = (sign > 0 ? -1 : CLPV_GRID) + CLPV_OFFSET(across);
   const int r = row + CLPV_OFFSET(row_axis), c = column + CLPV_OFFSET(column_axis);
   const int pitch = CLPV_SWEEP_HALO_PITCH_OF(halo.side), next = halo.side * pitch;
-  const int from = swept / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
-  CLPV_BUFFER_IN light = kept + clpv_halo_at(halo, from, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
-                                                     CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
+  const int coarser = ordinate / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
+  CLPV_BUFFER_IN light =
+      halo_light + clpv_halo_at(halo, coarser, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
+                                CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
   const float tl = CLPV_UPPER_WEIGHT(layer), tr = CLPV_UPPER_WEIGHT(r);
   const float8 lower = (1.0f - tr) * CLPV_READ_ROW(light, 0) + tr * CLPV_READ_ROW(light, pitch);
   const float8 upper = (1.0f - tr) * CLPV_READ_ROW(light, next) + tr * CLPV_READ_ROW(light, next + pitch);
   const float8 v = direction->from_coarser * ((1.0f - tl) * lower + tl * upper);
   const float8 in = c & 1 ? CLPV_ODD(v) : CLPV_EVEN(v);
   if (plane_face) {
-    vstore8(in, 0, live + before + swept * CLPV_SWEEP_LIVE + clpv_live_at(row, column));
+    vstore8(in, 0, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, column));
   } else {
-    CLPV_WRITE_ROW(border, clpv_side_at(swept, face, row, column), in);
+    CLPV_WRITE_ROW(border, clpv_border_at(ordinate, face, row, column), in);
   }
 }

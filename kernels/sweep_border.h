@@ -1,37 +1,41 @@
 // SPDX-License-Identifier: MIT
-// How light at the borders of cascades lies in memory: what comes in at a sweep's sides (`border`), and what a coarser
-// cascade keeps of its own for a finer one (`kept`).
+// Memory layout of the boundary condition of a sweep: the border of a cascade, and the halo that a coarser cascade
+// stores for a finer one.
 //
-// A grid has three upstream faces a direction and channel (number `swept` of them): the plane before the first one, and of
-// each plane the row and the column before its first ones. The first is put where a sweep looks for the plane before;
-// the sides of all of a bin's directions lie together, plane by plane, in the order in which a bin asks for them.
+// An ordinate is a direction and channel. Each has three upstream faces: the plane before the first one, which goes
+// into the plane buffer, and per plane the row and the column upstream, which go into `border`. `border` stores the
+// rows and columns of a bin's ordinates plane by plane, in the order in which sweep_bin reads them.
 #ifndef CLPV_SWEEP_BORDER_H
 #define CLPV_SWEEP_BORDER_H
 
 #include "shared/sweep.h"
-#include "sweep.h"
+#include "sweep_layout.h"
 
-#define CLPV_SWEPT(bin, channel, part) ((((bin)*3) + (channel)) * CLPV_PARTS + (part))
+// Number of an ordinate.
+#define CLPV_ORDINATE(bin, channel, part) ((((bin)*3) + (channel)) * CLPV_PARTS + (part))
 
 #define CLPV_BORDER_PLANE 0
 #define CLPV_BORDER_ROW 1
 #define CLPV_BORDER_COLUMN 2
 
-// The number of a side, beside a plane, at cell `at` of its row or column; eights of them start at cell -1.
-CLPV_INLINE int clpv_side_at(const int swept, const int face, const int plane, const int at) {
-  const int of_bin = 3 * CLPV_PARTS, planes = swept / of_bin * (CLPV_GRID + 2) + plane + 1;
-  const int side = 2 * (planes * of_bin + swept % of_bin) + face - CLPV_BORDER_ROW;
+// Index in `border` of cell `at` (-1 to CLPV_GRID) of the row or column upstream of a plane. Groups of eight start at
+// cell -1.
+CLPV_INLINE int clpv_border_at(const int ordinate, const int face, const int plane, const int at) {
+  const int per_bin = 3 * CLPV_PARTS, planes = ordinate / per_bin * (CLPV_GRID + 2) + plane + 1;
+  const int side = 2 * (planes * per_bin + ordinate % per_bin) + face - CLPV_BORDER_ROW;
   return side * CLPV_SWEEP_PITCH + 1 + at;
 }
 
-// Of a halo, (i, j): row and column of the face across planes, plane and column of that across rows, plane and row of that
-// across columns.
-// Of an axis: a halo is an argument by value, whose arrays are indexed by literals alone (region.h).
+// First cell of the halo along an axis. A halo is passed by value, and its arrays are indexed by literals alone
+// (region.h).
 #define CLPV_HALO_FIRST(halo, axis) \
   ((axis) == 0 ? (halo).first[0] : ((axis) == 1 ? (halo).first[1] : (halo).first[2]))
-CLPV_INLINE int clpv_halo_at(const ClpvSweepHalo halo, const int swept, const int face, const int layer, const int i,
-                              const int j) {
-  return (swept * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
+
+// Index in a halo. (i, j) is (row, column) in CLPV_BORDER_PLANE, (plane, column) in CLPV_BORDER_ROW and (plane, row) in
+// CLPV_BORDER_COLUMN.
+CLPV_INLINE int clpv_halo_at(const ClpvSweepHalo halo, const int ordinate, const int face, const int layer, const int i,
+                             const int j) {
+  return (ordinate * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
          (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Filtered look-ups in the scene's textures (kernels/shared/mesh.h), eight at a time: sRGB decoded before filtering,
-// linear result.
+// Filtered look-ups in the scene's textures (shared/mesh.h), eight at a time: bilinear and trilinear, with sRGB decoded
+// before filtering.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
 
@@ -13,7 +13,7 @@ typedef struct {
   float8 u, v;
 } Uv;
 
-// Entries of the texture table, one a lane.
+// Entries of the texture table, one per lane.
 typedef struct {
   uint8 offset, width, height, wrap;
 } Level;
@@ -27,7 +27,7 @@ CLPV_INLINE void clpv_level(__global const float4* table, const uint8 entry, Lev
   level->wrap = as_uint8(CLPV_COLUMN(rows, w));
 }
 
-// The same entry for all lanes.
+// Loads the same entry for all lanes.
 CLPV_INLINE void clpv_level_for_all(__global const float4* table, const uint entry, Level* level) {
   const uint4 row = as_uint4(table[entry]);
   level->offset = (uint8)(row.x);
@@ -36,8 +36,8 @@ CLPV_INLINE void clpv_level_for_all(__global const float4* table, const uint ent
   level->wrap = (uint8)(row.w);
 }
 
-// A coordinate folded into the texture: 0..1. Mirroring the coordinate mirrors the texels, so that its two ends
-// then clamp. A coordinate that is no number, or beyond the integers, reads 0.
+// Wraps a coordinate to [0, 1] by repeating, mirroring or clamping. NaN and coordinates beyond the range of int become
+// 0.
 static inline float8 clpv_fold(const float8 u, const uint8 wrap) {
   const float8 none = (float8)(0.0f), all = (float8)(1.0f);
   const float8 whole = convert_float8(convert_int8(u));
@@ -50,58 +50,57 @@ static inline float8 clpv_fold(const float8 u, const uint8 wrap) {
   return ((folded >= none) & (folded <= all)) ? folded : none;
 }
 
-// The two texels a coordinate lies between, and the weight of the second.
+// The two texels on either side of a coordinate, and the weight of the second.
 typedef struct {
   uint8 first, second;
   float8 weight;
-} Between;
+} TexelPair;
 
-static inline Between clpv_between(const float8 u, const uint8 size, const uint8 wrap) {
+static inline TexelPair clpv_texel_pair(const float8 u, const uint8 size, const uint8 wrap) {
   const float8 at = clpv_fold(u, wrap) * convert_float8(as_int8(size)) - 0.5f;
-  const int8 i = convert_int8(at + 1.0f) - 1;  // its floor: at is -1/2 or more
+  const int8 i = convert_int8(at + 1.0f) - 1;  // floor(at), since at >= -1/2
   const int8 last = as_int8(size) - 1, next = i + 1;
   const int8 repeat = wrap == (uint8)(CLPV_WRAP_REPEAT);
-  Between between;
-  between.weight = at - convert_float8(i);
-  between.first = as_uint8(i >= 0 ? i : repeat & last);
-  between.second = as_uint8(next <= last ? next : ~repeat & last);
-  return between;
+  TexelPair pair;
+  pair.weight = at - convert_float8(i);
+  pair.first = as_uint8(i >= 0 ? i : repeat & last);
+  pair.second = as_uint8(next <= last ? next : ~repeat & last);
+  return pair;
 }
 
 static inline float8 clpv_mix(const float8 a, const float8 b, const float8 weight) {
   return a + weight * (b - a);
 }
 
-// The four texels round a point, and their weights.
+// The four texels about a point, and its weights.
 typedef struct {
   uint8 texel00, texel01, texel10, texel11;  // row, column
   float8 x, y;
-} Four;
+} TexelQuad;
 
-CLPV_INLINE void clpv_four(const Level level, __global const uint* texels, const Uv uv, Four* four) {
-  const Between x = clpv_between(uv.u, level.width, level.wrap & 15u);
-  const Between y = clpv_between(uv.v, level.height, level.wrap >> 4);
+CLPV_INLINE void clpv_texel_quad(const Level level, __global const uint* texels, const Uv uv, TexelQuad* quad) {
+  const TexelPair x = clpv_texel_pair(uv.u, level.width, level.wrap & 15u);
+  const TexelPair y = clpv_texel_pair(uv.v, level.height, level.wrap >> 4);
   const uint8 upper = level.offset + y.first * level.width, lower = level.offset + y.second * level.width;
   const uint8 at00 = upper + x.first, at01 = upper + x.second, at10 = lower + x.first,
               at11 = lower + x.second;
-  // Volatile, or else LLVM makes gather instructions of these loads: slower than loads one by one on processors whose
-  // gathers were mended (resolve_camera: 1.19 times the time).
+  // Volatile keeps LLVM from gather instructions, which are slower than scalar loads on processors with mitigations.
   volatile __global const uint* each = texels;
-  four->texel00 = (uint8)CLPV_GATHER(each, at00);
-  four->texel01 = (uint8)CLPV_GATHER(each, at01);
-  four->texel10 = (uint8)CLPV_GATHER(each, at10);
-  four->texel11 = (uint8)CLPV_GATHER(each, at11);
-  four->x = x.weight;
-  four->y = y.weight;
+  quad->texel00 = (uint8)CLPV_GATHER(each, at00);
+  quad->texel01 = (uint8)CLPV_GATHER(each, at01);
+  quad->texel10 = (uint8)CLPV_GATHER(each, at10);
+  quad->texel11 = (uint8)CLPV_GATHER(each, at11);
+  quad->x = x.weight;
+  quad->y = y.weight;
 }
 
-static inline float8 clpv_filter(const Four f, const float8 a, const float8 b, const float8 c,
+static inline float8 clpv_filter(const TexelQuad f, const float8 a, const float8 b, const float8 c,
                                  const float8 d) {
   return clpv_mix(clpv_mix(a, b, f.x), clpv_mix(c, d, f.x), f.y);
 }
 
-// Linear light of sRGB's bytes, within 5e-7 of it, 255 exactly. Its upper part is a polynomial of the root of what is encoded
-// ((x + .055) / 1.055)^2.4.
+// Decodes sRGB bytes to linear light, within 5e-7; 255 is exact. The part ((x + 0.055) / 1.055)^2.4 is a polynomial in
+// sqrt(x).
 static inline float8 clpv_decode(const uint8 byte) {
   const float8 x = convert_float8(as_int8(byte)) * (1.0f / 255.0f), s = sqrt(x);
   float8 linear = -0.0757972151f + s * 0.0097230114f;
@@ -114,13 +113,13 @@ static inline float8 clpv_decode(const uint8 byte) {
   return byte > 10u ? linear : x * (1.0f / 12.92f);
 }
 
-// Bilinear, in one entry of the table: linear colour.
+// Bilinear look-up in one entry of the table: linear colour.
 CLPV_INLINE void clpv_bilinear(__global const float4* table, __global const uint* texels, const uint8 entry,
                                const Uv uv, Vec* colour) {
   Level level;
   clpv_level(table, entry, &level);
-  Four f;
-  clpv_four(level, texels, uv, &f);
+  TexelQuad f;
+  clpv_texel_quad(level, texels, uv, &f);
 #define CLPV_CHANNEL(shift)                                                                          \
   clpv_filter(f, clpv_decode((f.texel00 >> shift) & 255u), clpv_decode((f.texel01 >> shift) & 255u), \
               clpv_decode((f.texel10 >> shift) & 255u), clpv_decode((f.texel11 >> shift) & 255u))
@@ -130,10 +129,10 @@ CLPV_INLINE void clpv_bilinear(__global const float4* table, __global const uint
 #undef CLPV_CHANNEL
 }
 
-// The same in a level, of alpha: 0..1.
+// Bilinear look-up of alpha in a level, in [0, 1].
 CLPV_INLINE float8 clpv_level_alpha(const Level level, __global const uint* texels, const Uv uv) {
-  Four f;
-  clpv_four(level, texels, uv, &f);
+  TexelQuad f;
+  clpv_texel_quad(level, texels, uv, &f);
 #define CLPV_ALPHA(texel) (convert_float8(as_int8((texel) >> 24)) * (1.0f / 255.0f))
   return clpv_filter(f, CLPV_ALPHA(f.texel00), CLPV_ALPHA(f.texel01), CLPV_ALPHA(f.texel10),
                      CLPV_ALPHA(f.texel11));
@@ -147,15 +146,15 @@ CLPV_INLINE float8 clpv_bilinear_alpha(__global const float4* table, __global co
   return clpv_level_alpha(level, texels, uv);
 }
 
-// The mip level, 0 being the texture itself, for steps of `square` squared texels from pixel to pixel: log2 of the
-// step, by straight lines between the powers of two of its square (off by less than 1/20 of a level).
+// Mip level for a squared step of `square` texels^2 from pixel to pixel: log2 of the step, piecewise linear in the
+// square (error below 0.05 levels). Level 0 is the texture itself.
 static inline float8 clpv_mip_level(const float8 square) {
-  const float8 none = (float8)(0.0f), most = (float8)(CLPV_TEXTURE_LEVELS - 1.0f);
+  const float8 none = (float8)(0.0f), highest = (float8)(CLPV_TEXTURE_LEVELS - 1.0f);
   const float8 level = 0.5f * (convert_float8(as_int8(square)) * (1.0f / 8388608.0f) - 127.0f);
-  return level > none ? (level < most ? level : most) : none;
+  return level > none ? (level < highest ? level : highest) : none;
 }
 
-// Trilinear: the mip levels chosen by the longer of the two steps that a pixel makes.
+// Trilinear look-up. `step_x`, `step_y`: change of uv from pixel to pixel; the longer step selects the mip level.
 CLPV_INLINE void clpv_trilinear(__global const float4* table, __global const uint* texels,
                                 const uint8 texture, const Uv uv, const Uv step_x, const Uv step_y,
                                 Vec* colour) {
@@ -172,7 +171,7 @@ CLPV_INLINE void clpv_trilinear(__global const float4* table, __global const uin
   Vec a, b;
   clpv_bilinear(table, texels, finest + as_uint8(fine), uv, &a);
   *colour = a;
-  if (none(weight > (float8)(0.0f))) return;  // seen from so near that there is no finer level
+  if (none(weight > (float8)(0.0f))) return;  // magnified: level 0 alone
   clpv_bilinear(table, texels, finest + as_uint8(coarse), uv, &b);
   colour->x = clpv_mix(a.x, b.x, weight);
   colour->y = clpv_mix(a.y, b.y, weight);

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What blockers let through on each link into a cell: 1 - B, B the blocking potential in [0, 1].
+// Computes the transmittance of each link into a cell from the blockers at its corners.
 //
-// In: geometry volume, samples at the cells' corners. Out: transmittance volume, a number a cell and link.
-// B is the mean over the corners of the face a link leads to, looked up against the light (docs/method.md, 'Propagation');
-// host/codegen/transmittance_source.cpp generates CLPV_TRANSMITTANCE. A work-item is a cell, or CLPV_LANES cells side by side.
+//   T = 1 - clamp(B, 0, 1),   B the blocking potential along the link, a mean over the corners of the face that it
+//                             passes
+//
+// docs/method.md, 'Blockers'. Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'.
+//
+// In:   blockers       geometry volume, samples at the cells' corners
+// Out:  transmittance  T in [0, 1] of each cell and link
+// From the host (host/codegen/transmittance_source.cpp): CLPV_TRANSMITTANCE, which declares `links`. A work-item
+// computes CLPV_LANES cells of a row.
 #include "coefficients.h"
 #include "volume/geometry.h"
 #include "volume/transmittance.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A triangle of the scene as a view sees it: its plane, and what a pixel's ray hits on it.
+// Intersection of a pixel's ray with a triangle of the scene: depth key and barycentric weights.
 //
-// Of one triangle, or of eight side by side (vec.h). Everything is relative to the eye and built from edges, so that
-// small triangles far from the origin lose no digits.
+// One triangle, or eight in lanes (vec.h). Coordinates are relative to the eye and built from edges, so that small
+// triangles far from the origin keep their precision.
 #ifndef CLPV_TRIANGLE_H
 #define CLPV_TRIANGLE_H
 
@@ -13,10 +13,10 @@
 typedef struct {
   Vec corner;        // first vertex - eye [m]
   Vec edge1, edge2;  // second and third vertex - first
-  Vec normal;        // edge1 x edge2; towards whom the triangle's front faces
+  Vec normal;        // edge1 x edge2, on the front side; not normalised
 } Face;
 
-// Of the triangle with corners a, b, c [m].
+// Face of the triangle with corners a, b, c [m].
 static inline Face clpv_face(const ClpvView view, const Vec a, const Vec b, const Vec c) {
   Face face;
   face.corner = vec_minus(a, vec_of(view.eye));
@@ -26,7 +26,7 @@ static inline Face clpv_face(const ClpvView view, const Vec a, const Vec b, cons
   return face;
 }
 
-// Steps on the screen from a pixel to the next one right, and below.
+// Steps in screen coordinates to the pixel on the right, and below.
 static inline float clpv_step_x(const ClpvView view) {
   return 2.0f * view.half_width / (float)view.width;
 }
@@ -34,27 +34,27 @@ static inline float clpv_step_y(const ClpvView view) {
   return -2.0f * view.half_height / (float)view.height;
 }
 
-// From the middle of the screen to a pixel, across the view.
+// Vector across the view from the screen's centre to a pixel.
 static inline Vec clpv_across(const ClpvView view, const Real px, const Real py) {
   const Real x = (2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width;
   const Real y = (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height;
   return vec_add_scaled(vec_times(vec_of(view.right), x), y, vec_of(view.up));
 }
 
-// Along a pixel's ray, one metre deeper.
+// Vector along a pixel's ray, of depth 1 m.
 static inline Vec clpv_along(const ClpvView view, const Real px, const Real py) {
   if (CLPV_PARALLEL(view)) return vec_of(view.forward);
   return vec_add_scaled(clpv_across(view, px, py), (Real)(1.0f), vec_of(view.forward));
 }
 
-// From the eye to the point at `depth` behind a pixel.
+// Vector from the eye to the point at `depth` [m] behind a pixel.
 static inline Vec clpv_to_point(const ClpvView view, const Real px, const Real py, const Real depth) {
   if (CLPV_PARALLEL(view)) return vec_add_scaled(clpv_across(view, px, py), depth, vec_of(view.forward));
   return vec_times(clpv_along(view, px, py), depth);
 }
 
-// The key (ClpvRasterTriangle) of the face's plane at pixel (px, py), and its change a pixel along x and y. Not finite
-// where the plane is seen edge-on.
+// Key (ClpvRasterTriangle) of the face's plane at pixel (px, py), and its change per pixel along x and y. Not finite
+// for a plane that is seen edge-on.
 static inline Vec clpv_key_plane(const ClpvView view, const Face face, const Real px, const Real py) {
   const Real right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);
   const Real down = vec_dot(face.normal, vec_of(view.up)) * clpv_step_y(view);
@@ -67,9 +67,9 @@ static inline Vec clpv_key_plane(const ClpvView view, const Face face, const Rea
   return vec(vec_dot(face.normal, clpv_along(view, px, py)) * scale, right * scale, down * scale);
 }
 
-// Weights of the second and third vertex, as functions of position: weight = (point - corner) . gradient.
+// Barycentric weights of the second and third vertex as functions of position: weight = (point - corner) . gradient.
 typedef struct {
-  Vec gradient1, gradient2;  // 0 for a triangle without area: its first vertex stands for it
+  Vec gradient1, gradient2;  // 0 for a triangle without area
 } Weights;
 
 static inline Weights clpv_weights(const Face face) {
@@ -81,8 +81,8 @@ static inline Weights clpv_weights(const Face face) {
   return weights;
 }
 
-// The weights of all three vertices at `depth` behind a pixel. Kept inside the triangle: snapped to the sub-pixel
-// grid it may cover the centre of a pixel that it misses by a hair.
+// Weights of all three vertices at `depth` [m] behind a pixel, clamped to the triangle: snapping to the sub-pixel grid
+// can cover pixel centres just outside.
 static inline Vec clpv_weights_at(const ClpvView view, const Face face, const Weights weights, const Real px,
                                   const Real py, const Real depth) {
   const Vec offset = vec_minus(clpv_to_point(view, px, py, depth), face.corner);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of three named components. CLPV_COMPONENT, the type of a component, is float, or float8 after lanes.h: then a
-// Vec is eight of them side by side.
+// Vectors of three named components, of type CLPV_COMPONENT: float, or float8 after lanes.h, for eight vectors at a
+// time.
 #ifndef CLPV_VEC_H
 #define CLPV_VEC_H
 
@@ -38,7 +38,7 @@ static inline Real vec_dot(const Vec a, const Vec b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// The same, each product rounded whether a device could fuse or not.
+// Dot product without fused multiply-adds, for the same result on every device.
 static inline Real vec_dot_unfused(const Vec a, const Vec b) {
 #pragma OPENCL FP_CONTRACT OFF
   return a.x * b.x + a.y * b.y + a.z * b.z;

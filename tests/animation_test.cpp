@@ -33,7 +33,7 @@ TEST_F(AnimationTest, AMeshMovesBetweenItsKeys) {
 TEST_F(AnimationTest, AStillModelDoesNotMove) {
   MovingScene moving = load();
   EXPECT_FALSE(moving.moves());
-  const std::vector<Part> parts = moving.scene().moving;
+  const std::vector<MeshRange> parts = moving.scene().moving;
   EXPECT_THAT(parts, IsEmpty());
   moving.pose(3);
   EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(1, 0, 0), kClose));

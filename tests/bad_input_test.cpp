@@ -173,7 +173,7 @@ TEST_F(BadSceneFileTest, Cameras) {
           {R"("fov": 3)", {"/cameras/0/fov", "vertical_fov_degrees"}},
           {R"("eye": [0, 0])", {"/cameras/0/eye", "an array of 2", "3 numbers"}},
           {R"("eye": [1, 0, 0])", {"/cameras/0/target", "the eye itself"}},
-          {R"("target": [0, 5, 0])", {"/cameras/0/up", "across the line of sight"}},
+          {R"("target": [0, 5, 0])", {"/cameras/0/up", "not parallel to the viewing direction"}},
           {R"("up": [1, 0, 0])", {"/cameras/0/up"}},
           {R"("up": [0, 0, 0])", {"/cameras/0/up", "no length"}},
           {R"("vertical_fov_degrees": 0)", {"/cameras/0/vertical_fov_degrees"}},
@@ -181,7 +181,7 @@ TEST_F(BadSceneFileTest, Cameras) {
           {R"("near": 0)", {"/cameras/0/near"}},
           {R"("light": "moon")", {"/cameras/0/light", "'moon'", "'sun'"}},
           {R"("name": "\u001b[31m", "light": "\u0000")", {"/cameras/0"}},
-          {R"("up": [0, 1, 0]}, )" + other, {"/cameras/1/name", "'a' again"}},
+          {R"("up": [0, 1, 0]}, )" + other, {"/cameras/1/name", "duplicate name 'a'"}},
       });
 }
 
@@ -221,9 +221,9 @@ TEST_F(BadSceneFileTest, KeysOfCameras) {
           {ahead + R"({"time": 1e7, "eye": [0, 0, 0]}])", {time, range}},
           {ahead + R"({"time": "noon", "eye": [0, 0, 0]}])", {time, range}},
           {ahead + R"({"eye": [0, 0, 0]}])", {time, "found nothing"}},
-          {still + R"("keys": [{"time": 0}])", {"/cameras/0/keys/0", "a time alone", "vertical_fov_degrees"}},
+          {still + R"("keys": [{"time": 0}])", {"/cameras/0/keys/0", "only a time", "vertical_fov_degrees"}},
           {still + R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
-           {"/cameras/0/keys/0/eye", "/cameras/0/eye says too"}},
+           {"/cameras/0/keys/0/eye", "a duplicate of /cameras/0/eye"}},
           {still + R"("keys": [])", {"/cameras/0/keys", "an array of 1 to 65536"}},
           {still + R"("interpolation": "step")", {"/cameras/0/interpolation", "no keys"}},
           {R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
@@ -248,7 +248,7 @@ TEST_F(BadSceneFileTest, KeysOfLights) {
            {"/lights/0/illuminance_lux", "needs it"}},
           {R"("kind": "point", "position": [0, 0, 0], "intensity_candela": 1,
           "keys": [{"time": 0, "direction": [0, -1, 0]}])",
-           {"/lights/0/direction", "a point light has not"}},
+           {"/lights/0/direction", "a point light does not have"}},
       });
 }
 

@@ -171,7 +171,8 @@ TEST(Rejected, IllConditionedSetsNamingLambdaAndNumber) {
 
 TEST(Rejected, LambdaOutsideItsRangeAndUnknownNames) {
   for (const double lambda : {0.0, 1.0, -0.25, 2.0, std::nan("")}) {
-    EXPECT_THAT(rejection("srbf8v2", lambda), ::testing::HasSubstr("greater than 0 and less than 1")) << lambda;
+    EXPECT_THAT(rejection("srbf8v2", lambda), ::testing::HasSubstr("greater than 0 and less than 1"))
+        << lambda;
   }
   EXPECT_THAT(rejection("srbf7", .25), ::testing::HasSubstr("allowed: sh2, sh3, sh4, sh5, srbf4"));
 }

@@ -37,7 +37,7 @@ Transport swept() {
 
 TEST(Bounce, AllThatLeavesASideLeaves) {
   const Matrix light = reflected_intensity();
-  for (int side = 0; side < kReflectingSides; ++side) {
+  for (int side = 0; side < kCellFaces; ++side) {
     double flux = 0, along = 0;
     for (int b = 0; b < kSweepBins; ++b) {
       const SweepBin bin = sweep_bins(1)[static_cast<std::size_t>(b)];
@@ -57,7 +57,7 @@ TEST(Bounce, WhatFallsOnASideIsWhatItWouldSend) {
   const Matrix flux = incident_flux(), light = reflected_intensity();
   const std::vector<double> even(kSweepBins, 1.0);
   const std::vector<double> arriving = flux * std::span<const double>(even);
-  for (int side = 0; side < kReflectingSides; ++side) {
+  for (int side = 0; side < kCellFaces; ++side) {
     EXPECT_NEAR(arriving[static_cast<std::size_t>(side)], std::numbers::pi, 0.05 * std::numbers::pi);
     for (int b = 0; b < kSweepBins; ++b) {
       const double cosine =
@@ -96,12 +96,12 @@ struct Room {
   reference::Volume light{kGrid, kSweepBins}, blockers, reflectors;
 
   explicit Room(float albedo) : scene(room_scene(albedo, grid)) {
-    blockers = reference::block(scene, grid).least;
-    reflectors = reference::reflect(scene, grid).areas;
+    blockers = reference::voxelize_blockers(scene, grid).lower;
+    reflectors = reference::voxelize_reflectors(scene, grid).areas;
     const Matrix leaving = reflected_intensity();
     reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;
-      for (int side = 0; side < kReflectingSides; ++side) {
+      for (int side = 0; side < kCellFaces; ++side) {
         if (p[side / 2] != (side % 2 == 0 ? kFirst : kLast)) continue;
         for (int channel = 0; channel < 3; ++channel) {
           for (int b = 0; b < kSweepBins; ++b) light.at(channel, b, p.x, p.y, p.z) += leaving(b, side);

@@ -57,7 +57,7 @@ TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
   Volume merged = a;
   merge_geometry(b, *basis, Blocking::one_sided, merged);
   EXPECT_EQ(merged.values, b.values);
-  const Volume other = otherwise_merged(a, b, *basis, Blocking::one_sided);
+  const Volume other = merged_against_ties(a, b, *basis, Blocking::one_sided);
   for (int i = 0; i < basis->size(); ++i) {
     EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
     EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));

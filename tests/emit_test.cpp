@@ -154,8 +154,8 @@ TEST(Emit, WhatIsMostIsWhatOneCellOrTheWholeSends) {
   Scene scene;
   add_quad(scene, {0, 0, 0}, {0, 0, 1}, {2, 0, 0}, add_lamp_material(scene, {3, 1, 1}));
   const std::vector<std::uint32_t> triangles = emissive_triangles(scene);
-  EXPECT_NEAR(most_emitted(scene, triangles, 0.5), pi * 3 * 0.25, 1e-6);
-  EXPECT_NEAR(most_emitted(scene, triangles, 100), pi * 3 * 2, 1e-6);
+  EXPECT_NEAR(max_emitted_flux(scene, triangles, 0.5), pi * 3 * 0.25, 1e-6);
+  EXPECT_NEAR(max_emitted_flux(scene, triangles, 100), pi * 3 * 2, 1e-6);
   EXPECT_FALSE(emits(floor_scene(0.5)));
   EXPECT_TRUE(emits(scene));
 }

@@ -160,7 +160,7 @@ TEST(Frame, WithoutOcclusionThereIsMoreLight) {
 
 TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
   Scene scene = load_scene(scene_path("cornell.json"));
-  scene.sky = std::make_shared<const Sky>(even_sky(glm::vec3(1)));
+  scene.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(1)));
   EXPECT_NO_THROW(Frame(test::test_session(), scene, {}));
   const std::vector<std::function<void(RenderOptions&)>> changes = {
       [](RenderOptions& o) { o.state = State::fluxes; },  // the transport is a sweep

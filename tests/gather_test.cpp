@@ -89,16 +89,16 @@ SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3
   return image;
 }
 
-/// Irradiance E [W/m^2] of each pixel, by the CPU reference, from volumes of grid_of(0), grid_of(1), ... `hidden`: bytes as
+/// Irradiance E [W/m^2] of each pixel, by the CPU reference, from volumes of grid_of(0), grid_of(1), ... `occluded`: bytes as
 /// CellVisibility stores them. check_gather holds the kernels against the same reference.
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, GatherOptions options,
                                const std::vector<reference::Volume>& light, const SurfaceImage& image,
-                               const std::vector<std::uint8_t>& hidden = {}) {
+                               const std::vector<std::uint8_t>& occluded = {}) {
   options.grid = kGrid;
   std::vector<reference::Cascade> cascades;
   for (std::size_t c = 0; c < light.size(); ++c) {
     cascades.push_back({grid_of(static_cast<int>(c)), &light[c]});
-    if (!hidden.empty()) cascades[c].hidden = hidden.data() + c * hidden.size() / light.size();
+    if (!occluded.empty()) cascades[c].occluded = occluded.data() + c * occluded.size() / light.size();
   }
   return reference::gather(basis, transport, options, cascades, image);
 }
@@ -266,7 +266,7 @@ TEST(Gather, NegativeLightIsClamped) {
 /// Light in front of a wall across x through the origin, none behind it.
 struct Walled {
   reference::Volume light;
-  std::vector<std::uint8_t> hidden;
+  std::vector<std::uint8_t> occluded;
 };
 
 Walled walled(const Basis& basis) {
@@ -277,7 +277,7 @@ Walled walled(const Basis& basis) {
                       const bool in_front = centre.x < kGrid / 2.0;
                       return times(in_front ? (channel + 1) * 2.0 : 0.0, basis.constant());
                     }),
-          reference::see(wall, grid_of(0)).least};
+          reference::occlude(wall, grid_of(0)).lower};
 }
 
 TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
@@ -287,7 +287,7 @@ TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
   const auto on_wall = [&](double side, Gathering gathering) {
     const SurfaceImage image = walk({side * 1e-4, -0.98, -0.9}, {side * 1e-4, 0.97, 0.95}, {side, 0, 0});
     return gather(*basis, TransportKind::sampled, {.gather = gathering, .gather_offset = 0.25}, {scene.light},
-                  image, scene.hidden);
+                  image, scene.occluded);
   };
   const auto is = [](double e) { return [e](std::size_t) { return e; }; };
   expect_all(on_wall(-1, Gathering::visible), is(lit), 3 * lit);
@@ -311,11 +311,11 @@ TEST(Gather, LightIsContinuousWhereCellsGoOutOfSight) {
   const auto basis = make_basis("sh2");
   Scene wall;  // ends within the grid: behind its edge cells come into sight
   add_quad(wall, {0, -9, -9}, {0, 9, 0}, {0, 0, 20}, add_material(wall));
-  const std::vector<std::uint8_t> hidden = reference::see(wall, grid_of(0)).least;
+  const std::vector<std::uint8_t> occluded = reference::occlude(wall, grid_of(0)).lower;
   const SurfaceImage image = walk({0.1, -0.4, 0.13}, {0.1, 0.4, 0.13}, {0, 0, 1});
   const std::vector<glm::dvec3> found =
       gather(*basis, TransportKind::sampled, {.gather = Gathering::visible, .gather_offset = 0.25},
-             {walled(*basis).light}, image, hidden);
+             {walled(*basis).light}, image, occluded);
   const double lit = 4 * 2.0 / (kCell * kCell), step = 0.8 / kCell / kPixels;  // [cells]
   EXPECT_LT(found.front().x, 0.05 * lit);
   EXPECT_GT(found.back().x, 0.2 * lit);

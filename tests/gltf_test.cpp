@@ -317,7 +317,7 @@ TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
   model.triangle();
   model.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
   const Scene scene = load();
-  EXPECT_THAT(scene.notes, ::testing::Contains("extensions used but not read: KHR_materials_unlit"));
+  EXPECT_THAT(scene.notes, ::testing::Contains("extensions that are not read: KHR_materials_unlit"));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ std::span<const std::uint8_t> bytes_in(const std::string& text) {
 }
 
 std::string bare(const std::string& png) {
-  const auto kept = bare_png(bytes_in(png));
+  const auto kept = strip_png(bytes_in(png));
   return {kept.begin(), kept.end()};
 }
 

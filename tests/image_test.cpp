@@ -180,18 +180,18 @@ TEST_F(ImageFiles, RejectsWhatIsNoImageOrTooLarge) {
     std::string bytes;
     const char* word;
   } rows[] = {
-      {"empty.png", "", "no image"},
-      {"text.exr", "once upon a time", "no image"},
-      {"a.txt", "x", ".exr, .png and .hdr"},
+      {"empty.png", "", "unknown format"},
+      {"text.exr", "once upon a time", "unknown format"},
+      {"a.txt", "x", ".exr, .png, .hdr"},
       {"exr.png", exr, "content is openexr"},
       {"png.exr", png, "content is png"},
       {"wide.exr", with(exr, window, 12, std::string("\x9f\x86\1\0\5\0\0\0", 8)),
-       "100000 x 6 pixels; allowed are 1 to 16384"},
+       "100000 x 6 pixels; allowed: 1 to 16384"},
       {"inverse.exr", with(exr, window, 12, "\xfb\xff\xff\xff\xfb\xff\xff\xff"), "-4 x -4"},
       {"compression.exr", with(exr, compression, 4, "\x7f"), "cannot be read"},
       {"future.exr", with(exr, "\x76\x2f\x31\x01", 0, "\x09"), "cannot be read"},
       {"tiles.exr", tiles, "tiles of 16 x 12255232"},
-      {"huge.png", huge, "60000 x 60000 pixels; allowed are 1 to 16384"},
+      {"huge.png", huge, "60000 x 60000 pixels; allowed: 1 to 16384"},
       {"broken.png", broken, "damaged"},
       {"text.png", text, "damaged or truncated"},
       {"first.hdr", "#?RADIANCE\n", "hdr"},

@@ -26,8 +26,8 @@ const ClpvGrid kGridCells = {{0, 0, 0}, 1, kGrid, {}};
 struct Areas {
   std::vector<float> values;
   float at(int side, int x, int y, int z, int channel = 0) const {
-    return values[static_cast<std::size_t>((channel * kReflectingSides + side) * kCells +
-                                           (z * kGrid + y) * kGrid + x)];
+    return values[static_cast<std::size_t>((channel * kCellFaces + side) * kCells + (z * kGrid + y) * kGrid +
+                                           x)];
   }
   float sum(int side, int channel = 0) const {
     float total = 0;
@@ -40,7 +40,7 @@ struct Areas {
 Areas reflected(const Scene& scene) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   ReflectorVoxelizer reflector(test_session(), buffers, kGrid, 1, {});
-  reflector.reflect(0, kGridCells);
+  reflector.voxelize(0, kGridCells);
   return {reflector.reflectors(0).read(test_session())};
 }
 
@@ -55,7 +55,7 @@ TEST(Reflect, AWallReflectsByItsAlbedoInTheCellsBeforeAndBehindIt) {
   const float cells = kGrid * kGrid;
   for (int channel = 0; channel < 3; ++channel) {
     const float albedo = channel == 0 ? 0.8f : (channel == 1 ? 0.5f : 0.25f);
-    for (int side = 0; side < kReflectingSides; ++side)
+    for (int side = 0; side < kCellFaces; ++side)
       EXPECT_NEAR(areas.sum(side, channel), side < 2 ? albedo * cells : 0, kColour * cells) << side;
   }
 }

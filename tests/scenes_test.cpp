@@ -63,7 +63,7 @@ TEST(Scenes, AreWhatTheirCardsSay) {
     EXPECT_THAT(scene.notes, ::testing::IsEmpty());
   }
   const Scene lamp = load_scene(kScenes / "cornell_lamp.json");
-  EXPECT_NEAR(most_emitted(lamp, emissive_triangles(lamp), 1000), M_PI * 17.2 * 0.130 * 0.105, 1e-4);
+  EXPECT_NEAR(max_emitted_flux(lamp, emissive_triangles(lamp), 1000), M_PI * 17.2 * 0.130 * 0.105, 1e-4);
 }
 
 TEST(Scenes, TheLivingAtriumIsTheAtriumWithABallAndACurtainThatMove) {

@@ -54,7 +54,7 @@ void expect_all(const Transport& transport, const reference::Volume& geometry,
                 double allowed = kFloat) {
   for (const Link& link : links(transport)) {
     reference::for_each_cell(kGrid, [&](const glm::ivec3& cell) {
-      ASSERT_NEAR(reference::transmitted(geometry, cell, link.side, link.blocked_by), expected(cell, link),
+      ASSERT_NEAR(reference::transmittance(geometry, cell, link.side, link.blocked_by), expected(cell, link),
                   allowed)
           << "link to " << link.side.x << link.side.y << link.side.z << " of cell " << cell.x << cell.y
           << cell.z;
@@ -133,7 +133,8 @@ TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
              [&](const glm::ivec3&, const Link& link) { return 1 - blocked(up, link.direction); });
   int along_axes = 0;
   for (const Link& link : links(by_areas)) {
-    const double through = reference::transmitted(surfel(slanted), glm::ivec3(2), link.side, link.blocked_by);
+    const double through =
+        reference::transmittance(surfel(slanted), glm::ivec3(2), link.side, link.blocked_by);
     const bool along = std::max({std::abs(link.direction.x), std::abs(link.direction.y),
                                  std::abs(link.direction.z)}) > 1 - 1e-12;
     along_axes += along;

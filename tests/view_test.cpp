@@ -47,7 +47,7 @@ std::vector<glm::dvec3> corners(const glm::dvec3& lower, const glm::dvec3& upper
 
 /// Whether a point falls on the view, `spare` pixels inside its border.
 bool on_screen(const ClpvView& view, const glm::dvec3& point, double spare = 0) {
-  const reference::Projected p = project(view, point);
+  const reference::ProjectedPoint p = project(view, point);
   return p.pixel.x >= spare - 0.5 && p.pixel.y >= spare - 0.5 && p.pixel.x <= view.width - 0.5 - spare &&
          p.pixel.y <= view.height - 0.5 - spare && (view.orthographic != 0 || p.depth > 0);
 }

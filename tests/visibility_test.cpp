@@ -20,11 +20,11 @@ constexpr int kGrid = 4;
 const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
 
 /// Bytes of all points, by the kernel, which check_visibility holds against the CPU reference.
-std::vector<std::uint8_t> hidden(const Scene& scene, const ClpvGrid& grid = kCells) {
+std::vector<std::uint8_t> occluded(const Scene& scene, const ClpvGrid& grid = kCells) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   CellVisibility sight(test_session(), buffers, static_cast<int>(grid.n), 1);
-  sight.see(0, grid);
-  return test_session().read<std::uint8_t>(sight.hidden(), CellVisibility::bytes(static_cast<int>(grid.n)));
+  sight.update(0, grid);
+  return test_session().read<std::uint8_t>(sight.occluded(), CellVisibility::bytes(static_cast<int>(grid.n)));
 }
 
 /// Cube and point of a byte.
@@ -47,7 +47,7 @@ TEST(See, AWallHidesTheCellsBehindItFromEveryPointAndNoOthers) {
   Scene scene;
   add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
            add_material(scene));  // between centres at 1.5 and 2.5
-  const std::vector<std::uint8_t> found = hidden(scene);
+  const std::vector<std::uint8_t> found = occluded(scene);
   for (std::size_t at = 0; at < found.size(); ++at) {
     unsigned expected = 0;
     if (between_centres(at) && cube_of(at).x == 1)
@@ -59,14 +59,14 @@ TEST(See, AWallHidesTheCellsBehindItFromEveryPointAndNoOthers) {
 TEST(See, AWallThroughCentresHidesNothing) {
   Scene scene;
   add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
-  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+  for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
 TEST(See, ASpeckHidesWhatLiesBehindItAlone) {
   Scene scene;
   // On the way from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along each axis.
   add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
-  std::vector<std::uint8_t> found = hidden(scene);
+  std::vector<std::uint8_t> found = occluded(scene);
   EXPECT_EQ(found[0] & 1, 1) << "the first point of the first cube does not see its first corner";
   EXPECT_EQ(found[0] & ~1, 0);
   for (std::size_t at = 64; at < found.size(); ++at) ASSERT_EQ(found[at], 0) << at;
@@ -81,20 +81,20 @@ TEST(See, TrianglesOfOneSurfaceLeaveNoGap) {
   }
   Scene whole;
   add_quad(whole, {2.0f, 0, 0}, {0, 4, 0}, {0, 0, 4}, add_material(whole));
-  EXPECT_EQ(hidden(scene), hidden(whole));
+  EXPECT_EQ(occluded(scene), occluded(whole));
 }
 
 TEST(See, MaskedMaterialsHideNothing) {
   Scene scene;
   add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
            add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
-  for (const std::uint8_t bits : hidden(scene)) ASSERT_EQ(bits, 0);
+  for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
 TEST(See, NothingIsHiddenInAGridOfOneCell) {
   Scene scene;
   add_quad(scene, {0.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
-  for (const std::uint8_t bits : hidden(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
+  for (const std::uint8_t bits : occluded(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
 }
 
 TEST(See, TheKernelAgreesWithTheReference) {

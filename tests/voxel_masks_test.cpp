@@ -49,7 +49,7 @@ Scene soup() {
   return scene;
 }
 
-void shift(Scene& scene, const Part& part, const glm::vec3& by) {
+void shift(Scene& scene, const MeshRange& part, const glm::vec3& by) {
   for (unsigned v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
     for (int a = 0; a < 3; ++a) scene.vertices[v].position[a] += by[a];
   }
@@ -57,7 +57,7 @@ void shift(Scene& scene, const Part& part, const glm::vec3& by) {
 
 /// All that triangles leave in a cascade.
 struct Left {
-  std::vector<std::uint8_t> hidden;
+  std::vector<std::uint8_t> occluded;
   std::vector<float> blocked, reflected;
   bool operator==(const Left&) const = default;
 };
@@ -71,12 +71,12 @@ class Stages {
         reflector_(test_session(), buffers, kGrid, 1, {}) {}
 
   Left bring(const ClpvGrid& grid) {
-    sight_.see(1, grid);
-    blocker_.block(1, grid, geometry_);
-    reflector_.reflect(0, grid);
+    sight_.update(1, grid);
+    blocker_.voxelize(1, grid, geometry_);
+    reflector_.voxelize(0, grid);
     const std::size_t bytes = CellVisibility::bytes(kGrid);
-    const auto hidden = test_session().read<std::uint8_t>(sight_.hidden(), 2 * bytes);
-    return {{hidden.begin() + static_cast<std::ptrdiff_t>(bytes), hidden.end()},
+    const auto occluded = test_session().read<std::uint8_t>(sight_.occluded(), 2 * bytes);
+    return {{occluded.begin() + static_cast<std::ptrdiff_t>(bytes), occluded.end()},
             geometry_.read(test_session()),
             reflector_.reflectors(0).read(test_session())};
   }
@@ -117,7 +117,7 @@ TEST(VoxelMasks, OfNoTrianglesOrAwkwardOnesThereAreNone) {
   Scene scene;
   const auto expect_none = [&] {
     const Left left = from_nothing(scene, grid_at({0, 0, 0}));
-    EXPECT_EQ(std::ranges::count(left.hidden, 0), std::ssize(left.hidden));
+    EXPECT_EQ(std::ranges::count(left.occluded, 0), std::ssize(left.occluded));
     EXPECT_EQ(std::ranges::count(left.blocked, 0.0f), std::ssize(left.blocked));
     EXPECT_EQ(std::ranges::count(left.reflected, 0.0f), std::ssize(left.reflected));
   };

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+// Propagation of sh2 by intrinsics. A cell takes from each of its 6 neighbours the flux through the neighbour's far face
+// and 4 side faces, and reprojects it as a lobe. Kaplanyan and Dachsbacher, 'Cascaded Light Propagation Volumes for
+// Real-Time Indirect Illumination' (I3D 2010).
 #include "bench/baseline/propagate_avx2.hpp"
 
 #include <algorithm>
@@ -12,7 +15,7 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 #define CLPV_HAS_AVX2 1
-// By function and not by file: templates shared with other files must run on every processor.
+// The target is set per function and not per file: shared templates must run on every processor.
 #define CLPV_AVX2 __attribute__((target("avx2,fma")))
 #else
 #define CLPV_HAS_AVX2 0
@@ -34,7 +37,7 @@ namespace {
 
 constexpr int kLane = 8;  ///< floats in a vector
 
-/// Floats on 64-byte boundaries, 0 at first.
+/// Floats aligned to 64 bytes, initially 0.
 class Plane {
  public:
   explicit Plane(std::size_t count)
@@ -55,10 +58,10 @@ class Plane {
 };
 
 constexpr int kN = 4, kChannels = 3, kLinks = 30, kCorners = 8;
-constexpr double kSame = 1e-9;  // of constants that are equal but for rounding in double
+constexpr double kRounding = 1e-9;  // tolerance for constants that are equal up to rounding in double
 
-/// Rows of n cells between borders of kLane zeros, slices of n rows between borders of one row, and so on.
-struct Shape {
+/// Layout of a plane of n^3 cells with a border of zeros: kLane cells before and after a row, one row, one slice.
+struct PlaneLayout {
   int n;
   std::ptrdiff_t row() const { return n + 2 * kLane; }
   std::ptrdiff_t slice() const { return row() * (n + 2); }
@@ -66,25 +69,26 @@ struct Shape {
   std::ptrdiff_t at(int x, int y, int z) const { return (z + 1) * slice() + (y + 1) * row() + x + kLane; }
 };
 
-/// What a neighbour sends: through its far face far0 c0 + far1 c_a, through side faces side0 c0 + side1 c_a +- g c_b.
-struct Sent {
+/// Weights of the flux from a neighbour along axis a: far0 c0 + far1 c_a through its far face, and
+/// side0 c0 + side1 c_a +- across c_b through its side faces of normal +-b.
+struct FluxWeights {
   float far0, far1, side0, side1, across;
 };
 
-/// Constants of sh2's step, and which coefficient goes with which axis.
+/// Constants of a step in sh2.
 struct Constants {
-  int of_axis[3];  // index of the coefficient along x, y, z
-  Sent sent[6];
-  float lobe0, lobe1[3];  // a face's lobe: c0, and c_a by the sign of its normal
+  int axis_coefficient[3];  // index of the coefficient along x, y, z
+  FluxWeights flux[6];      // by neighbour
+  float lobe0, lobe1[3];    // a face's lobe: c0, and c_a by the sign of its normal
 };
 
-void require(bool fits) {
-  if (!fits)
-    throw Error(ExitCode::run_time, "baseline: made for sh2 with faces, whose constants these are not");
+void require(bool supported) {
+  if (!supported)
+    throw Error(ExitCode::run_time, "baseline: unsupported basis or transport; allowed: sh2, face transport");
 }
 
-bool same(double a, double b) {
-  return std::abs(a - b) < kSame;
+bool equal(double a, double b) {
+  return std::abs(a - b) < kRounding;
 }
 
 Constants constants_of(const Basis& basis, const Transport& transport) {
@@ -93,37 +97,37 @@ Constants constants_of(const Basis& basis, const Transport& transport) {
   Constants c{};
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 1; i < kN; ++i) {
-      if (std::abs(faces->lobes(i, 2 * axis)) > kSame) c.of_axis[axis] = i;
+      if (std::abs(faces->lobes(i, 2 * axis)) > kRounding) c.axis_coefficient[axis] = i;
     }
-    require(c.of_axis[axis] > 0 &&
-            same(faces->lobes(c.of_axis[axis], 2 * axis), -faces->lobes(c.of_axis[axis], 2 * axis + 1)));
-    c.lobe1[axis] = static_cast<float>(faces->lobes(c.of_axis[axis], 2 * axis));
+    const int i = c.axis_coefficient[axis];
+    require(i > 0 && equal(faces->lobes(i, 2 * axis), -faces->lobes(i, 2 * axis + 1)));
+    c.lobe1[axis] = static_cast<float>(faces->lobes(i, 2 * axis));
   }
   c.lobe0 = static_cast<float>(faces->lobes(0, 0));
   for (int k = 0; k < 6; ++k) {
     const std::vector<double>& far = faces->faces[5 * k].flux;
-    const auto along = static_cast<std::size_t>(c.of_axis[k / 2]);
-    Sent& sent = c.sent[k];
-    sent.far0 = static_cast<float>(far[0]), sent.far1 = static_cast<float>(far[along]);
+    const auto along = static_cast<std::size_t>(c.axis_coefficient[k / 2]);
+    FluxWeights& weights = c.flux[k];
+    weights.far0 = static_cast<float>(far[0]), weights.far1 = static_cast<float>(far[along]);
     for (int f = 1; f < 5; ++f) {
       const Face& face = faces->faces[5 * k + f];
       const int axis = face.normal.x != 0 ? 0 : face.normal.y != 0 ? 1 : 2;
       const int sign = face.normal[axis];
-      const double across = sign * face.flux[c.of_axis[axis]];
-      require(f == 1 || (same(face.flux[0], sent.side0) || std::abs(face.flux[0] - sent.side0) < 1e-6));
-      sent.side0 = static_cast<float>(face.flux[0]), sent.side1 = static_cast<float>(face.flux[along]);
-      require(f == 1 || std::abs(across - sent.across) < 1e-6);
-      sent.across = static_cast<float>(across);
+      const double across = sign * face.flux[c.axis_coefficient[axis]];
+      require(f == 1 || std::abs(face.flux[0] - weights.side0) < 1e-6);
+      weights.side0 = static_cast<float>(face.flux[0]), weights.side1 = static_cast<float>(face.flux[along]);
+      require(f == 1 || std::abs(across - weights.across) < 1e-6);
+      weights.across = static_cast<float>(across);
     }
   }
   return c;
 }
 
-/// The link (index of FaceTransport::faces) through neighbour k's face of normal 2 axis + negative.
+/// Links by neighbour and face. A link is an index of FaceTransport::faces; a face has the index 2 axis + (normal < 0).
 struct FaceTable {
-  int link[6][6];
-  glm::dvec3 against[kLinks];  // the direction its blocker is looked up in
-  glm::ivec3 side[kLinks];
+  int link[6][6];                        // by neighbour and face
+  glm::dvec3 blocker_direction[kLinks];  // against the light
+  glm::ivec3 normal[kLinks];
 };
 
 FaceTable links_of(const FaceTransport& faces) {
@@ -132,8 +136,8 @@ FaceTable links_of(const FaceTransport& faces) {
     const Face& face = faces.faces[f];
     const auto normal = std::find(kAxes.begin(), kAxes.end(), face.normal) - kAxes.begin();
     table.link[f / 5][normal] = f;
-    table.against[f] = -face.direction;
-    table.side[f] = face.normal;
+    table.blocker_direction[f] = -face.direction;
+    table.normal[f] = face.normal;
   }
   return table;
 }
@@ -141,124 +145,129 @@ FaceTable links_of(const FaceTransport& faces) {
 }  // namespace
 
 struct PropagateBaseline::Impl {
-  Shape shape;
+  PlaneLayout layout;
   Constants constants;
   FaceTable links;
-  float blocker[kLinks][kN];  // basis functions in the link's direction, over the number of corners
-  bool blocks = false;
+  float blocker[kLinks]
+               [kN];  // basis functions in the blocker's direction, over the number of corners of a face
+  bool occlusion = false;
   Plane injected, first, second, sum;  // 12 planes each
-  Plane corners;                       // 4 planes of n + 1 samples, in rows as wide as the cells'
-  Plane open;                          // 30 planes of n^3: share let through
+  Plane corners;                       // 4 planes of (n + 1)^3 samples, in the cells' layout
+  Plane transmittance;                 // 30 planes of n^3, one per link
 
   Impl(const Basis& basis, const Transport& transport, int grid)
-      : shape{grid},
+      : layout{grid},
         constants(constants_of(basis, transport)),
         links(links_of(std::get<FaceTransport>(transport.scheme))),
         injected(planes()),
         first(planes()),
         second(planes()),
         sum(planes()),
-        corners(static_cast<std::size_t>(shape.plane()) * kN),
-        open(static_cast<std::size_t>(grid) * grid * grid * kLinks) {
+        corners(static_cast<std::size_t>(layout.plane()) * kN),
+        transmittance(static_cast<std::size_t>(grid) * grid * grid * kLinks) {
     for (int w = 0; w < kLinks; ++w) {
-      const std::vector<double> b = basis.evaluate(links.against[w]);
+      const std::vector<double> b = basis.evaluate(links.blocker_direction[w]);
       for (int i = 0; i < kN; ++i) blocker[w][i] = static_cast<float>(b[i] / 4);
     }
   }
-  std::size_t planes() const { return static_cast<std::size_t>(shape.plane()) * kChannels * kN; }
-  std::ptrdiff_t cells() const { return std::ptrdiff_t{shape.n} * shape.n * shape.n; }
+  std::size_t planes() const { return static_cast<std::size_t>(layout.plane()) * kChannels * kN; }
+  std::ptrdiff_t cells() const { return std::ptrdiff_t{layout.n} * layout.n * layout.n; }
 };
 
 namespace {
 
 using Impl = PropagateBaseline::Impl;
 
-/// A face's share of light, let through where something blocks.
-template <bool kBlocked>
-CLPV_AVX2 inline __m256 through(__m256 flux, const float* open) {
+/// Positive flux through a face, times the link's transmittance with occlusion.
+template <bool kOcclusion>
+CLPV_AVX2 inline __m256 transmitted(__m256 flux, const float* transmittance) {
   const __m256 positive = _mm256_max_ps(flux, _mm256_setzero_ps());
-  if constexpr (kBlocked) return _mm256_mul_ps(positive, _mm256_load_ps(open));
+  if constexpr (kOcclusion) return _mm256_mul_ps(positive, _mm256_load_ps(transmittance));
   return positive;
 }
 
-/// Adds what neighbour kK sends to the six sums, of the eight cells at `at`.
-template <bool kBlocked, int kK>
-CLPV_AVX2 inline void receive(const Impl& p, const float* from, std::ptrdiff_t at, const float* open,
+/// Adds the flux from neighbour kK to the sums of the six faces, for the eight cells at `at`.
+template <bool kOcclusion, int kK>
+CLPV_AVX2 inline void receive(const Impl& p, const float* from, std::ptrdiff_t at, const float* transmittance,
                               __m256 (&sums)[6]) {
   constexpr int kAxis = kK / 2, kB = (kAxis + 1) % 3, kC = (kAxis + 2) % 3;
-  const Shape& s = p.shape;
+  const PlaneLayout& s = p.layout;
   const std::ptrdiff_t steps[3] = {1, s.row(), s.slice()}, plane = s.plane(), cells = p.cells();
   const float* cell = from + at + (kK % 2 == 0 ? -steps[kAxis] : steps[kAxis]);
-  const Sent& sent = p.constants.sent[kK];
-  const __m256 c0 = _mm256_loadu_ps(cell), ca = _mm256_loadu_ps(cell + p.constants.of_axis[kAxis] * plane);
-  const __m256 cb = _mm256_loadu_ps(cell + p.constants.of_axis[kB] * plane),
-               cc = _mm256_loadu_ps(cell + p.constants.of_axis[kC] * plane);
-  const auto link = [&](int normal) { return kBlocked ? open + p.links.link[kK][normal] * cells : nullptr; };
-  const auto add = [&](int normal, __m256 flux) CLPV_AVX2 {
-    sums[normal] = _mm256_add_ps(sums[normal], through<kBlocked>(flux, link(normal)));
+  const FluxWeights& weights = p.constants.flux[kK];
+  const int* coefficient = p.constants.axis_coefficient;
+  const __m256 c0 = _mm256_loadu_ps(cell), ca = _mm256_loadu_ps(cell + coefficient[kAxis] * plane);
+  const __m256 cb = _mm256_loadu_ps(cell + coefficient[kB] * plane),
+               cc = _mm256_loadu_ps(cell + coefficient[kC] * plane);
+  const auto link = [&](int normal) {
+    return kOcclusion ? transmittance + p.links.link[kK][normal] * cells : nullptr;
   };
-  add(kK, _mm256_fmadd_ps(_mm256_set1_ps(sent.far1), ca, _mm256_mul_ps(_mm256_set1_ps(sent.far0), c0)));
+  const auto add = [&](int normal, __m256 flux) CLPV_AVX2 {
+    sums[normal] = _mm256_add_ps(sums[normal], transmitted<kOcclusion>(flux, link(normal)));
+  };
+  add(kK, _mm256_fmadd_ps(_mm256_set1_ps(weights.far1), ca, _mm256_mul_ps(_mm256_set1_ps(weights.far0), c0)));
   const __m256 side =
-      _mm256_fmadd_ps(_mm256_set1_ps(sent.side1), ca, _mm256_mul_ps(_mm256_set1_ps(sent.side0), c0));
-  const __m256 across = _mm256_set1_ps(sent.across);
+      _mm256_fmadd_ps(_mm256_set1_ps(weights.side1), ca, _mm256_mul_ps(_mm256_set1_ps(weights.side0), c0));
+  const __m256 across = _mm256_set1_ps(weights.across);
   add(2 * kB, _mm256_fmadd_ps(across, cb, side));
   add(2 * kB + 1, _mm256_fnmadd_ps(across, cb, side));
   add(2 * kC, _mm256_fmadd_ps(across, cc, side));
   add(2 * kC + 1, _mm256_fnmadd_ps(across, cc, side));
 }
 
-/// A row of one channel: what its cells gain, stored and added to the sum.
-template <bool kBlocked>
+/// A step of one row and channel: `to` = light propagated from `from`, and `sum` = `so_far` + `to`.
+template <bool kOcclusion>
 CLPV_AVX2 void step_row(const Impl& p, const float* from, float* to, const float* so_far, float* sum, int y,
                         int z) {
-  const Shape& s = p.shape;
+  const PlaneLayout& s = p.layout;
   const std::ptrdiff_t plane = s.plane();
   for (int x = 0; x < s.n; x += kLane) {
     const std::ptrdiff_t at = s.at(x, y, z);
-    const float* open = p.open.data() + (std::ptrdiff_t{z} * s.n + y) * s.n + x;
+    const float* transmittance = p.transmittance.data() + (std::ptrdiff_t{z} * s.n + y) * s.n + x;
     __m256 sums[6];
     for (__m256& value : sums) value = _mm256_setzero_ps();
-    receive<kBlocked, 0>(p, from, at, open, sums);
-    receive<kBlocked, 1>(p, from, at, open, sums);
-    receive<kBlocked, 2>(p, from, at, open, sums);
-    receive<kBlocked, 3>(p, from, at, open, sums);
-    receive<kBlocked, 4>(p, from, at, open, sums);
-    receive<kBlocked, 5>(p, from, at, open, sums);
+    receive<kOcclusion, 0>(p, from, at, transmittance, sums);
+    receive<kOcclusion, 1>(p, from, at, transmittance, sums);
+    receive<kOcclusion, 2>(p, from, at, transmittance, sums);
+    receive<kOcclusion, 3>(p, from, at, transmittance, sums);
+    receive<kOcclusion, 4>(p, from, at, transmittance, sums);
+    receive<kOcclusion, 5>(p, from, at, transmittance, sums);
     const __m256 all =
         _mm256_add_ps(_mm256_add_ps(_mm256_add_ps(sums[0], sums[1]), _mm256_add_ps(sums[2], sums[3])),
                       _mm256_add_ps(sums[4], sums[5]));
-    const auto give = [&](std::ptrdiff_t i, __m256 gained) CLPV_AVX2 {
-      _mm256_store_ps(to + at + i * plane, gained);
-      _mm256_store_ps(sum + at + i * plane, _mm256_add_ps(gained, _mm256_load_ps(so_far + at + i * plane)));
+    const auto store = [&](std::ptrdiff_t i, __m256 value) CLPV_AVX2 {
+      _mm256_store_ps(to + at + i * plane, value);
+      _mm256_store_ps(sum + at + i * plane, _mm256_add_ps(value, _mm256_load_ps(so_far + at + i * plane)));
     };
-    give(0, _mm256_mul_ps(_mm256_set1_ps(p.constants.lobe0), all));
+    store(0, _mm256_mul_ps(_mm256_set1_ps(p.constants.lobe0), all));
     for (int a = 0; a < 3; ++a) {
-      give(p.constants.of_axis[a],
-           _mm256_mul_ps(_mm256_set1_ps(p.constants.lobe1[a]), _mm256_sub_ps(sums[2 * a], sums[2 * a + 1])));
+      store(p.constants.axis_coefficient[a],
+            _mm256_mul_ps(_mm256_set1_ps(p.constants.lobe1[a]), _mm256_sub_ps(sums[2 * a], sums[2 * a + 1])));
     }
   }
 }
 
-template <bool kBlocked>
+template <bool kOcclusion>
 void step(const Impl& p, const float* from, float* to, const float* so_far) {
-  const int n = p.shape.n;
+  const int n = p.layout.n;
 #pragma omp parallel for schedule(static)
   for (int z = 0; z < n; ++z) {
     for (int y = 0; y < n; ++y) {
-      for (int channel = 0; channel < kChannels; ++channel) {  // innermost: they share what blocks
-        const std::ptrdiff_t of = channel * kN * p.shape.plane();
-        step_row<kBlocked>(p, from + of, to + of, so_far + of, p.sum.data() + of, y, z);
+      for (int channel = 0; channel < kChannels; ++channel) {  // innermost: channels share transmittances
+        const std::ptrdiff_t offset = channel * kN * p.layout.plane();
+        step_row<kOcclusion>(p, from + offset, to + offset, so_far + offset, p.sum.data() + offset, y, z);
       }
     }
   }
 }
 
-/// 1 - B of every link into the cells of a row.
-CLPV_AVX2 void open_row(const Impl& p, int y, int z) {
-  const Shape& s = p.shape;
+/// Transmittance 1 - B of every link into the cells of a row; B is the mean of the geometry volume over the face's four
+/// corners, evaluated in the blocker's direction and clamped to [0, 1].
+CLPV_AVX2 void transmittance_row(const Impl& p, int y, int z) {
+  const PlaneLayout& s = p.layout;
   const __m256 one = _mm256_set1_ps(1.0f), zero = _mm256_setzero_ps();
   for (int x = 0; x < s.n; x += kLane) {
-    __m256 mean[6][kN];  // sums over the four corners towards +x -x +y ...
+    __m256 corner_sum[6][kN];  // sums over the four corners of faces +x -x +y -y +z -z
     for (int i = 0; i < kN; ++i) {
       __m256 corner[kCorners];
       for (int c = 0; c < kCorners; ++c) {
@@ -270,35 +279,37 @@ CLPV_AVX2 void open_row(const Impl& p, int y, int z) {
         for (int c = 0; c < kCorners; ++c) {
           if ((c >> side / 2 & 1) == (side % 2 == 0 ? 1 : 0)) sum = _mm256_add_ps(sum, corner[c]);
         }
-        mean[side][i] = sum;
+        corner_sum[side][i] = sum;
       }
     }
     for (int w = 0; w < kLinks; ++w) {
-      const glm::ivec3& normal = p.links.side[w];
+      const glm::ivec3& normal = p.links.normal[w];
       const int axis = normal.x != 0   ? 0
                        : normal.y != 0 ? 1
                                        : 2,
                 side = 2 * axis + (normal[axis] < 0 ? 1 : 0);
-      __m256 b = _mm256_mul_ps(_mm256_set1_ps(p.blocker[w][0]), mean[side][0]);
-      for (int i = 1; i < kN; ++i) b = _mm256_fmadd_ps(_mm256_set1_ps(p.blocker[w][i]), mean[side][i], b);
-      const __m256 open = _mm256_sub_ps(one, _mm256_min_ps(one, _mm256_max_ps(zero, b)));
-      _mm256_store_ps(p.open.data() + w * p.cells() + (std::ptrdiff_t{z} * s.n + y) * s.n + x, open);
+      __m256 b = _mm256_mul_ps(_mm256_set1_ps(p.blocker[w][0]), corner_sum[side][0]);
+      for (int i = 1; i < kN; ++i)
+        b = _mm256_fmadd_ps(_mm256_set1_ps(p.blocker[w][i]), corner_sum[side][i], b);
+      const __m256 transmittance = _mm256_sub_ps(one, _mm256_min_ps(one, _mm256_max_ps(zero, b)));
+      _mm256_store_ps(p.transmittance.data() + w * p.cells() + (std::ptrdiff_t{z} * s.n + y) * s.n + x,
+                      transmittance);
     }
   }
 }
 
-void open_links(const Impl& p) {
-  const int n = p.shape.n;
+void compute_transmittances(const Impl& p) {
+  const int n = p.layout.n;
 #pragma omp parallel for schedule(static)
   for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y) open_row(p, y, z);
+    for (int y = 0; y < n; ++y) transmittance_row(p, y, z);
   }
 }
 
-// Operations by hand, as written above, a cell (and channel).
+// Operations of the code above, per cell; those of a step per cell and channel.
 constexpr double kFluxFlops = 6 * (3 + 3 + 4 * 2 + 5), kSumFlops = 24, kLobeFlops = 5 + 1 + 3 * 2,
                  kAddFlops = 4;
-constexpr double kOpenFlops = kN * 6 * 3 + kLinks * (1 + 3 * 2 + 3);
+constexpr double kTransmittanceFlops = kN * 6 * 3 + kLinks * (1 + 3 * 2 + 3);
 
 }  // namespace
 
@@ -310,31 +321,31 @@ PropagateBaseline::PropagateBaseline(const Basis& basis, const Transport& transp
 
 void PropagateBaseline::set(const std::vector<float>& injected, const std::vector<float>* geometry) {
   Impl& p = *impl_;
-  const int n = p.shape.n;
-  const auto rows = [&](const std::vector<float>& values, float* to, int planes, int side) {
+  const int n = p.layout.n;
+  const auto copy = [&](const std::vector<float>& values, float* to, int planes, int side) {
     std::size_t at = 0;
     for (int plane = 0; plane < planes; ++plane) {
       for (int z = 0; z < side; ++z) {
         for (int y = 0; y < side; ++y, at += static_cast<std::size_t>(side)) {
-          std::copy_n(values.data() + at, side, to + plane * p.shape.plane() + p.shape.at(0, y, z));
+          std::copy_n(values.data() + at, side, to + plane * p.layout.plane() + p.layout.at(0, y, z));
         }
       }
     }
   };
-  rows(injected, p.injected.data(), kChannels * kN, n);
-  p.blocks = geometry != nullptr;
-  if (p.blocks) rows(*geometry, p.corners.data(), kN, n + 1);
+  copy(injected, p.injected.data(), kChannels * kN, n);
+  p.occlusion = geometry != nullptr;
+  if (p.occlusion) copy(*geometry, p.corners.data(), kN, n + 1);
 }
 
 void PropagateBaseline::propagate(int iterations) {
   Impl& p = *impl_;
-  if (p.blocks && iterations > 1) open_links(p);
+  if (p.occlusion && iterations > 1) compute_transmittances(p);
   const float* from = p.injected.data();
   if (iterations == 0) std::copy_n(from, p.planes(), p.sum.data());
   for (int i = 1; i <= iterations; ++i) {
     float* to = (i % 2 == 1 ? p.first : p.second).data();
     const float* so_far = i == 1 ? p.injected.data() : p.sum.data();
-    if (p.blocks && i > 1) {
+    if (p.occlusion && i > 1) {
       step<true>(p, from, to, so_far);
     } else {
       step<false>(p, from, to, so_far);
@@ -347,10 +358,10 @@ std::vector<float> PropagateBaseline::accumulated() const {
   const Impl& p = *impl_;
   std::vector<float> values;
   for (int plane = 0; plane < kChannels * kN; ++plane) {
-    for (int z = 0; z < p.shape.n; ++z) {
-      for (int y = 0; y < p.shape.n; ++y) {
-        const float* row = p.sum.data() + plane * p.shape.plane() + p.shape.at(0, y, z);
-        values.insert(values.end(), row, row + p.shape.n);
+    for (int z = 0; z < p.layout.n; ++z) {
+      for (int y = 0; y < p.layout.n; ++y) {
+        const float* row = p.sum.data() + plane * p.layout.plane() + p.layout.at(0, y, z);
+        values.insert(values.end(), row, row + p.layout.n);
       }
     }
   }
@@ -359,19 +370,21 @@ std::vector<float> PropagateBaseline::accumulated() const {
 
 double PropagateBaseline::flops(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
-  const double blocked = impl_->blocks ? iterations - 1 : 0;
+  const double occluded_steps = impl_->occlusion ? iterations - 1 : 0;
   return cells * (iterations * kChannels * (kFluxFlops + kSumFlops + kLobeFlops + kAddFlops) +
-                  blocked * kChannels * kLinks + (impl_->blocks ? kOpenFlops : 0));
+                  occluded_steps * kChannels * kLinks + (impl_->occlusion ? kTransmittanceFlops : 0));
 }
 
 double PropagateBaseline::bytes(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
-  const double step = kChannels * 4.0 * kN, blocked = impl_->blocks ? iterations : 0;
+  const double step = kChannels * 4.0 * kN,
+               transmittances =
+                   impl_->occlusion ? kLinks * iterations : 0;  // written once, read after the first step
   return sizeof(float) * cells *
-         (iterations * step - kChannels * kN + blocked * kLinks + (impl_->blocks ? kN : 0));
+         (iterations * step - kChannels * kN + transmittances + (impl_->occlusion ? kN : 0));
 }
 
-#else  // no AVX2 on this architecture
+#else  // other architectures
 
 struct PropagateBaseline::Impl {};
 PropagateBaseline::PropagateBaseline(const Basis&, const Transport&, int) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The propagation of sh2 with the paper's transport in C++, OpenMP and AVX2: what the OpenCL kernels are held against.
+// Propagation of sh2 with the paper's transport in C++, OpenMP and AVX2: baseline for the OpenCL kernels.
 #pragma once
 
 #include <memory>
@@ -10,26 +10,26 @@
 
 namespace clpv::bench {
 
-/// Whether it was built for this architecture and this processor has AVX2 and FMA.
+/// Returns true if the build has the baseline and this processor has AVX2 and FMA.
 bool baseline_supported();
 
-/// Eight cells at a time, rows of a slice after each other, slices over all threads. Not clpv's generated code: the same
-/// constants, written by hand.
+/// Hand-written propagation with the constants of `transport`: vectors of eight cells, slices shared out over all threads.
 class PropagateBaseline {
  public:
-  /// `transport`: `sampled` or `exact` for sh2, whose flux through a face has this form. `grid`: cells along each axis, a
-  /// multiple of 8. Throws Error(run_time) otherwise.
+  /// `transport`: `sampled` or `exact` for sh2. `grid`: cells along each axis, a multiple of 8. Throws Error(run_time) for
+  /// other values.
   PropagateBaseline(const Basis& basis, const Transport& transport, int grid);
   ~PropagateBaseline();
 
-  /// Injected light, 3 x 4 planes, and where something blocks the geometry volume: Volume's host order.
+  /// Sets injected light (3 channels x 4 coefficients x grid^3) and the geometry volume (4 x (grid + 1)^3; null: no
+  /// occlusion), both in Volume's host order.
   void set(const std::vector<float>& injected, const std::vector<float>* geometry);
-  /// As Propagator: the first step does not block, and what blocks is evaluated once.
+  /// Propagates as Propagator does: no occlusion in the first step, transmittances computed once.
   void propagate(int iterations);
-  std::vector<float> accumulated() const;  ///< host order
+  std::vector<float> accumulated() const;  ///< accumulated light, as `injected`
 
-  double flops(int iterations) const;  ///< that propagate() executes
-  double bytes(int iterations) const;  ///< that must move, counted as for the kernels
+  double flops(int iterations) const;  ///< operations of propagate()
+  double bytes(int iterations) const;  ///< compulsory traffic of propagate(), counted as for the kernels
 
   struct Impl;
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// OpenGL ES rasteriser: shaders, textures, framebuffers and draw calls.
 #include "bench/baseline/rasterize_gl.hpp"
 
 #include "support/error.hpp"
@@ -18,7 +19,7 @@
 namespace clpv::bench {
 namespace {
 
-// Rows lie from the top on as clpv's do, so y points down.
+// y points down, as clpv stores rows from the top.
 constexpr const char* kVertexShader = R"(#version 320 es
 uniform vec3 eye, right, up, forward;
 uniform vec2 half_size;
@@ -27,10 +28,10 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec4 colour;
-out highp vec3 at_position, at_normal;
-out highp vec2 at_uv;
-out highp vec4 at_colour;
-out highp float at_depth;
+out highp vec3 surface_normal;
+out highp vec2 surface_uv;
+out highp vec4 surface_colour;
+out highp float surface_depth;
 void main() {
   vec3 p = position - eye;
   float depth = dot(p, forward);
@@ -40,11 +41,10 @@ void main() {
 #else
   gl_Position = vec4(across, depth - 2.0 * near_depth, depth);
 #endif
-  at_position = position;
-  at_normal = normal;
-  at_uv = uv;
-  at_colour = colour;
-  at_depth = depth;
+  surface_normal = normal;
+  surface_uv = uv;
+  surface_colour = colour;
+  surface_depth = depth;
 })";
 
 constexpr const char* kFragmentShader = R"(#version 320 es
@@ -54,10 +54,10 @@ uniform vec4 base_colour;
 uniform float cutoff;
 uniform vec3 light;
 uniform float footprint;
-in vec3 at_position, at_normal;
-in vec2 at_uv;
-in vec4 at_colour;
-in float at_depth;
+in vec3 surface_normal;
+in vec2 surface_uv;
+in vec4 surface_colour;
+in float surface_depth;
 #ifdef SURFACE
 layout(location = 0) out float depth;
 layout(location = 1) out vec4 normal;
@@ -65,23 +65,23 @@ layout(location = 2) out vec4 colour;
 #endif
 void main() {
 #ifdef SURFACE
-  vec4 albedo = base_colour * at_colour * texture(base_texture, at_uv);
+  vec4 albedo = base_colour * surface_colour * texture(base_texture, surface_uv);
   if (albedo.a < cutoff) discard;
-  vec3 n = normalize(at_normal);
-  depth = at_depth;
+  vec3 n = normalize(surface_normal);
+  depth = surface_depth;
   normal = vec4(gl_FrontFacing ? n : -n, 0.0);
 #ifdef FROM_LIGHT
-  colour = vec4(albedo.rgb * light * footprint, 0.0);  // of parallel light
+  colour = vec4(albedo.rgb * light * footprint, 0.0);  // flux of directional light
 #else
   colour = vec4(albedo.rgb, 1.0);
 #endif
 #else
-  if (cutoff > 0.0 && (base_colour.a * at_colour.a * texture(base_texture, at_uv).a) < cutoff) discard;
+  if (cutoff > 0.0 && (base_colour.a * surface_colour.a * texture(base_texture, surface_uv).a) < cutoff) discard;
 #endif
 })";
 
-[[noreturn]] void fail(const char* what) {
-  throw Error(ExitCode::run_time, "OpenGL ES: {} failed (EGL 0x{:x}, GL 0x{:x})", what, eglGetError(),
+[[noreturn]] void fail(const char* call) {
+  throw Error(ExitCode::run_time, "OpenGL ES: {} failed (EGL 0x{:x}, GL 0x{:x})", call, eglGetError(),
               glGetError());
 }
 
@@ -95,7 +95,7 @@ EGLDisplay open_display() {
   return display;
 }
 
-/// One for the process, never closed: contexts of all passes are on it.
+/// The process's EGL display, shared by the contexts of all passes and never closed.
 EGLDisplay display() {
   static const EGLDisplay opened = open_display();
   return opened;
@@ -130,7 +130,7 @@ GLuint make_shader(GLenum kind, const std::string& text) {
   if (compiled == GL_TRUE) return shader;
   std::array<char, 1024> log{};
   glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  throw Error(ExitCode::run_time, "OpenGL ES: a shader does not compile: {}", log.data());
+  throw Error(ExitCode::run_time, "OpenGL ES: shader does not compile: {}", log.data());
 }
 
 std::string with_defines(std::string text, const std::vector<std::string>& names) {
@@ -150,7 +150,7 @@ GLuint make_program(Pass pass, bool orthographic) {
   glLinkProgram(program);
   GLint linked = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (linked != GL_TRUE) fail("linking");
+  if (linked != GL_TRUE) fail("linking shaders");
   return program;
 }
 
@@ -163,8 +163,8 @@ GLuint make_target(GLenum format, const ClpvView& view) {
   return name;
 }
 
-/// A frame buffer for a view: what is drawn, and depth to test by, which is what a shadow map keeps.
-GLuint make_targets(Pass pass, const ClpvView& view) {
+/// Makes a framebuffer for a view: a depth attachment and, apart from shadow maps, depth, normal and colour.
+GLuint make_framebuffer(Pass pass, const ClpvView& view) {
   GLuint frame = 0;
   glGenFramebuffers(1, &frame);
   glBindFramebuffer(GL_FRAMEBUFFER, frame);
@@ -177,56 +177,56 @@ GLuint make_targets(Pass pass, const ClpvView& view) {
       glFramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, make_target(formats[i], view), 0);
     glDrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   }
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) fail("making a frame buffer");
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) fail("creating a framebuffer");
   return frame;
 }
 
 }  // namespace
 
 struct GlRasterizer::Impl {
-  struct Batch {  ///< triangles of one material, after each other
+  struct Batch {  ///< consecutive triangles of one material
     Material material;
     GLuint texture;
     GLsizei count;
-    std::size_t first;  ///< index
+    std::size_t first;  ///< position in the index buffer
   };
 
   Pass pass;
   std::vector<ClpvView> views;
   ClpvLight light;
   EGLContext context = EGL_NO_CONTEXT;
-  std::vector<GLuint> frames;
+  std::vector<GLuint> framebuffers;
   GLuint program = 0;
   std::vector<Batch> batches;
 
-  Impl(const Scene& scene, Pass drawn, std::vector<ClpvView> from, const ClpvLight& lit)
-      : pass(drawn), views(std::move(from)), light(lit) {
+  Impl(const Scene& scene, Pass drawn_pass, std::vector<ClpvView> drawn_views, const ClpvLight& lit_by)
+      : pass(drawn_pass), views(std::move(drawn_views)), light(lit_by) {
     open();
     upload(scene);
     program = make_program(pass, views.front().orthographic != 0);
-    for (const ClpvView& view : views) frames.push_back(make_targets(pass, view));
+    for (const ClpvView& view : views) framebuffers.push_back(make_framebuffer(pass, view));
     glEnable(GL_DEPTH_TEST);
     glFrontFace(GL_CW);  // y points down
     glClearDepthf(1.0f);
-    if (glGetError() != GL_NO_ERROR) fail("setting up");
+    if (glGetError() != GL_NO_ERROR) fail("setup");
   }
   ~Impl() {
     eglMakeCurrent(display(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display(), context);  // and all that was made in it
+    eglDestroyContext(display(), context);  // with all its objects
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
   void make_current() const {
     if (eglMakeCurrent(display(), EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
-      fail("using a context");
+      fail("making a context current");
   }
 
   void open() {
     eglBindAPI(EGL_OPENGL_ES_API);
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
-    context = eglCreateContext(display(), EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
-    if (context == EGL_NO_CONTEXT) fail("making a context of OpenGL ES 3.2");
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
+    context = eglCreateContext(display(), EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    if (context == EGL_NO_CONTEXT) fail("creating a context of OpenGL ES 3.2");
     make_current();
   }
 
@@ -236,10 +236,11 @@ struct GlRasterizer::Impl {
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(scene.vertices.size() * sizeof(Vertex)),
                  scene.vertices.data(), GL_STATIC_DRAW);
-    const auto attribute = [](GLuint place, GLint numbers, std::size_t offset) {
-      glEnableVertexAttribArray(place);
-      glVertexAttribPointer(place, numbers, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                            reinterpret_cast<const void*>(offset));  // NOLINT: OpenGL's own way
+    const auto attribute = [](GLuint location, GLint components, std::size_t offset) {
+      glEnableVertexAttribArray(location);
+      glVertexAttribPointer(
+          location, components, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+          reinterpret_cast<const void*>(offset));  // NOLINT: OpenGL passes offsets as pointers
     };
     attribute(0, 3, offsetof(Vertex, position));
     attribute(1, 3, offsetof(Vertex, normal));
@@ -259,12 +260,12 @@ struct GlRasterizer::Impl {
     white.width = white.height = 1;
     white.rgba.assign(4, 255);
     textures.push_back(make_texture(white));
-    std::map<unsigned, std::vector<GLuint>> of_material;
+    std::map<unsigned, std::vector<GLuint>> material_corners;
     for (const Triangle& triangle : scene.triangles) {
-      std::vector<GLuint>& corners = of_material[triangle.material];
+      std::vector<GLuint>& corners = material_corners[triangle.material];
       corners.insert(corners.end(), triangle.vertex, triangle.vertex + 3);
     }
-    for (const auto& [number, corners] : of_material) {
+    for (const auto& [number, corners] : material_corners) {
       const Material& material = scene.materials[number];
       const std::size_t texture =
           material.texture == CLPV_NO_TEXTURE ? textures.size() - 1 : std::size_t{material.texture};
@@ -298,9 +299,9 @@ struct GlRasterizer::Impl {
       glUniform4fv(colour, 1, batch.material.base_colour);
       glUniform1f(cutoff, masked ? batch.material.alpha_cutoff : 0.0f);
       glBindTexture(GL_TEXTURE_2D, batch.texture);
-      glDrawElements(
-          GL_TRIANGLES, batch.count, GL_UNSIGNED_INT,
-          reinterpret_cast<const void*>(batch.first * sizeof(GLuint)));  // NOLINT: OpenGL's own way
+      glDrawElements(GL_TRIANGLES, batch.count, GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(
+                         batch.first * sizeof(GLuint)));  // NOLINT: OpenGL passes offsets as pointers
     }
   }
 
@@ -308,7 +309,7 @@ struct GlRasterizer::Impl {
     make_current();
     glUseProgram(program);
     for (std::size_t v = 0; v < views.size(); ++v) {
-      glBindFramebuffer(GL_FRAMEBUFFER, frames[v]);
+      glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[v]);
       glViewport(0, 0, static_cast<GLsizei>(views[v].width), static_cast<GLsizei>(views[v].height));
       glClear(GL_DEPTH_BUFFER_BIT | GL_COLOR_BUFFER_BIT);
       set_view(views[v]);
@@ -322,7 +323,7 @@ struct GlRasterizer::Impl {
     const ClpvView& view = views[v];
     const std::size_t pixels = std::size_t{view.width} * view.height;
     std::vector<float> depth(pixels), read(4 * pixels);
-    glBindFramebuffer(GL_FRAMEBUFFER, frames[v]);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[v]);
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glReadPixels(0, 0, static_cast<GLsizei>(view.width), static_cast<GLsizei>(view.height), GL_RGBA, GL_FLOAT,
                  read.data());
@@ -333,7 +334,7 @@ struct GlRasterizer::Impl {
 
 std::string gl_missing() {
   return display() == EGL_NO_DISPLAY
-             ? "no OpenGL without a window here (EGL's surfaceless platform, as Mesa has it)"
+             ? "no OpenGL ES without a window: EGL lacks the surfaceless platform that Mesa has"
              : "";
 }
 
@@ -350,16 +351,16 @@ void GlRasterizer::draw() {
 }
 
 std::vector<std::vector<float>> GlRasterizer::depths() {
-  std::vector<std::vector<float>> all;
-  if (impl_->pass == Pass::rasterize_shadow) return all;
+  std::vector<std::vector<float>> depths;
+  if (impl_->pass == Pass::rasterize_shadow) return depths;
   impl_->make_current();
-  for (std::size_t v = 0; v < impl_->views.size(); ++v) all.push_back(impl_->depth_of(v));
-  return all;
+  for (std::size_t v = 0; v < impl_->views.size(); ++v) depths.push_back(impl_->depth_of(v));
+  return depths;
 }
 
 }  // namespace clpv::bench
 
-#else  // EGL or OpenGL ES was not there to build it with
+#else  // built without EGL and OpenGL ES
 
 namespace clpv::bench {
 

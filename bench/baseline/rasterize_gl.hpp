@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rasterising passes by OpenGL, without a window (EGL, OpenGL ES 3.2; Mesa's llvmpipe on a machine without a GPU): what the
-// OpenCL rasteriser is held against. Like for like: the same views, triangles, materials and formats.
+// Rasterising passes by OpenGL ES 3.2 without a window (EGL): baseline for the OpenCL rasteriser, with the same views,
+// triangles, materials and formats. Mesa's llvmpipe runs it on machines without a GPU.
 #pragma once
 
 #include <memory>
@@ -13,21 +13,21 @@
 
 namespace clpv::bench {
 
-/// Why there is no such peer here; empty: there is. CLPV_BENCH_GL says whether it was built.
+/// Reason why OpenGL ES is unavailable; empty if it is available.
 std::string gl_missing();
 
 class GlRasterizer {
  public:
-  /// `pass`: rasterize_camera (depth, normal and albedo as floats, a quadruple each of the last two), rasterize_shadow
-  /// (depth alone), rasterize_rsm (depth, normal, flux). Of `views`, all of one size. Throws Error(device) where
-  /// gl_missing(), Error(run_time) where the driver rejects.
+  /// `pass`: rasterize_camera (depth, normal, albedo), rasterize_shadow (depth) or rasterize_rsm (depth, normal, flux).
+  /// Depth is a float, the others four floats. All `views` have one size. Throws Error(device) if gl_missing() is not
+  /// empty, Error(run_time) if the driver fails.
   GlRasterizer(const Scene& scene, Pass pass, std::vector<ClpvView> views, const ClpvLight& light);
   ~GlRasterizer();
 
-  /// All views; returns when they are drawn.
+  /// Draws all views and waits for the result.
   void draw();
 
-  /// Of each view, as rows from the top: depth [m], 0 where nothing is seen.
+  /// Depth [m] of each view, row by row from the top; 0 where there is no surface. Empty for rasterize_shadow.
   std::vector<std::vector<float>> depths();
 
  private:

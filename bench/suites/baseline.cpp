@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `baseline`: propagation of sh2 in OpenCL against the same in C++, OpenMP and AVX2 on the host.
+// Suite `baseline`: propagation of sh2 in OpenCL, compared with C++, OpenMP and AVX2 on the host.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,26 +16,26 @@
 namespace clpv::bench {
 namespace {
 
-constexpr const char* kBasis = "sh2";  // that the baseline is written for
+constexpr const char* kBasis = "sh2";  // the baseline's only basis
 constexpr const char* kNative = "native";
 
-struct Native {
+struct NativePropagation {
   std::unique_ptr<Basis> basis;
   Transport transport;
   PropagateBaseline baseline;
-  explicit Native(const RenderOptions& o)
+  explicit NativePropagation(const RenderOptions& o)
       : basis(make_basis(o)), transport(make_transport(o, *basis)), baseline(*basis, transport, o.grid) {}
 };
 
 Job native_job(Bench& bench, const Variant& variant) {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
   const RenderOptions& o = variant.options;
-  const auto p = std::make_shared<Native>(o);
+  const auto p = std::make_shared<NativePropagation>(o);
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
   const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
   p->baseline.set(light, o.occlusion ? &geometry : nullptr);
   Job job;
-  job.own_stages = true;  // nothing runs on the device: wall time
+  job.own_stages = true;  // runs on the host: wall time
   job.run = [p, steps = o.iterations] { p->baseline.propagate(steps); };
   job.verify = [p, o, &light, &geometry] {
     const int n = p->basis->size();
@@ -57,7 +57,7 @@ Job native_job(Bench& bench, const Variant& variant) {
 std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
-    Variant variant = plain_variant(options, kBasis);
+    Variant variant = basis_variant(options, kBasis);
     variant.options.occlusion = occlusion;
     for (const State state : values_of<State>()) {
       variant.options.state = state;
@@ -70,42 +70,41 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   return cases;
 }
 
-/// The row by hand that does the same work.
+/// The row of the hand-written baseline with the same occlusion; null if there is none, or for such a row itself.
 const Row* native_row(const std::vector<Row>& rows, const Row& row) {
-  const auto found = std::ranges::find_if(rows, [&](const Row& other) {
+  const auto native = std::ranges::find_if(rows, [&](const Row& other) {
     return other.stage == kNative && other.status == Status::ok &&
            other.variant->options.occlusion == row.variant->options.occlusion;
   });
-  return found == rows.end() || row.stage == kNative ? nullptr : &*found;
+  return native == rows.end() || row.stage == kNative ? nullptr : &*native;
 }
 
 std::string baseline_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string head = fmt::format(
-      "{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>10} {:>9} {:>9}\n", "row", width, "median ms",
-      "least", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "over C++", "by wall", "error");
+      "{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>9} {:>10} {:>9}\n", "row", width, "median ms",
+      "min ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "/ C++", "/ C++ wall", "error");
   const auto columns = [&](const Row& row) {
     const Row* native = native_row(rows, row);
-    const auto over = [&](double here, double there) {
-      return native != nullptr ? fmt::format("{:.2f}", here / there) : "-";
+    const auto ratio = [&](double opencl_ms, double native_ms) {
+      return native != nullptr ? fmt::format("{:.2f}", opencl_ms / native_ms) : "-";
     };
-    return fmt::format("{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>10} {:>9} {:>9.1e}",
+    return fmt::format("{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>9} {:>10} {:>9.1e}",
                        row.times.median, row.times.min, row.times.mad, row.wall_ms, row.gflops(), row.gbps(),
                        fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
-                       over(row.times.median, native != nullptr ? native->times.median : 0),
-                       over(row.wall_ms, native != nullptr ? native->wall_ms : 0),
+                       ratio(row.times.median, native != nullptr ? native->times.median : 0),
+                       ratio(row.wall_ms, native != nullptr ? native->wall_ms : 0),
                        row.max_rel_error.value_or(0));
   };
   return head + row_lines(rows, width, columns) +
-         "\nover C++: of the same work by hand (native), which is timed by the host's clock: medians; by "
-         "wall: the host's clock for "
-         "both.\n";
+         "\n/ C++: median over that of the hand-written baseline (native), which the host's clock times. "
+         "/ C++ wall: the host's clock for both.\n";
 }
 
 }  // namespace
 
 Suite baseline_suite() {
-  return {"baseline", "propagation of sh2 against C++ with OpenMP and AVX2",
+  return {"baseline", "propagation of sh2, compared with C++, OpenMP and AVX2",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
             return std::vector<Group>{{[bench, options] { return cases(*bench, options); }}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `bases`: the cost of every basis, with either state and either lobe.
+// Suite `bases`: the cost of every basis, with both states and both lobes.
 #include "basis/basis.hpp"
 #include "bench/suites.hpp"
 #include "support/named_enum.hpp"
@@ -10,9 +10,9 @@ namespace {
 std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
                            const std::string& basis) {
   std::vector<Case> cases;
-  const Variant plain = plain_variant(options, basis);
-  cases.push_back(stage_case(*bench, "bases", kInject, plain));
-  Variant variant = plain;
+  const Variant usual = basis_variant(options, basis);
+  cases.push_back(stage_case(*bench, "bases", kInject, usual));
+  Variant variant = usual;
   for (const LobeKind lobe : values_of<LobeKind>()) {
     for (const State state : values_of<State>()) {
       for (const bool occlusion : {false, true}) {
@@ -21,9 +21,9 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
       }
     }
   }
-  // Blockers are areas whatever the basis.
-  cases.push_back(stage_case(*bench, "bases", kSweep, plain));
-  cases.push_back(stage_case(*bench, "bases", kGather, plain));
+  // The sweep's blockers are areas and do not depend on the basis: no case with occlusion.
+  cases.push_back(stage_case(*bench, "bases", kSweep, usual));
+  cases.push_back(stage_case(*bench, "bases", kGather, usual));
   return cases;
 }
 
@@ -31,10 +31,10 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
 
 Suite bases_suite() {
   return {"bases",
-          "every basis, both states, both lobes: injection, propagation, the sweep, gathering",
+          "every basis with both states and lobes: injection, propagation, sweep, gathering",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
-            return group_a_basis(
+            return groups_by_basis(
                 options.bases.empty() ? basis_names() : options.bases,
                 [bench, options](const std::string& basis) { return cases_of(bench, options, basis); });
           },

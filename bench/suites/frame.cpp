@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `frame`: whole frames along a camera path, of light made anew or kept, and what each stage of them takes.
+// Suite `frame`: whole frames along a camera path, and the time of each stage, with and without cached results.
 #include "pipeline/frame.hpp"
 
 #include <fmt/format.h>
@@ -16,17 +16,17 @@
 namespace clpv {
 namespace bench {
 
-/// What of a frame each repetition makes anew, besides what the camera sees.
-enum class Anew {
-  light,       ///< as if the lights had changed; what blocks and hides where cascades moved
-  everything,  ///< from nothing
-  nothing,     ///< what a camera costs that looks round among things and lights at rest
+/// Results that each repetition recomputes besides the camera's view.
+enum class Recompute {
+  light,       ///< all lighting, as if the lights had changed; blockers and visibility only of moved cascades
+  everything,  ///< no cached results
+  nothing,     ///< no lighting: the camera turns in a static scene with static lights
 };
 
 }  // namespace bench
 
 template <>
-inline constexpr auto kNames<bench::Anew> = name_list("light", "everything", "nothing");
+inline constexpr auto kNames<bench::Recompute> = name_list("light", "everything", "nothing");
 
 }  // namespace clpv
 
@@ -34,10 +34,10 @@ namespace clpv::bench {
 namespace {
 
 constexpr int kPathFrames = 24;
-constexpr double kTurn = 0.6, kSway = 0.5;  // [rad], [m]: to either side, once along the path
+constexpr double kTurn = 0.6, kSway = 0.5;  // amplitudes of turn [rad] and sway [m], one period per path
 
-/// A camera that looks round to either side and sways, back where it began after kPathFrames.
-Camera on_path(Camera camera, int frame, double sway) {
+/// The camera of a frame on a closed path of kPathFrames: it turns and sways left and right.
+Camera path_camera(Camera camera, int frame, double sway) {
   const double phase = 2 * 3.14159265358979 * frame / kPathFrames;
   const glm::mat4 turn =
       glm::rotate(glm::mat4(1.0f), static_cast<float>(kTurn * std::sin(phase)), glm::vec3(0, 1, 0));
@@ -48,33 +48,35 @@ Camera on_path(Camera camera, int frame, double sway) {
   return camera;
 }
 
-/// A frame in use, and the stages' times of every one rendered.
-struct Path {
+/// Frames rendered along a camera path, and their stage times.
+struct FrameSequence {
   std::shared_ptr<const Scene> scene;
   Camera start;
-  Anew anew;
+  Recompute recompute;
   Frame frame;
   int next = 0;
   bool warm = false;
   std::map<std::string, std::vector<double>> stage_ms;
 
-  Path(Session& session, std::shared_ptr<const Scene> lit, const std::string& camera,
-       const RenderOptions& options, Anew made_anew)
-      : scene(std::move(lit)),
+  FrameSequence(Session& session, std::shared_ptr<const Scene> rendered, const std::string& camera,
+                const RenderOptions& options, Recompute recomputed)
+      : scene(std::move(rendered)),
         start(scene->camera(camera)),
-        anew(made_anew),
+        recompute(recomputed),
         frame(session, *scene, options) {}
 
-  /// Cascades stay where they are if nothing is to be made anew.
-  Camera at(int number) const { return on_path(start, number, anew == Anew::nothing ? 0 : kSway); }
+  /// The camera of frame `number`. With Recompute::nothing it does not sway, so that cascades do not move.
+  Camera camera(int number) const {
+    return path_camera(start, number, recompute == Recompute::nothing ? 0 : kSway);
+  }
 
   void invalidate() {
-    switch (anew) {
-      case Anew::light:
+    switch (recompute) {
+      case Recompute::light:
         return frame.forget_light();
-      case Anew::everything:
+      case Recompute::everything:
         return frame.invalidate();
-      case Anew::nothing:
+      case Recompute::nothing:
         return;
     }
   }
@@ -82,17 +84,17 @@ struct Path {
   void add(const std::vector<StageTime>& times) {
     std::map<std::string, double> sums;  // over cascades and lights
     for (const StageTime& time : times) sums[std::string(name_of(time.mark.pass))] += time.ms;
-    if (warm) {  // the first run compiles
+    if (warm) {  // skips the warm-up, which compiles
       for (const auto& [stage, ms] : sums) stage_ms[stage].push_back(ms);
     }
     warm = true;
   }
 };
 
-std::vector<Row> stage_rows(const Path& path, const Row& frame) {
+std::vector<Row> stage_rows(const FrameSequence& sequence, const Row& frame) {
   std::vector<Row> rows;
-  for (auto [stage, ms] : path.stage_ms) {
-    ms.resize(frame.samples_ms.size(), 0.0);  // a frame that did without took none
+  for (auto [stage, ms] : sequence.stage_ms) {
+    ms.resize(frame.samples_ms.size(), 0.0);  // frames that skipped the stage count as 0 ms
     Row row = frame;
     row.stage = stage;
     row.name = stage + frame.name.substr(frame.name.find('/'));
@@ -100,7 +102,7 @@ std::vector<Row> stage_rows(const Path& path, const Row& frame) {
     row.times = statistics_of(ms);
     row.wall_ms = row.cpu_ms = row.first_launch_ms = row.build_ms = 0;
     row.from_events = true;
-    row.max_rel_error.reset();  // the frame's is of the whole image
+    row.max_rel_error.reset();  // the frame's error is that of the image, not of a stage
     row.cost = {};
     row.ceiling.clear();
     row.ceiling_share = 0;
@@ -109,59 +111,63 @@ std::vector<Row> stage_rows(const Path& path, const Row& frame) {
   return rows;
 }
 
-/// The last frame again, from nothing: the same bytes, whatever was rendered before it.
-Deviation repeat(Path& path, Session& session) {
-  const std::vector<float> timed = path.frame.read(Show::full);
-  path.frame.render(path.at(path.next + kPathFrames / 2));
-  path.frame.invalidate();
-  path.frame.render(path.at(path.next - 1));
+/// Renders the last frame again after another one, without cached results. Its pixels must be identical.
+Deviation compare_uncached(FrameSequence& sequence, Session& session) {
+  const std::vector<float> timed = sequence.frame.read(Show::full);
+  sequence.frame.render(sequence.camera(sequence.next + kPathFrames / 2));
+  sequence.frame.invalidate();
+  sequence.frame.render(sequence.camera(sequence.next - 1));
   session.queue().finish();
-  const std::vector<float> again = path.frame.read(Show::full);
+  const std::vector<float> uncached = sequence.frame.read(Show::full);
   const reference::WorstError worst = reference::worst_difference(
-      again.size(), [&](std::size_t i) { return double{timed[i]}; },
-      [&](std::size_t i) { return double{again[i]}; });
+      uncached.size(), [&](std::size_t i) { return double{timed[i]}; },
+      [&](std::size_t i) { return double{uncached[i]}; });
   if (worst.value == 0) return {0, 0, {}};
   return {worst.value, 0,
-          fmt::format("pixel {} channel {}: {:.7g}, rendered again {:.7g}", worst.at / 4, worst.at % 4,
-                      timed[worst.at], again[worst.at])};
+          fmt::format("pixel {} channel {}: {:.7g}, without cached results {:.7g}", worst.at / 4,
+                      worst.at % 4, timed[worst.at], uncached[worst.at])};
 }
 
-Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render, Anew anew) {
-  const auto path = std::make_shared<Path>(session, scene_of(options), options.camera, render, anew);
+Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render,
+              Recompute recompute) {
+  const auto sequence =
+      std::make_shared<FrameSequence>(session, scene_of(options), options.camera, render, recompute);
   Job job;
   job.own_stages = true;
-  job.reset = [path] { path->invalidate(); };
-  job.run = [path] { path->frame.render(path->at(path->next++)); };
-  job.after_run = [path](const std::vector<StageTime>& times) { path->add(times); };
-  job.more_rows = [path](const Row& row) { return stage_rows(*path, row); };
-  job.verify = [path, &session] { return repeat(*path, session); };
+  job.reset = [sequence] { sequence->invalidate(); };
+  job.run = [sequence] { sequence->frame.render(sequence->camera(sequence->next++)); };
+  job.after_run = [sequence](const std::vector<StageTime>& times) { sequence->add(times); };
+  job.more_rows = [sequence](const Row& row) { return stage_rows(*sequence, row); };
+  job.verify = [sequence, &session] { return compare_uncached(*sequence, session); };
   return job;
 }
 
 Case frame_case(Session& session, const SuiteOptions& options, PresetName preset, const std::string& basis,
-                Anew anew) {
+                Recompute recompute) {
   RenderOptions render;
   apply_preset(render, preset);
   render.basis = basis;
   render.cascades = options.settings.cascades, render.cascade_size = options.settings.cascade_size;
   Variant variant;
   variant.options = render;
-  variant.options.lobe = LobeKind::exact;  // the preset's name tells which they are
+  variant.options.lobe = LobeKind::exact;  // the row's name has the preset in place of the lobes
   variant.options.lobe_time = LobeTime::host;
   Case result;
-  result.row =
-      make_row("frame", "frame", variant, fmt::format("/{}/anew:{}", name_of(preset), name_of(anew)));
+  result.row = make_row("frame", "frame", variant,
+                        fmt::format("/{}/recompute:{}", name_of(preset), clpv::name_of(recompute)));
   result.row.preset = name_of(preset);
-  result.row.anew = name_of(anew);
-  result.make = [&session, options, render, anew] { return frame_job(session, options, render, anew); };
+  result.row.recompute = clpv::name_of(recompute);
+  result.make = [&session, options, render, recompute] {
+    return frame_job(session, options, render, recompute);
+  };
   return result;
 }
 
 std::string frame_table(const std::vector<Row>& rows) {
   std::string text =
-      fmt::format("{:<62} {:>10} {:>9} {:>9} {:>9} {:>7}\n", "row", "median ms", "p95", "max", "mad", "fps");
+      fmt::format("{:<67} {:>10} {:>9} {:>9} {:>9} {:>7}\n", "row", "median ms", "p95", "max", "mad", "fps");
   for (const Row& row : rows) {
-    text += fmt::format("{:<62} {:>10.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>7}{}\n", row.name, row.times.median,
+    text += fmt::format("{:<67} {:>10.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>7}{}\n", row.name, row.times.median,
                         row.times.p95, row.times.max, row.times.mad,
                         row.stage == "frame" ? fmt::format("{:.1f}", 1e3 / row.times.median) : "",
                         row.status == Status::wrong ? "  WRONG" : "");
@@ -173,7 +179,7 @@ std::string frame_table(const std::vector<Row>& rows) {
 
 Suite frame_suite() {
   return {
-      "frame", "whole frames along a camera path: frames a second, median, 95th percentile, each stage",
+      "frame", "whole frames along a camera path: frames per second, median, 95th percentile, stage times",
       [](Session& session, const SuiteOptions& options) {
         const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
@@ -181,8 +187,8 @@ Suite frame_suite() {
           groups.push_back({[&session, options, bases, preset] {
             std::vector<Case> cases;
             for (const std::string& basis : bases) {
-              for (const Anew anew : values_of<Anew>())
-                cases.push_back(frame_case(session, options, preset, basis, anew));
+              for (const Recompute recompute : values_of<Recompute>())
+                cases.push_back(frame_case(session, options, preset, basis, recompute));
             }
             return cases;
           }});

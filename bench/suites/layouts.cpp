@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `layouts`: every stage on every layout and storage of its volumes, and how often each reaches into them: the
-// paper's own argument is about texture reads.
+// Suite `layouts`: every stage with every layout and storage of its volumes, and its numbers of reads and writes, by
+// which the paper explains its times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,31 +11,31 @@
 namespace clpv::bench {
 namespace {
 
-// As the paper has it: what the others' speed-up is told over.
+// The paper's format, baseline of the speed-ups.
 constexpr VolumeFormat kPaperFormat{Layout::image, Storage::float16};
 
-struct Timed {
+struct StageSetup {
   StageJob job;
   bool occlusion;
 };
 
-/// One stage of one basis in every format: timed interleaved.
+/// One stage of one basis in every format.
 std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::string& basis,
-                        const Timed& timed) {
+                        const StageSetup& setup) {
   std::vector<Case> cases;
   for (const VolumeFormat& format : all_formats()) {
-    Variant variant = plain_variant(options, basis);
+    Variant variant = basis_variant(options, basis);
     variant.options.layout = format.layout, variant.options.storage = format.storage;
-    variant.options.occlusion = timed.occlusion;
-    cases.push_back(stage_case(bench, "layouts", timed.job, variant));
-    if (timed.job.stage != Stage::gather || format.layout != Layout::image) continue;
+    variant.options.occlusion = setup.occlusion;
+    cases.push_back(stage_case(bench, "layouts", setup.job, variant));
+    if (setup.job.stage != Stage::gather || format.layout != Layout::image) continue;
     variant.filtered = false;
-    cases.push_back(stage_case(bench, "layouts", timed.job, variant));
+    cases.push_back(stage_case(bench, "layouts", setup.job, variant));
   }
   return cases;
 }
 
-/// The row of half-float images that does the same work.
+/// The row of the same stage, basis and occlusion in half-float images; null if there is none.
 const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
   for (const Row& other : rows) {
     const RenderOptions &a = row.variant->options, &b = other.variant->options;
@@ -50,7 +50,7 @@ std::string layouts_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string text =
       fmt::format("{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
-                  "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "over image/half", "error");
+                  "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "vs image/half", "error");
   const auto columns = [&](const Row& row) {
     const Row* paper = paper_row(rows, row);
     return fmt::format(
@@ -61,28 +61,31 @@ std::string layouts_table(const std::vector<Row>& rows) {
         row.max_rel_error.value_or(0));
   };
   return text + row_lines(rows, width, columns) +
-         "\nreads and writes: of numbers, or of texels of four, by a cell in one later step (all channels); "
-         "of sweep, in all; of gather, by a pixel in one cascade.\n";
+         "\nreads, writes: numbers, or texels of 4 numbers, per cell and step over all channels, after the "
+         "first step; "
+         "sweep: per cell in total; gather: per pixel in one cascade.\nvs image/half: speed-up over "
+         "half-float images.\n";
 }
 
 }  // namespace
 
 Suite layouts_suite() {
   return {
-      "layouts", "each stage on each layout and storage of volumes; reads, writes, speed-up over half images",
+      "layouts",
+      "each stage with each layout and storage of volumes: reads, writes, speed-up over half-float images",
       [](Session& session, const SuiteOptions& options) {
         const auto bench = make_bench(session, options, options.settings);
         const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
-        const auto add = [&](const Timed& timed, const std::vector<std::string>& of) {
+        const auto add = [&](const StageSetup& setup, const std::vector<std::string>& names) {
           std::ranges::move(
-              group_a_basis(of,
-                            [=](const std::string& basis) { return cases(*bench, options, basis, timed); }),
+              groups_by_basis(names,
+                              [=](const std::string& basis) { return cases(*bench, options, basis, setup); }),
               std::back_inserter(groups));
         };
-        for (const Timed& timed : {Timed{kInject, false}, {kPropagate, false}, {kPropagate, true}})
-          add(timed, bases);
-        // A sweep reads a basis once and keeps light its own way: of one basis, the defaults', all is told.
+        for (const StageSetup& setup : {StageSetup{kInject, false}, {kPropagate, false}, {kPropagate, true}})
+          add(setup, bases);
+        // The sweep stores light in its own layout and reads the basis once: by default, one basis is enough.
         for (const bool occlusion : {false, true})
           add({kSweep, occlusion}, options.bases.empty() ? std::vector{RenderOptions{}.basis} : bases);
         add({kGather, false}, bases);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `rasterize`: the camera's view, a light's shadow map and its reflective shadow maps, beside the same by OpenGL in the
-// same run.
+// Suite `rasterize`: G-buffer, shadow maps and RSMs by clpv, and the same work by OpenGL ES.
 #include "pipeline/rasterize.hpp"
 
 #include <fmt/format.h>
@@ -12,31 +11,31 @@
 namespace clpv::bench {
 namespace {
 
-constexpr const char* kPeer = "/opengl";
+constexpr const char* kOpenGl = "/opengl";
 constexpr Pass kPasses[] = {Pass::rasterize_camera, Pass::rasterize_shadow, Pass::rasterize_rsm};
 
 std::vector<Case> cases(Session& session, const SuiteOptions& options) {
   std::vector<Case> cases;
   const auto scene = scene_of(options);
   for (const Pass pass : kPasses) {
-    for (const bool peer : {false, true}) {
-      Case made;
-      made.row.suite = "rasterize", made.row.stage = name_of(pass);
-      made.row.name = std::string(name_of(pass)) + (peer ? kPeer : "");
-      made.make = [&session, scene, pass, camera = options.camera, settings = options.settings,
-                   make = peer ? rasterize_gl_job : rasterize_job] {
+    for (const bool opengl : {false, true}) {
+      Case added;
+      added.row.suite = "rasterize", added.row.stage = name_of(pass);
+      added.row.name = std::string(name_of(pass)) + (opengl ? kOpenGl : "");
+      added.make = [&session, scene, pass, camera = options.camera, settings = options.settings,
+                    make = opengl ? rasterize_gl_job : rasterize_job] {
         return make(session, scene, camera, pass, settings);
       };
-      cases.push_back(std::move(made));
+      cases.push_back(std::move(added));
     }
   }
   return cases;
 }
 
-/// By the host's clock, which OpenGL is timed by.
-double wall_of(const std::vector<Row>& rows, const std::string& name) {
-  const auto found = std::ranges::find(rows, name, &Row::name);
-  return found == rows.end() || found->status == Status::unsupported ? 0 : found->wall_ms;
+/// Wall time of the row `name` [ms]; 0 without such a row.
+double wall_ms_of(const std::vector<Row>& rows, const std::string& name) {
+  const auto row = std::ranges::find(rows, name, &Row::name);
+  return row == rows.end() || row->status == Status::unsupported ? 0 : row->wall_ms;
 }
 
 std::string rasterize_table(const std::vector<Row>& rows) {
@@ -45,11 +44,11 @@ std::string rasterize_table(const std::vector<Row>& rows) {
       fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", kWidth, "wall ms", "mad",
                   "M triangles/s", "ns/triangle", "ns/pixel", "opengl / clpv");
   return text + row_lines(rows, kWidth, [&](const Row& row) {
-           const double peer = wall_of(rows, row.name + kPeer);
+           const double opengl_ms = wall_ms_of(rows, row.name + kOpenGl);
            return fmt::format("{:>10.2f} {:>9.2f} {:>14.1f} {:>12.1f} {:>9.1f} {:>14}", row.wall_ms,
                               row.times.mad, row.cost.triangles / row.wall_ms * 1e-3,
                               row.wall_ms * 1e6 / row.cost.triangles, row.wall_ms * 1e6 / row.cost.pixels,
-                              peer > 0 ? fmt::format("{:.2f}", peer / row.wall_ms) : "-");
+                              opengl_ms > 0 ? fmt::format("{:.2f}", opengl_ms / row.wall_ms) : "-");
          });
 }
 
@@ -57,7 +56,7 @@ std::string rasterize_table(const std::vector<Row>& rows) {
 
 Suite rasterize_suite() {
   return {"rasterize",
-          "the camera's view, shadow map and RSMs: a triangle, a pixel, and against OpenGL (llvmpipe)",
+          "G-buffer, shadow maps and RSMs: time per triangle and per pixel, compared with OpenGL ES",
           [](Session& session, const SuiteOptions& options) {
             return std::vector<Group>{{[&session, options] { return cases(session, options); }}};
           },

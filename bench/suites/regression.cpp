@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `regression`: small and fixed, for who works on an OpenCL implementation: every kind of kernel once, and how long
-// its programs took to build, as rows of their own.
+// Suite `regression`: every kind of kernel once, on small fixed inputs, with rows for the build time of its programs. For
+// authors of OpenCL implementations.
 #include "basis/basis.hpp"
 #include "bench/suites.hpp"
 #include "support/named_enum.hpp"
@@ -8,10 +8,10 @@
 namespace clpv::bench {
 namespace {
 
-// Small enough for an interpreter, large enough that a launch is not all there is.
+// Small enough for an interpreter, large enough to exceed launch time.
 constexpr int kCells = 16, kTexels = 64, kWidth = 160, kHeight = 90;
 
-/// BUILD/...: what the row's programs took, from text to their first launch's end.
+/// Row build/...: time from the programs' source text to the end of their first launch.
 std::vector<Row> build_row(const Row& timed) {
   Row row;
   row.suite = timed.suite;
@@ -28,14 +28,14 @@ std::vector<Row> build_row(const Row& timed) {
   return {row};
 }
 
-/// The same case with its build told beside it.
-Case with_build(Case described) {
-  described.make = [make = std::move(described.make)] {
+/// Adds a row of the build time to a case.
+Case with_build(Case source) {
+  source.make = [make = std::move(source.make)] {
     Job job = make();
     job.more_rows = build_row;
     return job;
   };
-  return described;
+  return source;
 }
 
 SuiteOptions small(SuiteOptions options) {
@@ -48,25 +48,25 @@ SuiteOptions small(SuiteOptions options) {
 std::vector<Case> stages_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
                             const std::string& basis) {
   std::vector<Case> cases;
-  const Variant plain = plain_variant(options, basis);
+  const Variant usual = basis_variant(options, basis);
   for (const StageJob& job : kStageJobs)
-    cases.push_back(with_build(stage_case(*bench, "regression", job, plain)));
-  Variant blocked = plain;
-  blocked.options.occlusion = true;
+    cases.push_back(with_build(stage_case(*bench, "regression", job, usual)));
+  Variant with_occlusion = usual;
+  with_occlusion.options.occlusion = true;
   for (const StageJob& job : {kPropagate, kSweep})
-    cases.push_back(with_build(stage_case(*bench, "regression", job, blocked)));
-  Variant halves = plain;
-  halves.options.storage = Storage::float16;
+    cases.push_back(with_build(stage_case(*bench, "regression", job, with_occlusion)));
+  Variant in_half = usual;
+  in_half.options.storage = Storage::float16;
   for (const StageJob& job : {kPropagate, kSweep})
-    cases.push_back(with_build(stage_case(*bench, "regression", job, halves)));
+    cases.push_back(with_build(stage_case(*bench, "regression", job, in_half)));
   return cases;
 }
 
 std::vector<Case> layouts_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const Layout layout : values_of<Layout>()) {
-    if (layout == Layout::soa) continue;  // stages_of has it
-    Variant variant = plain_variant(options, "sh2");
+    if (layout == Layout::soa) continue;  // part of stages_of()
+    Variant variant = basis_variant(options, "sh2");
     variant.options.layout = layout;
     cases.push_back(with_build(stage_case(*bench, "regression", kPropagate, variant)));
   }
@@ -77,13 +77,13 @@ std::vector<Case> layouts_of(const std::shared_ptr<Bench>& bench, const SuiteOpt
 
 Suite regression_suite() {
   return {"regression",
-          "small and fixed: every kind of kernel, and how long it took to build, for who works on a driver",
-          [](Session& session, const SuiteOptions& given) {
-            const SuiteOptions options = small(given);
+          "every kind of kernel on small fixed inputs, and build times; for authors of OpenCL drivers",
+          [](Session& session, const SuiteOptions& suite_options) {
+            const SuiteOptions options = small(suite_options);
             const auto bench = make_bench(session, options, options.settings);
             const auto names =
                 options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2", "bins24"} : options.bases;
-            std::vector<Group> groups = group_a_basis(names, [bench, options](const std::string& basis) {
+            std::vector<Group> groups = groups_by_basis(names, [bench, options](const std::string& basis) {
               return stages_of(bench, options, basis);
             });
             groups.push_back({[bench, options] { return layouts_of(bench, options); }});

@@ -29,7 +29,7 @@ bool blocks_by_lobes(Blocking blocking);
 int blocking_size(Blocking blocking, const Basis& basis);
 
 /// Returns the weights of these coefficients in the blocking potential B of light along the unit vector `direction`.
-/// one-sided: b_i(-direction); areas: |direction_a|, exact for light along an axis and for surfels across an axis.
+/// `one_sided`: b_i(-direction). `areas`: |direction_a|, exact for light along an axis and for surfels across an axis.
 std::vector<double> blocking_weights(Blocking blocking, const Basis& basis, const LobeOptions& lobes,
                                      const glm::dvec3& direction);
 

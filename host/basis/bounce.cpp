@@ -28,8 +28,8 @@ double compute_edge_loss() {
 
 Matrix incident_flux() {
   const std::vector<SweepBin> bins = sweep_bins(1);
-  Matrix flux(kReflectingSides, kSweepBins);
-  for (int side = 0; side < kReflectingSides; ++side) {
+  Matrix flux(kCellFaces, kSweepBins);
+  for (int side = 0; side < kCellFaces; ++side) {
     const int opposite =
         side ^ 1;  // light arrives here in the directions in which it leaves the opposite face
     for (int b = 0; b < kSweepBins; ++b) {
@@ -42,8 +42,8 @@ Matrix incident_flux() {
 
 Matrix reflected_intensity() {
   const std::vector<SweepBin> bins = sweep_bins(1);
-  Matrix light(kSweepBins, kReflectingSides);
-  for (int side = 0; side < kReflectingSides; ++side) {
+  Matrix light(kSweepBins, kCellFaces);
+  for (int side = 0; side < kCellFaces; ++side) {
     double total = 0;
     for (const SweepBin& bin : bins) total += bin.solid_angle * cosine(bin, side);
     for (int b = 0; b < kSweepBins; ++b) light(b, side) = cosine(bins[b], side) / total;

@@ -8,7 +8,7 @@
 namespace clpv {
 
 /// Faces of a cell by outward normal: +x, -x, +y, -y, +z, -z.
-inline constexpr int kReflectingSides = 6;
+inline constexpr int kCellFaces = 6;
 
 /// Further bounces in the truncated Neumann series of `--bounces all`. The remainder is negligible except in a closed
 /// white room.

@@ -14,7 +14,7 @@ double cosine_band(int band);
 
 /// g(t) = Int G(w . xi; lambda) max(0, w . d) dw with t = xi . d, = 4 pi sum_k a_k lambda^k P_k(t).
 /// Odd part: 2 pi lambda t. Even part: a series in P_2k, truncated where the remainder is below 1e-17 of the
-/// first term, or at degree 2^15: then (lambda near 1) the error is at most 1e-6.
+/// first term, or at degree 2^15. With lambda near 1 that leaves an error of up to 1e-6.
 class CosineOfPoisson {
  public:
   explicit CosineOfPoisson(double lambda);

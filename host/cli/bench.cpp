@@ -90,12 +90,12 @@ std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
 void take_scene(Options& options, const bench::Suite& suite) {
   if (options.scene.empty() && !options.model.empty())
     throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
-  if (options.scene.empty() && suite.usual_scene.empty()) return;
-  if (options.scene.empty() && !std::filesystem::exists(suite.usual_scene)) {
-    spdlog::warn("{} is not here: {} works on the hall in its place", suite.usual_scene, suite.name);
+  if (options.scene.empty() && suite.default_scene.empty()) return;
+  if (options.scene.empty() && !std::filesystem::exists(suite.default_scene)) {
+    spdlog::warn("{} is not here: {} works on the hall in its place", suite.default_scene, suite.name);
     return;
   }
-  const std::string file = options.scene.empty() ? suite.usual_scene : options.scene;
+  const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
   const auto scene = std::make_shared<const Scene>(load_scene(file, options.model));
   options.bench.suite.scene = scene;
   if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
@@ -170,7 +170,7 @@ void add_bench(CLI::App& app, Shared& shared) {
       "only rows in whose name this regular expression is found");
   command->add_option("--repetitions", options->bench.repetitions, "how often each row is timed")
       ->capture_default_str()
-      ->check(CLI::Range(1, bench::kMostRepetitions));
+      ->check(CLI::Range(1, bench::kMaxRepetitions));
   command
       ->add_option("--format", options->format,
                    "table|json|csv, or github-action: name, unit and value of each row, smaller is better")

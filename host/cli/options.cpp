@@ -158,7 +158,7 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
       "surfaces between a light and the surface seen: 1, 2 and so on, or all")
       ->group(kGroup);
   auto* samples = add(command, "--spp", "N", options.values.samples, "paths a pixel")
-                      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples))
+                      ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples))
                       ->group(kGroup);
   command
       .add_option(

@@ -171,7 +171,7 @@ void run(const Options& options, const Shared& shared) {
   propagator.propagate(
       {injected, corners ? &*corners : nullptr, accumulated}, options.frame.iterations,
       [&](int step, const Volume& travelling) {
-        const auto out = reference::leaving(*basis, transport, before);
+        const auto out = reference::escaping_energy(*basis, transport, before);
         before = travelling_coefficients(*basis, transport, travelling.read(session), options.frame.grid,
                                          travelling.shape().coefficients);
         const auto now = reference::energy(*basis, before);

@@ -314,7 +314,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
       "stability.json: how light changes from frame to frame on surfaces that stay where they are");
   add(*command, "--traced", "SPP", options->traced,
       "with --stability: the same of path tracing by so many paths a pixel, its noise")
-      ->check(CLI::Range(1u, reference::PathTracerOptions::kMostSamples));
+      ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples));
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(

@@ -9,7 +9,7 @@
 namespace clpv {
 namespace {
 
-/// CLPV_EACH_PAIR: of an odd number of them the last is paired with zero. `member`: how one lane of a member is written.
+/// CLPV_EACH_PAIR; the last of an odd number is paired with zero. `member`: expression for a lane of a member.
 std::string pair_macros(int count, const std::string& member) {
   std::string text = "#define CLPV_NONE(a) 0.0f\n", each = "#define CLPV_EACH_PAIR(DO)";
   for (int i = 0; i < count; ++i)

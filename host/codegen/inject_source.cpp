@@ -14,7 +14,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kNegligible = 1e-12;  // rounding of the Gram matrix: no single-precision sum notices it
+constexpr double kNegligible = 1e-12;  // rounding of the Gram matrix, below float precision
 
 /// Lower triangle L of the Gram matrix A = L L^T.
 Matrix cholesky(const Matrix& a) {
@@ -29,7 +29,7 @@ Matrix cholesky(const Matrix& a) {
   return lower;
 }
 
-/// A function that is a fixed weighted sum of coefficients.
+/// Text of a function that returns a constant weighted sum of coefficients.
 std::string weighted_sum(const std::string& name, std::span<const double> weights) {
   std::string sum = "0.0f";
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -50,8 +50,8 @@ std::string unknown(std::string right, double diagonal, const char* known, int f
   return fmt::format("{} * ({})", float_literal(1 / diagonal), right);
 }
 
-/// clpv_project_sum. A^-1 by the two triangles of A = L L^T: rounding then stays where it hardly
-/// changes the function, which A^-1 written out in single precision does not achieve (srbf14: 20 times worse).
+/// clpv_project_sum: A^-1 as two triangular systems, A = L L^T. A float A^-1 would have 20x the rounding error for
+/// srbf14.
 std::string projection(const Basis& basis) {
   const int n = basis.size();
   const Matrix lower = cholesky(basis.gram());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kernel text that injection generates for a basis. Knows no OpenCL.
+// Generates the text of injection kernels for a basis (kernels/inject.cl). Independent of OpenCL.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace clpv {
 
-/// What kernels/inject.cl is compiled with for light, besides literals: the basis's functions and, also by themselves,
-///   Coefficients clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE)   alpha of the lobe round the unit normal
-///   float clpv_flux(Coefficients alpha)         Int of the lobe with those integrals alpha [sr]
+/// Text for light, without literals. lobe_source() defines the functions below; inject_source() adds the basis's
+/// functions.
+///   Coefficients clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE)   alpha of the lobe about the unit normal
+///   float clpv_flux(Coefficients alpha)         integral of the lobe with integrals alpha [sr]
 ///   Coefficients clpv_project_sum(Coefficients a)                A^-1 a
-/// Rotated lobes of a basis with centres come after the macros of their LookupTable.
+/// Rotated lobes of a basis with centres follow the macros of their LookupTable.
 std::string lobe_source(const Basis& basis, const LobeOptions& lobes);
 std::string inject_source(const Basis& basis, const LobeOptions& lobes);
 
-/// The same for blockers: clpv_project_sum, and
-///   Coefficients clpv_blocker(x, y, z CLPV_PASS_TABLE)            what a surfel of share 1 adds, by its unit normal, to be
-///                                                                 projected
-///   Coefficients clpv_merge(Coefficients a, Coefficients b)       of two surfaces that see the same
-/// Lobes as above; areas look nothing up.
+/// Text for blockers: clpv_project_sum, and
+///   Coefficients clpv_blocker(x, y, z CLPV_PASS_TABLE)            contribution of a surfel of share 1, before projection
+///   Coefficients clpv_merge(Coefficients a, Coefficients b)       blocking of two sources that see the same surface
+/// Lobes as above; areas need no table.
 std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blocking blocking);
 
 }  // namespace clpv

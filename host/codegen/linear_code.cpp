@@ -23,7 +23,7 @@ Matrix mirrored_coordinates(int inputs, const std::vector<SignedPermutation>& mi
     int out = 0;
     for (int r = 0; r < inputs; ++r) {
       if (done[r]) continue;
-      // The mirror image of this coordinate is plus or minus itself or another of the same shape.
+      // The mirror image of a coordinate is plus or minus itself or another coordinate.
       std::vector<double> image(static_cast<std::size_t>(inputs), 0.0);
       for (int i = 0; i < inputs; ++i) image[m.target[i]] += m.sign[i] * coordinates(r, i);
       int partner = -1, sign = 0;
@@ -53,7 +53,7 @@ Matrix mirrored_coordinates(int inputs, const std::vector<SignedPermutation>& mi
   return coordinates;
 }
 
-/// The pattern of signs under which a coordinate changes when mirrored: its class, as bits.
+/// Parity class of a coordinate: bit i is set if mirror i changes its sign.
 int parity_class(std::span<const double> coordinate, const std::vector<SignedPermutation>& mirrors) {
   int bits = 0;
   for (std::size_t b = 0; b < mirrors.size(); ++b) {
@@ -112,7 +112,7 @@ std::vector<std::string> LinearCode::product(const Matrix& rows, const std::vect
     for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(rows(r, i)));
   }
 
-  // Each row in mirrored coordinates, and which of those any row needs.
+  // Each row in mirrored coordinates, and the coordinates that any row needs.
   Matrix factors(rows.rows(), n);
   std::vector<bool> needed(static_cast<std::size_t>(n), false);
   for (int r = 0; r < rows.rows(); ++r) {
@@ -127,7 +127,7 @@ std::vector<std::string> LinearCode::product(const Matrix& rows, const std::vect
     }
   }
 
-  // A coordinate as nested sums and differences; halves that two coordinates share are named once.
+  // A coordinate as nested sums and differences; shared halves are named once.
   const auto coordinate_name = [&](int t) {
     std::vector<std::pair<double, std::string>> parts;
     for (int i = 0; i < n; ++i) {
@@ -152,7 +152,7 @@ std::vector<std::string> LinearCode::product(const Matrix& rows, const std::vect
     classes[t] = parity_class(coordinates.row(t), mirrors);
   }
 
-  // A row is a sum over classes; rows that mirror each other share each class's part but for its sign.
+  // A row is a sum over parity classes; rows that mirror each other share the sum of each class up to its sign.
   std::vector<std::string> outputs;
   for (int r = 0; r < rows.rows(); ++r) {
     std::string row;
@@ -211,8 +211,8 @@ std::string cell_macros(const std::string& type, const std::string& each, int co
 }
 
 std::string coefficient_macros(int coefficients) {
-  // Inlined by the compiler's front end: left to later passes, structs would be passed in memory or in vector registers,
-  // and work-items would no longer vectorise on CPU devices.
+  // Inlined by the compiler's front end: later passes would pass structs in memory or vector registers, and
+  // work-items would not vectorise on CPUs.
   return "#define CLPV_INLINE static inline __attribute__((always_inline))\n"
          "#ifndef CLPV_LANES\n#define CLPV_LANES 1\n#endif\n"
          "#if CLPV_LANES == 8\n#define CLPV_REAL float8\n#else\n#define CLPV_REAL float\n#endif\n" +

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Straight-line OpenCL C: the structs of a cell's numbers, and products with constant matrices by their symmetries.
+// Generates straight-line OpenCL C: structs of a cell's numbers, and products with constant matrices that use
+// symmetries.
 //
-// A mirror image of the grid turns each basis function into plus or minus another one. In coordinates that
-// such mirrors leave alone but for their sign (sums and differences of mirrored inputs) most entries of the
-// step's matrices are zero, and rows that mirror each other have all but the signs in common: sh2's step
-// takes 36 multiply-adds, not 110.
+// A mirror of the grid maps each basis function to plus or minus another one. In coordinates that mirrors change in
+// sign alone (sums and differences of mirrored inputs) most entries of a step's matrices are zero, and rows that
+// mirror each other differ in signs alone: a step of sh2 takes 36 multiply-adds instead of 110.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@
 
 namespace clpv {
 
-/// Floating-point operations a piece of generated code executes.
+/// Floating-point operations of generated code.
 struct OperationCount {
   int additions = 0;  ///< additions, subtractions, comparisons
   int multiplications = 0;
@@ -24,17 +24,17 @@ struct OperationCount {
   int flops() const { return additions + multiplications + 2 * fused; }
 };
 
-/// A list of statements `const CLPV_REAL NAME = ...;`. The same expression is never written twice.
+/// List of statements `const CLPV_REAL NAME = ...;`. Equal expressions are written once.
 class LinearCode {
  public:
-  /// Statements for rows * inputs (inputs: expressions). Mirrors must be symmetries of the inputs, commuting; those that do
-  /// not exist are ignored. Returns one expression a row: a name, or "0.0f".
+  /// Appends statements for rows * inputs (inputs: expressions). Mirrors must be commuting symmetries of the inputs;
+  /// those that do not exist are ignored. Returns one expression per row: a name, or "0.0f".
   std::vector<std::string> product(const Matrix& rows, const std::vector<std::string>& inputs,
                                    const std::vector<SignedPermutation>& mirrors = {});
-  /// The text of a function `called` that takes a struct `from` to a struct `to` by `matrix`.
+  /// Returns the text of a function `called` that multiplies a struct `from` by `matrix` and returns a struct `to`.
   std::string function(const std::string& to, const std::string& called, const std::string& from,
                        const Matrix& matrix, const std::vector<SignedPermutation>& mirrors = {});
-  /// A name for a + b, a - b, or any other expression, that costs the given operations.
+  /// Returns a name for a + b, a - b, or any expression with the given operations.
   std::string add(const std::string& a, const std::string& b);
   std::string subtract(const std::string& a, const std::string& b);
   std::string name(const std::string& expression, const OperationCount& cost);
@@ -54,18 +54,18 @@ class LinearCode {
   OperationCount operations_;
 };
 
-/// "name.c0", "name.c1", ... : the scalars of a struct cell_macros() declares.
+/// "name.c0", "name.c1", ...: the scalars of a struct of cell_macros().
 std::vector<std::string> fields(const std::string& name, int count);
 
-/// `statements` as a macro. Not a function: compilers that pass structs in vector registers would keep work-items from
-/// being vectorised.
+/// `statements` as a macro. A function would prevent vectorisation of work-items in compilers that pass structs in
+/// vector registers.
 std::string macro_text(const std::string& name, const std::string& statements);
 
-/// Text every kernel that handles coefficients starts with (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and
-/// CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO) and the struct Coefficients of N CLPV_REALs c0, c1, ...
+/// First text of every kernel with coefficients (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and
+/// CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO) and struct Coefficients of N CLPV_REALs c0, c1, ...
 std::string coefficient_macros(int coefficients);
 
-/// The struct `type` of `count` CLPV_REALs c0, c1, ... and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
+/// struct `type` of `count` CLPV_REALs c0, c1, ..., and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
 std::string cell_macros(const std::string& type, const std::string& each, int count);
 
 }  // namespace clpv

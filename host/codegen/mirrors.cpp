@@ -10,10 +10,10 @@
 namespace clpv {
 namespace {
 
-constexpr double kSameFunction = 1e-9;  // two functions that differ by less everywhere are one
+constexpr double kSameFunction = 1e-9;  // maximum difference of equal functions
 
 std::vector<glm::dvec3> scattered_directions(int count) {
-  std::mt19937 random(1);  // any fixed set that no mirror maps to itself
+  std::mt19937 random(1);  // a fixed set that no mirror maps to itself
   std::normal_distribution<double> normal;
   std::vector<glm::dvec3> directions;
   for (int i = 0; i < count; ++i) {

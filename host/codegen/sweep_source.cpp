@@ -47,10 +47,10 @@ std::string sweep_bin_macros() {
 CountedText sweep_source_text(const Basis& basis) {
   LinearCode code;
   const std::string means =
-      code.function("Swept", "clpv_bin_means", "Coefficients", bin_means(basis), mirrors_of(basis).list());
-  return {coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Swept", "SWEPT", kSweepBins) +
-              means,
-          code.operations()};
+      code.function("Bins", "clpv_bin_means", "Coefficients", bin_means(basis), mirrors_of(basis).list());
+  return {
+      coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) + means,
+      code.operations()};
 }
 
 std::string sweep_links_text(const Basis& basis, const Transport& transport) {
@@ -60,23 +60,22 @@ std::string sweep_links_text(const Basis& basis, const Transport& transport) {
 CountedText sweep_collect_text() {
   const Matrix projection = swept_projection();
   LinearCode code;
-  const std::string projected = code.function("Coefficients", "clpv_projected", "Swept", projection,
-                                              mirrors_of(*make_basis("bins24")).list());
+  const std::string function = code.function("Coefficients", "clpv_project_bins", "Bins", projection,
+                                             mirrors_of(*make_basis("bins24")).list());
   return {coefficient_macros(projection.rows()) + sweep_bin_macros() +
-              cell_macros("Swept", "SWEPT", kSweepBins) + projected,
+              cell_macros("Bins", "BIN", kSweepBins) + function,
           code.operations()};
 }
 
 std::string bounce_source_text() {
-  return coefficient_macros(kReflectingSides) + sweep_bin_macros() +
-         cell_macros("Swept", "SWEPT", kSweepBins) +
-         LinearCode().function("Coefficients", "clpv_arriving", "Swept", incident_flux()) +
-         LinearCode().function("Swept", "clpv_leaving", "Coefficients", reflected_intensity());
+  return coefficient_macros(kCellFaces) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) +
+         LinearCode().function("Coefficients", "clpv_incident_flux", "Bins", incident_flux()) +
+         LinearCode().function("Bins", "clpv_reflected_intensity", "Coefficients", reflected_intensity());
 }
 
-std::string arriving_source_text() {
-  return cell_macros("Sides", "SIDE", kReflectingSides) +
-         LinearCode().function("Sides", "clpv_arriving", "Swept", incident_flux());
+std::string incident_flux_text() {
+  return cell_macros("FaceFluxes", "FACE_FLUX", kCellFaces) +
+         LinearCode().function("FaceFluxes", "clpv_incident_flux", "Bins", incident_flux());
 }
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generated text of the kernels that sweep and bounce (kernels/sweep*.cl, kernels/bounce.cl).
+// Generates the linear maps of the sweep's kernels as text (kernels/sweep_*.cl, kernels/bounce.cl).
 #pragma once
 
 #include <string>
@@ -10,23 +10,26 @@
 
 namespace clpv {
 
-/// "#define CLPV_EACH_X_BIN(DO) DO(0) ..." and the like: the bins that are swept across each axis, those across x first.
+/// CLPV_X_BINS, the number of bins across x, and macros CLPV_EACH_X_BIN(DO), _Y_ and _Z_, which write DO(bin) for the
+/// bins that are swept across an axis; bins across x come first.
 std::string sweep_bin_macros();
-/// Generated text, and what it executes a cell and channel.
+
+/// Generated text with the arithmetic operations it executes per cell and channel.
 struct CountedText {
   std::string text;
   OperationCount operations;
 };
-/// For sweep_source.cl: coefficient_macros, the struct Swept, and clpv_bin_means.
+/// For sweep_source.cl: coefficient_macros, struct Bins, and Bins clpv_bin_means(Coefficients).
 CountedText sweep_source_text(const Basis& basis);
-/// For sweep_links.cl: transmittance_source's text, and which links go where.
+/// For sweep_links.cl: the text of transmittance_source, and macros of the links used across each axis.
 std::string sweep_links_text(const Basis& basis, const Transport& transport);
-/// For sweep_collect.cl: coefficient_macros of swept_basis(), the struct Swept, and clpv_projected.
+/// For sweep_collect.cl: coefficient_macros of swept_basis(), struct Bins, and Coefficients clpv_project_bins(Bins).
 CountedText sweep_collect_text();
 
-/// For bounce.cl: coefficients of six sides, Swept of 24 bins, clpv_arriving and clpv_leaving.
+/// For bounce.cl: coefficient_macros of six faces, struct Bins, Coefficients clpv_incident_flux(Bins) and
+/// Bins clpv_reflected_intensity(Coefficients).
 std::string bounce_source_text();
-/// For sweep_collect.cl of all bounces: Sides, and Sides clpv_arriving(Swept).
-std::string arriving_source_text();
+/// For sweep_collect.cl with CLPV_WITH_INCIDENT: struct FaceFluxes, and FaceFluxes clpv_incident_flux(Bins).
+std::string incident_flux_text();
 
 }  // namespace clpv

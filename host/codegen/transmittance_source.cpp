@@ -17,7 +17,7 @@ struct TransmittanceCode {
   std::string assignments;  // to links.c0, links.c1, ...
 };
 
-/// Which of the cell's 8 corners (bit 0 x, 1 y, 2 z) lie on the side `normal` points to.
+/// Numbers of the cell's corners (bit 0 x, 1 y, 2 z) on the side that `normal` points to.
 std::vector<int> corners_towards(const glm::ivec3& normal) {
   std::vector<int> result;
   for (int c = 0; c < kCorners; ++c) {
@@ -30,7 +30,7 @@ std::vector<int> corners_towards(const glm::ivec3& normal) {
   return result;
 }
 
-/// Names of the sums over the corners towards `normal`, one a number of theirs that `rows` make use of.
+/// Names of the sums over the corners towards `normal`, one for each of their numbers that `rows` use.
 std::vector<std::string> blockers_towards(LinearCode& code, const glm::ivec3& normal, const Matrix& rows) {
   const std::vector<int> corners = corners_towards(normal);
   std::vector<std::string> sums;
@@ -53,8 +53,8 @@ std::vector<std::string> blockers_towards(LinearCode& code, const glm::ivec3& no
   return sums;
 }
 
-/// Gives links.c<link> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each link, its blocker the mean over the corners
-/// towards `normal`, looked up by a row of `weights` each.
+/// Assigns links.c<link> = 1 - clamp(B, 0, 1) = 1/2 + |1/2 - B/2| - |B/2| for each link. B is a row of `weights`
+/// times the mean over the corners towards `normal`.
 void add_links(TransmittanceCode& out, const std::optional<Mirrors>& mirrors, const glm::ivec3& normal,
                const std::vector<std::vector<double>>& weights, const std::vector<int>& links) {
   LinearCode& code = out.code;
@@ -74,7 +74,7 @@ void add_links(TransmittanceCode& out, const std::optional<Mirrors>& mirrors, co
   }
 }
 
-/// The 30 links to faces: five lead to each face, whose corners they share.
+/// The 30 links to faces; the five links to a face share its corners.
 int add_faces(TransmittanceCode& out, const std::optional<Mirrors>& mirrors, const FaceTransport& scheme) {
   for (const glm::ivec3& normal : kAxes) {
     std::vector<std::vector<double>> weights;
@@ -89,7 +89,7 @@ int add_faces(TransmittanceCode& out, const std::optional<Mirrors>& mirrors, con
   return scheme.faces.size();
 }
 
-/// One link a neighbour, through the face, edge or corner that the two cells share.
+/// One link per neighbour, through the face, edge or corner that the two cells share.
 int add_neighbours(TransmittanceCode& out, const std::optional<Mirrors>& mirrors,
                    const std::vector<SweepLink>& links) {
   int number = 0;
@@ -102,7 +102,7 @@ int add_neighbours(TransmittanceCode& out, const std::optional<Mirrors>& mirrors
 TransmittanceSource transmittance_source(const Basis& basis, const Transport& transport) {
   TransmittanceCode out;
   TransmittanceSource result;
-  // Of three areas each link looks up one or two: nothing for mirrors to share.
+  // Each link uses one to three areas: no products for mirrors to share.
   std::optional<Mirrors> mirrors;
   if (blocks_by_lobes(transport.blocking)) mirrors = mirrors_of(basis);
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);

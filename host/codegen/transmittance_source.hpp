@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The text of kernels/transmittance.cl: what blockers let through on each link into a cell.
+// Generates the transmittance of each link into a cell (kernels/transmittance.cl).
 #pragma once
 
 #include <string>
@@ -10,17 +10,16 @@
 
 namespace clpv {
 
-/// Generated text for kernels/transmittance.cl, for one transport and what it is blocked by: link_macros(), and CLPV_TRANSMITTANCE, which
-/// declares `links` from the cell's corners g0 .. g7 (bit 0 x, 1 y, 2 z).
-/// Links are numbered as FaceTransport::faces are, or as sweep_links() are.
+/// Text for one transport and blocking mode: link_macros(), and CLPV_TRANSMITTANCE, which declares `links` from the
+/// cell's corners g0 .. g7 (bit 0 x, 1 y, 2 z). Links are numbered like FaceTransport::faces or sweep_links().
 struct TransmittanceSource {
   std::string text;
-  OperationCount operations;  ///< a cell
+  OperationCount operations;  ///< per cell
   int links = 0;
 };
 TransmittanceSource transmittance_source(const Basis& basis, const Transport& transport);
 
-/// The struct Links of so many floats, CLPV_EACH_LINK(DO) and CLPV_LINKS.
+/// struct Links of `links` numbers, CLPV_EACH_LINK(DO) and CLPV_LINKS.
 std::string link_macros(int links);
 
 }  // namespace clpv

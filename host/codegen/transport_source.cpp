@@ -22,7 +22,7 @@ struct TransportCode {
   LinearCode arrive;
   std::vector<std::string> gains;
   int count = 0;       // neighbours
-  bool apart = false;  // gains are the fluxes through each face, not yet what the cell gains
+  bool apart = false;  // gains are the fluxes through each face, before their lobes
 };
 
 void add_neighbour(TransportCode& out, const glm::ivec3& travel) {
@@ -30,11 +30,10 @@ void add_neighbour(TransportCode& out, const glm::ivec3& travel) {
   ++out.count;
 }
 
-// max(x, 0) is x/2 + |x/2|, the halves in the constants: on CPU devices comparisons attract a vectoriser of straight
-// lines that then keeps work-items from being vectorised, which is worth ten times as much.
+// max(x, 0) is x/2 + |x/2|, with the halves in the constants. Comparisons would trigger LLVM's SLP vectoriser, which
+// prevents vectorisation of work-items on CPUs.
 
-/// Half the fluxes of the travelling state through the 30 faces: F = flux . c, or with fluxes travelling
-/// F = (flux L) . phi.
+/// Half the fluxes of the source state through the 30 faces: F = flux . c, or of source fluxes F = (flux L) . phi.
 Matrix half_face_rows(const FaceTransport& faces, State source) {
   const int n = faces.faces.front().flux.size();
   Matrix rows(static_cast<int>(faces.faces.size()), n);

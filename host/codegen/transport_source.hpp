@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A transport, for one basis, as straight-line OpenCL C: the generated part of kernels/propagate.cl.
+// Generates the transport of a propagation step for one basis as straight-line OpenCL C (kernels/propagate.cl).
 #pragma once
 
 #include <string>
@@ -11,31 +11,30 @@
 
 namespace clpv {
 
-/// One step's form: what the source cells hold and what a cell gains, how many numbers each.
+/// Variant of a step: the states of source and target cells, blocking, and work done at run time.
 struct StepForm {
   State source = State::coefficients;
   State target = State::coefficients;
   bool blocking = false;
   bool lobes_at_run_time =
-      false;  ///< CLPV_ARRIVE gives the fluxes of all faces, as the kernel makes their lobes
-  bool functions_at_run_time =
-      false;  ///< and takes the functions from the kernel as well: they are `at[face]`
+      false;  ///< CLPV_ARRIVE computes the fluxes of all faces; the kernel computes their lobes
+  bool functions_at_run_time = false;  ///< CLPV_ARRIVE reads the basis functions `at[face]` from the kernel
 };
 
-/// Generated text and its cost. The text defines, for kernels/propagate.cl, the structs Source, Target and Coefficients
-/// with their counts and CLPV_EACH_ macros (cell_macros), and
-///   CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz): light arrives from the cell at (x + dx, y + dy, z + dz)
-///   CLPV_ARRIVE               declares `gained`, what the cell gains from its neighbours a0, a1, ... ; with blocking
-///                             through what lets light pass, t.c0, t.c1, ... (transmit.hpp); with lobes at run time it
-///                             sets `through[face]` instead, the flux through each face [W]
-///   clpv_expand(sum)          the coefficients of a sum of gains
+/// Generated text and its operations. For kernels/propagate.cl the text defines the structs Source, Target and
+/// Coefficients with their counts and CLPV_EACH_ macros (cell_macros), and
+///   CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz) for each neighbour (x + dx, y + dy, z + dz) that light comes from
+///   CLPV_ARRIVE               declares `gained`, the light that the cell gains from its neighbours a0, a1, ...; with
+///                             blocking times the transmittance t.c0, t.c1, ... (transmittance_source.hpp); with lobes
+///                             at run time it sets `through[face]` instead, the flux through each face [W]
+///   clpv_expand(sum)          coefficients of a sum of gains
 struct TransportSource {
   std::string text;
-  OperationCount arrive;  ///< a cell and channel
+  OperationCount arrive;  ///< per cell and channel
   int source_count = 0, target_count = 0, neighbours = 0;
 };
 
-/// Of a transport with faces.
+/// For a transport with faces.
 TransportSource transport_source(const Basis& basis, const Transport& transport, const StepForm& form);
 
 }  // namespace clpv

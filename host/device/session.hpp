@@ -54,8 +54,8 @@ class Session {
   cl::Kernel kernel(Program& program, const std::string& name);
 
   /// Stores compiled programs in the cache, for at most 1/10 of the process's run time; later runs store the rest.
-  /// Call it last, after results are written: on PoCL reading a program's binary takes about as long as its first
-  /// launches, and PoCL's own cache already holds the kernels.
+  /// Call it last, after results are written: on PoCL, reading a program's binary takes about as long as its first
+  /// launches.
   void store_programs();
 
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.

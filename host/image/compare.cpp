@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Errors of an image against its reference.
 #include "image/compare.hpp"
 
 #include <OpenImageIO/imagebuf.h>
@@ -14,8 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kRelativeFloor =
-    0.01;  // keeps the relative error of black pixels finite; issue and literature use it
+constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite, as is usual
 
 std::vector<std::size_t> colour_channels(const Image& image) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B");
@@ -35,35 +35,33 @@ void check_finite(const Image& image, const std::string& name) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     if (std::isfinite(image.pixels[i])) continue;
     const std::size_t p = i / image.channels.size(), c = i % image.channels.size();
-    throw Error(ExitCode::bad_input,
-                "{}: pixel ({}, {}), channel {} is {}; only finite values can be compared", name,
+    throw Error(ExitCode::bad_input, "{}: pixel ({}, {}), channel {}: found {}; allowed: finite values", name,
                 p % image.width, p / image.width, image.channels[c], image.pixels[i]);
   }
 }
 
 void check_comparable(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name) {
   if (a.width != b.width || a.height != b.height) {
-    throw Error(ExitCode::bad_input,
-                "{} has {} x {} pixels, {} has {} x {}; only equal sizes can be compared", a_name, a.width,
-                a.height, b_name, b.width, b.height);
+    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; allowed: equal sizes", a_name,
+                a.width, a.height, b_name, b.width, b.height);
   }
   const std::size_t in_a = colour_channels(a).size(), in_b = colour_channels(b).size();
   if (in_a != in_b || in_a == 0) {
     throw Error(ExitCode::bad_input,
-                "{} has {} colour channels, {} has {}; only equal numbers can be compared", a_name, in_a,
+                "{} has {} colour channels, {} has {}; allowed: equal numbers, at least 1", a_name, in_a,
                 b_name, in_b);
   }
   if (a.encoding != b.encoding) {
     const bool a_linear = a.encoding == Encoding::linear;
     throw Error(ExitCode::bad_input,
-                "{} holds linear radiance and {} sRGB-encoded values; compare two of a kind",
+                "{} has linear radiance, {} sRGB-encoded values; allowed: equal encodings",
                 a_linear ? a_name : b_name, a_linear ? b_name : a_name);
   }
   check_finite(a, a_name);
   check_finite(b, b_name);
 }
 
-/// What Yee's test sees: linear RGB, black where a pixel is not valid.
+/// Input of Yee's test: linear RGB, black where a pixel is not valid.
 OIIO::ImageBuf perceptual_input(const Image& image, const std::vector<bool>& valid) {
   const std::vector<std::size_t> channels = colour_channels(image);
   OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeFloat));
@@ -83,7 +81,7 @@ std::uint64_t perceptual_failures(const Image& a, const Image& b, const std::vec
   return static_cast<std::uint64_t>(OIIO::ImageBufAlgo::compare_Yee(in_a, in_b, results));
 }
 
-/// Sums over the values of some pixels, in double.
+/// Sums over pairs of values.
 struct Sums {
   double a = 0, b = 0, aa = 0, ab = 0, bb = 0, squared_error = 0;
   void add(double x, double y) {
@@ -101,17 +99,18 @@ std::optional<double> ratio(double numerator, double denominator) {
   return numerator / denominator;
 }
 
-/// sqrt(error / power of the reference); of nothing against nothing, 0.
+/// sqrt(squared_error / reference_power); 0 if both are 0, empty if only the power is 0.
 std::optional<double> normalised(double squared_error, double reference_power) {
   if (reference_power == 0 && squared_error == 0) return 0.0;
-  const auto share = ratio(squared_error, reference_power);
-  return share ? std::optional(std::sqrt(std::max(*share, 0.0))) : std::nullopt;
+  const auto quotient = ratio(squared_error, reference_power);
+  return quotient ? std::optional(std::sqrt(std::max(*quotient, 0.0))) : std::nullopt;
 }
 
-void add_valid_figures(Comparison& result, const Sums& valid) {
+/// Sets the errors over valid pixels from their sums.
+void set_valid_errors(Comparison& result, const Sums& valid) {
   result.nrmse_valid = normalised(valid.squared_error, valid.bb);
   result.best_gain = ratio(valid.ab, valid.aa);
-  // |gA - B|^2 = BB - AB^2 / AA at the best gain; of a black A nothing can be made.
+  // At the best gain g = AB / AA, |gA - B|^2 = BB - AB^2 / AA; a black A has no gain.
   const double explained = valid.aa > 0 ? valid.ab * valid.ab / valid.aa : 0.0;
   result.nrmse_best_gain =
       valid.squared_error == 0 ? normalised(0, valid.bb) : normalised(valid.bb - explained, valid.bb);
@@ -162,7 +161,7 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
   if (result.rmse > 0) result.psnr_db = -20 * std::log10(result.rmse);
   result.mean_luminance /= static_cast<double>(pixels);
   result.identical = result.max_error == 0;
-  add_valid_figures(result, valid);
+  set_valid_errors(result, valid);
   result.perceptual_failures = perceptual_failures(a, b, is_valid);
   return result;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Walks through the headers of an OpenEXR file: magic number, version and flags, then per part a list of attributes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,12 +16,11 @@
 namespace clpv {
 namespace {
 
-constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;  // of the version
+constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;  // in the version
 constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
-// More are no image's, and take long.
-constexpr std::size_t kMostParts = 1024, kMostAttributes = 1024;
-constexpr std::int64_t kOffsetBytes = 8;
+constexpr std::size_t kMaxParts = 1024, kMaxAttributes = 1024;  // bound the time of the walk
+constexpr std::int64_t kOffsetBytes = 8;                        // of a chunk, in the table of chunks
 constexpr std::array<std::string_view, 4> kPartTypes = {
     {"scanlineimage", "tiledimage", "deepscanline", "deeptile"}};
 
@@ -29,7 +29,7 @@ struct FixedSize {
   std::size_t bytes;
 };
 
-/// OpenEXR reads these whatever size the file gives them: another would have it go on from another place than this walk.
+/// Types with fixed sizes. OpenEXR ignores the size in the file: with another size it would read on from another offset.
 constexpr std::array<FixedSize, 24> kFixedSizes = {{
     {"box2f", 16},
     {"box2i", 16},
@@ -64,7 +64,7 @@ std::int32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
   return static_cast<std::int32_t>(little_endian_word(bytes, at));
 }
 
-/// The bytes from some place on; whoever takes more than there are is rejected.
+/// Reader of bytes that rejects reads beyond their end.
 class Cursor {
  public:
   Cursor(std::string file, std::span<const unsigned char> bytes) : file_(std::move(file)), left_(bytes) {}
@@ -72,9 +72,10 @@ class Cursor {
   std::size_t left() const { return left_.size(); }
   const std::string& file() const { return file_; }
 
+  /// Returns the next `count` bytes and advances.
   std::span<const unsigned char> take(std::size_t count, std::string_view place) {
     if (count > left_.size()) {
-      reject(file_, place, fmt::format("{} bytes", count), fmt::format("the {} left", left_.size()));
+      reject(file_, place, fmt::format("{} bytes", count), fmt::format("the {} bytes left", left_.size()));
     }
     const auto taken = left_.first(count);
     left_ = left_.subspan(count);
@@ -83,15 +84,15 @@ class Cursor {
 
   std::uint32_t number(std::string_view place) { return little_endian_word(take(4, place), 0); }
 
-  /// Text that ends with a NUL, which is taken too.
+  /// Returns the text up to the next NUL and advances past the NUL.
   std::string name(std::string_view place) {
-    const auto within = left_.first(std::min(left_.size(), kNameBytes + 1));
-    const auto end = std::ranges::find(within, 0);
-    if (end == within.end()) {
-      reject(file_, place, fmt::format("a name that does not end within {} bytes", within.size()),
-             fmt::format("{}", kNameBytes));
+    const auto window = left_.first(std::min(left_.size(), kNameBytes + 1));
+    const auto end = std::ranges::find(window, 0);
+    if (end == window.end()) {
+      reject(file_, place, fmt::format("no end of a name in {} bytes", window.size()),
+             fmt::format("names of up to {} bytes", kNameBytes));
     }
-    const auto taken = take(static_cast<std::size_t>(end - within.begin()) + 1, place);
+    const auto taken = take(static_cast<std::size_t>(end - window.begin()) + 1, place);
     return {taken.begin(), taken.end() - 1};
   }
 
@@ -100,16 +101,17 @@ class Cursor {
   std::span<const unsigned char> left_;
 };
 
-/// One part, while its header is read.
-struct ExrPart : ImageClaim {
-  std::int64_t rows = 1;                         ///< of a chunk, where it has no tiles
-  std::int64_t tile_width = 0, tile_height = 0;  ///< 0: no such attribute
-  std::int64_t chunks = 0;                       ///< that it says it has
+/// Header of one part.
+struct ExrPart : DeclaredImage {
+  std::int64_t rows = 1;                         ///< rows of a chunk of a part without tiles
+  std::int64_t tile_width = 0, tile_height = 0;  ///< 0 without attribute `tiles`
+  std::int64_t chunks = 0;                       ///< value of `chunkCount`
   std::string type;
-  bool empty = true;
+  bool empty = true;  ///< true without attributes
 };
 
-/// A list of names, each with 16 bytes of kind and sampling, that an empty name ends: as long as the attribute says.
+/// Counts the entries of a channel list: names, each followed by 16 bytes of type and sampling, ended by an empty name.
+/// Rejects bytes after the end.
 std::int64_t count_channels(Cursor list, std::string_view place) {
   constexpr std::size_t kChannelBytes = 16;
   std::int64_t count = 0;
@@ -120,26 +122,27 @@ std::int64_t count_channels(Cursor list, std::string_view place) {
   return count;
 }
 
-/// Its size stands in its first two numbers too, and those OpenEXR believes.
+/// Rejects a preview whose width and height do not match its size: OpenEXR trusts width and height.
 void check_preview(const Cursor& file, std::string_view place, std::span<const unsigned char> bytes) {
   constexpr std::size_t kPixelsAt = 8, kPixelBytes = 4;
-  if (bytes.size() < kPixelsAt) reject(file.file(), place, "no size", "two numbers, then pixels");
+  if (bytes.size() < kPixelsAt)
+    reject(file.file(), place, fmt::format("{} bytes", bytes.size()), "width, height and pixels");
   const std::int64_t width = number_at(bytes, 0), height = number_at(bytes, 4);
   const std::size_t pixels = (bytes.size() - kPixelsAt) / kPixelBytes;
   const bool whole = bytes.size() == kPixelsAt + kPixelBytes * pixels;
   if (!whole || width < 0 || height < 0 || width * height != static_cast<std::int64_t>(pixels)) {
     reject(file.file(), place,
            fmt::format("{} x {} pixels in {} bytes", width, height, bytes.size() - kPixelsAt),
-           "4 bytes each");
+           "4 bytes per pixel");
   }
 }
 
-/// Texts, each after its length.
+/// Rejects texts, each preceded by its length, that exceed the attribute.
 void check_texts(Cursor list, std::string_view place) {
   while (list.left() > 0) list.take(list.number(place), place);
 }
 
-/// Rejects a value that is not as long as its type, or as what it holds says.
+/// Rejects a value whose size does not match its type or its contents.
 void check_value(const Cursor& file, std::string_view place, std::string_view type,
                  std::span<const unsigned char> bytes) {
   const auto fixed = std::ranges::find(kFixedSizes, type, &FixedSize::type);
@@ -149,13 +152,13 @@ void check_value(const Cursor& file, std::string_view place, std::string_view ty
   if (type == "preview") check_preview(file, place, bytes);
   if (type == "stringvector") check_texts(Cursor(file.file(), bytes), place);
   if (type == "floatvector" && bytes.size() % 4 != 0) {
-    reject(file.file(), place, fmt::format("{} bytes", bytes.size()), "4 a number");
+    reject(file.file(), place, fmt::format("{} bytes", bytes.size()), "4 per number");
   }
 }
 
-/// Keeps what memory is taken by.
-void keep_value(ExrPart& part, const Cursor& file, std::string_view place, std::string_view name,
-                std::string_view type, std::span<const unsigned char> bytes) {
+/// Stores the attributes that determine memory use.
+void store_value(ExrPart& part, const Cursor& file, std::string_view place, std::string_view name,
+                 std::string_view type, std::span<const unsigned char> bytes) {
   if (name == "dataWindow" && type == "box2i") {
     part.width = std::int64_t{number_at(bytes, 8)} - number_at(bytes, 0) + 1;
     part.height = std::int64_t{number_at(bytes, 12)} - number_at(bytes, 4) + 1;
@@ -175,49 +178,50 @@ void keep_value(ExrPart& part, const Cursor& file, std::string_view place, std::
   }
 }
 
-/// One header: attributes, each a name, its type's name, a size and so many bytes, that an empty name ends.
+/// Reads one header: attributes, each with name, type, size and value, ended by an empty name.
 ExrPart read_part(Cursor& file, std::size_t index) {
   ExrPart part;
   std::set<std::string> names;
   for (;; part.empty = false) {
-    const std::string before = fmt::format("part {}", index);
-    const std::string name = file.name(before);
+    const std::string part_place = fmt::format("part {}", index);
+    const std::string name = file.name(part_place);
     if (name.empty()) return part;
-    const std::string type = file.name(fmt::format("{}, attribute '{}'", before, name));
-    const std::string place = fmt::format("{}, attribute '{}' ({})", before, name, type);
+    const std::string type = file.name(fmt::format("{}, attribute '{}'", part_place, name));
+    const std::string place = fmt::format("{}, attribute '{}' ({})", part_place, name, type);
     const auto bytes = file.take(file.number(place), place);
-    if (names.size() == kMostAttributes) {
-      reject(file.file(), before, fmt::format("over {} attributes", names.size()), "at most as many");
+    if (names.size() == kMaxAttributes) {
+      reject(file.file(), part_place, fmt::format("over {} attributes", names.size()),
+             fmt::format("up to {}", kMaxAttributes));
     }
     // OpenEXR would add a second list of channels to the first.
-    if (!names.insert(name).second) reject(file.file(), place, "a second of this name", "one of each name");
+    if (!names.insert(name).second) reject(file.file(), place, "a duplicate attribute", "unique names");
     check_value(file, place, type, bytes);
-    keep_value(part, file, place, name, type, bytes);
+    store_value(part, file, place, name, type, bytes);
   }
 }
 
-/// The least number of chunks that it has: finer levels of tiles come on top.
-std::int64_t least_chunks(const ExrPart& part) {
+/// Minimum number of chunks of a part, without its mip levels.
+std::int64_t min_chunks(const ExrPart& part) {
   const auto quotient_up = [](std::int64_t count, std::int64_t by) {
     return by > 0 && count > 0 ? (count + by - 1) / by : 0;
   };
   const std::int64_t rows = quotient_up(part.height, part.chunk_height);
   if (!part.tiled) return std::max(part.chunks, rows);
-  constexpr std::int64_t kMany = 1ll << 31;  // of each: their product fits
+  constexpr std::int64_t kMax = 1ll << 31;  // avoids overflow of the product
   const std::int64_t columns = quotient_up(part.width, part.chunk_width);
-  return std::max(part.chunks, std::min(rows, kMany) * std::min(columns, kMany));
+  return std::max(part.chunks, std::min(rows, kMax) * std::min(columns, kMax));
 }
 
-/// A file of several parts, or deep ones, tells by their types what they are. OpenEXR asks nothing of parts of other types, so
-/// that OpenImageIO 2.4 ends the program at what their headers hold.
+/// Rejects a part of unknown type. Files with several or deep parts declare types; OpenEXR does not check parts of other
+/// types, and OpenImageIO 2.4 crashes on their headers.
 void check_type(const Cursor& file, const std::string& place, const ExrPart& part) {
   if (std::ranges::count(kPartTypes, part.type) > 0) return;
   reject(file.file(), place, fmt::format("type '{}'", part.type),
          fmt::format("{}", fmt::join(kPartTypes, ", ")));
 }
 
-/// What of a part is decoded at once.
-void settle_chunks(ExrPart& part, std::uint32_t flags, bool typed) {
+/// Sets the size of a part's chunks, once all its attributes are known.
+void set_chunk_size(ExrPart& part, std::uint32_t flags, bool typed) {
   part.deep = typed && part.type.starts_with("deep");
   part.tiled = typed ? part.type == "deeptile" || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
   part.chunk_width = part.tiled ? part.tile_width : part.width;
@@ -226,29 +230,30 @@ void settle_chunks(ExrPart& part, std::uint32_t flags, bool typed) {
 
 }  // namespace
 
-ImageClaim read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes) {
+DeclaredImage read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes) {
   Cursor file(path.string(), bytes);
   file.take(kFlagsAt, "the header");
   const std::uint32_t flags = file.number("the header");
   const bool several = (flags & kMultiPartFlag) != 0, typed = several || (flags & kDeepFlag) != 0;
-  // A table has 8 bytes a chunk; those of all parts come after the last header.
+  // The tables of chunks of all parts follow the last header.
   const auto check_tables = [&](const std::string& place, std::int64_t chunks) {
-    const std::int64_t most = static_cast<std::int64_t>(file.left()) / kOffsetBytes;
-    if (chunks <= most) return;
+    const std::int64_t max_chunks = static_cast<std::int64_t>(file.left()) / kOffsetBytes;
+    if (chunks <= max_chunks) return;
     reject(file.file(), place, fmt::format("{} chunks", chunks),
-           fmt::format("{}, as the rest of the file has places for", most));
+           fmt::format("{}, whose table fits into the rest of the file", max_chunks));
   };
-  ImageClaim first;
+  DeclaredImage first;
   std::int64_t chunks = 0;
   for (std::size_t index = 0;; ++index) {
     ExrPart part = read_part(file, index);
-    if (several && part.empty) break;  // which ends their list
+    if (several && part.empty) break;  // an empty header ends the list of parts
     if (typed) check_type(file, fmt::format("part {}", index), part);
-    settle_chunks(part, flags, typed);
+    set_chunk_size(part, flags, typed);
     if (index == 0) first = part;
-    if (index == kMostParts) reject(file.file(), {}, fmt::format("over {} parts", index), "at most as many");
-    check_tables(fmt::format("part {}", index), least_chunks(part));
-    chunks += least_chunks(part);
+    if (index == kMaxParts)
+      reject(file.file(), {}, fmt::format("over {} parts", index), fmt::format("up to {}", kMaxParts));
+    check_tables(fmt::format("part {}", index), min_chunks(part));
+    chunks += min_chunks(part);
     if (!several) break;
   }
   check_tables("all parts", chunks);

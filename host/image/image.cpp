@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Channels and layers of an image.
 #include "image/image.hpp"
 
 #include <algorithm>
@@ -21,9 +22,9 @@ std::string_view name_in_layer(std::string_view channel) {
 }  // namespace
 
 std::optional<std::size_t> Image::channel(std::string_view name) const {
-  const auto found = std::find(channels.begin(), channels.end(), name);
-  if (found == channels.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - channels.begin());
+  const auto channel = std::find(channels.begin(), channels.end(), name);
+  if (channel == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(channel - channels.begin());
 }
 
 Image make_image(int width, int height, std::vector<std::string> channels) {
@@ -45,25 +46,25 @@ std::vector<std::string> layers(const Image& image) {
 }
 
 Image extract_layer(const Image& image, const std::string& layer, const std::string& source) {
-  std::vector<std::size_t> chosen;
+  std::vector<std::size_t> selected;
   std::vector<std::string> names;
   for (std::size_t c = 0; c < image.channels.size(); ++c) {
     if (layer_of(image.channels[c]) != layer) continue;
-    chosen.push_back(c);
+    selected.push_back(c);
     names.emplace_back(name_in_layer(image.channels[c]));
   }
-  if (chosen.empty()) {
-    std::vector<std::string> there;
-    for (const std::string& name : layers(image)) there.push_back(fmt::format("'{}'", name));
-    throw Error(ExitCode::bad_input, "{}: no layer '{}'; there are: {}", source, layer,
-                fmt::join(there, ", "));
+  if (selected.empty()) {
+    std::vector<std::string> available;
+    for (const std::string& name : layers(image)) available.push_back(fmt::format("'{}'", name));
+    throw Error(ExitCode::bad_input, "{}: no layer '{}'; allowed: {}", source, layer,
+                fmt::join(available, ", "));
   }
   Image result = make_image(image.width, image.height, std::move(names));
   result.metadata = image.metadata;
   result.encoding = image.encoding;
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
-    for (std::size_t c = 0; c < chosen.size(); ++c) {
-      result.pixels[p * chosen.size() + c] = image.pixels[p * image.channels.size() + chosen[c]];
+    for (std::size_t c = 0; c < selected.size(); ++c) {
+      result.pixels[p * selected.size() + c] = image.pixels[p * image.channels.size() + selected[c]];
     }
   }
   return result;
@@ -77,7 +78,7 @@ void append_layer(Image& image, const Image& addition, const std::string& layer)
   }
   if (image.width != addition.width || image.height != addition.height ||
       image.encoding != addition.encoding) {
-    throw std::logic_error("layers of one image share size and encoding");
+    throw std::logic_error("layers of an image must have equal sizes and encodings");
   }
   const std::size_t before = image.channels.size(), added = addition.channels.size();
   std::vector<float> pixels(image.pixel_count() * (before + added));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Images, which are part of the library's door, taken apart and put together by layers.
+// Layers of an image: extraction and composition.
 #pragma once
 
 #include <string>
@@ -9,18 +9,17 @@
 
 namespace clpv {
 
-/// An image of zeros.
+/// An image whose pixels are 0.
 Image make_image(int width, int height, std::vector<std::string> channels);
 
-/// The layers' names, in order of first appearance.
+/// Names of the layers, in order of first appearance. The unnamed layer is "".
 std::vector<std::string> layers(const Image& image);
 
-/// The channels of one layer, named without it; metadata kept. Throws Error(bad_input) that lists the layers
-/// there are; `source` names the file in the message.
+/// Image with the channels of one layer, named without the layer, and with the metadata. Throws Error(bad_input) that lists
+/// the layers if there is no such layer; `source` is the file in the message.
 Image extract_layer(const Image& image, const std::string& layer, const std::string& source);
 
-/// Adds the channels of `addition` to `image` as `layer`; both have the same size. To an image without pixels
-/// yet, gives its size.
+/// Appends the channels of `addition` to `image` as `layer`. Sizes and encodings must be equal, unless `image` has no channels.
 void append_layer(Image& image, const Image& addition, const std::string& layer);
 
 }  // namespace clpv

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Decoders allocate by the header's size before a caller is asked (libjpeg for progressive images,
-// OpenImageIO for interlaced ones), so the size is read here first. PNG: ISO 15948, section 11.2.2. JPEG: ITU
-// T.81, annex B.
+// Reads the headers of PNG (ISO 15948, section 11.2.2) and JPEG files (ITU T.81, annex B). Decoders allocate by the
+// header's size before the caller can check it: libjpeg for progressive images, OpenImageIO for interlaced ones.
 #include "image/image_header.hpp"
 
 #include <algorithm>
@@ -23,20 +22,20 @@ bool starts_with(Data bytes, Data prefix) {
   return bytes.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), bytes.begin());
 }
 
-bool contains(Data bytes, Data wanted) {
-  return std::search(bytes.begin(), bytes.end(), wanted.begin(), wanted.end()) != bytes.end();
+bool contains(Data bytes, Data sequence) {
+  return std::search(bytes.begin(), bytes.end(), sequence.begin(), sequence.end()) != bytes.end();
 }
 
 constexpr std::size_t kPngSignature = 8;
 
-/// Calls `visit(type, chunk)` for each chunk of a PNG, up to its end; false: one does not end within the bytes.
+/// Calls `visit(type, chunk)` for each chunk of a PNG up to IEND. Returns false if a chunk exceeds the bytes.
 template <typename Visit>
 bool visit_chunks(Data bytes, const Visit& visit) {
-  constexpr std::size_t kAround = 12;  // a length and a type before a chunk's bytes, a checksum after them
-  for (std::size_t at = kPngSignature; bytes.size() - at >= kAround;) {
+  constexpr std::size_t kOverhead = 12;  // length and type before a chunk's data, checksum after them
+  for (std::size_t at = kPngSignature; bytes.size() - at >= kOverhead;) {
     const std::size_t length = big_endian(bytes, at, 4);
-    if (length > bytes.size() - at - kAround) return false;
-    const Data chunk = bytes.subspan(at, kAround + length);
+    if (length > bytes.size() - at - kOverhead) return false;
+    const Data chunk = bytes.subspan(at, kOverhead + length);
     const std::string_view type(reinterpret_cast<const char*>(chunk.data()) + 4, 4);
     visit(type, chunk);
     if (type == "IEND") return true;
@@ -61,7 +60,7 @@ std::optional<ImageHeader> jpeg_header(Data bytes) {
       ++at;
       continue;
     }
-    // A frame header is any of SOF0..15 but the tables DHT, JPG and DAC that share the range.
+    // Frame headers are SOF0 to SOF15. The markers DHT, JPG and DAC lie in the same range.
     const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     if (frame) {
       return ImageHeader{ImageFormat::jpeg, big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2),
@@ -82,7 +81,7 @@ std::optional<ImageHeader> read_image_header(Data bytes) {
   return std::nullopt;
 }
 
-std::vector<std::uint8_t> bare_png(Data bytes) {
+std::vector<std::uint8_t> strip_png(Data bytes) {
   constexpr std::array<std::string_view, 6> kKept = {"IHDR", "PLTE", "tRNS", "tEXt", "IDAT", "IEND"};
   std::vector<std::uint8_t> kept(bytes.begin(), bytes.begin() + kPngSignature);
   visit_chunks(bytes, [&](std::string_view type, Data chunk) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Image files through OpenImageIO, with checks of format and size before decoding.
 #include "image/image_io.hpp"
 
 #include <OpenImageIO/filesystem.h>
@@ -21,18 +22,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMetadataPrefix = "clpv:";
-// OpenImageIO stamps an EXR with the time of writing unless told one: the same image must give the same
-// bytes.
+// Date of all EXR files in place of the time of writing, so that equal images give equal bytes.
 constexpr const char* kFixedDate = "1970:01:01 00:00:00";
 
-// A tile may be larger than its image, but is decoded whole: one of 65535 a side would take 20 s and its memory.
-constexpr std::int64_t kLargestTile = 1024;
+// Maximum edge of a tile in a smaller image. Tiles are decoded whole: 65535 x 65535 pixels would take 20 s.
+constexpr std::int64_t kMaxTile = 1024;
 
-[[noreturn]] void reject(const fs::path& path, const std::string& why) {
-  throw Error(ExitCode::bad_input, "{}: {}", path.string(), why);
+[[noreturn]] void reject(const fs::path& path, const std::string& reason) {
+  throw Error(ExitCode::bad_input, "{}: {}", path.string(), reason);
 }
 
-/// "openexr", "png", "hdr", or empty: by the first bytes, whatever the file is called.
+/// Format by the first bytes: "openexr", "png", "hdr" or empty.
 std::string format_of_content(const std::vector<unsigned char>& bytes) {
   const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
                               std::min<std::size_t>(bytes.size(), 16));
@@ -42,6 +42,7 @@ std::string format_of_content(const std::vector<unsigned char>& bytes) {
   return {};
 }
 
+/// Format by the extension: "openexr", "png", "hdr" or empty.
 std::string format_of_name(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -52,45 +53,46 @@ std::string format_of_name(const fs::path& path) {
   return {};
 }
 
+/// Returns the format of a file whose extension and content agree.
 std::string checked_format(const fs::path& path, const std::vector<unsigned char>& bytes) {
-  std::string named = format_of_name(path);
-  const std::string found = format_of_content(bytes);
-  if (named.empty()) {
-    reject(path, fmt::format("extension '{}'; allowed are .exr, .png and .hdr", path.extension().string()));
+  std::string by_name = format_of_name(path);
+  const std::string by_content = format_of_content(bytes);
+  if (by_name.empty()) {
+    reject(path, fmt::format("extension '{}'; allowed: .exr, .png, .hdr", path.extension().string()));
   }
-  if (found != named) {
-    reject(path, fmt::format("named as {}, but its content is {}", named,
-                             found.empty() ? "no image known here" : found));
+  if (by_content != by_name) {
+    reject(path, fmt::format("content is {}; allowed: {}, as the extension says",
+                             by_content.empty() ? "of unknown format" : by_content, by_name));
   }
-  return named;
+  return by_name;
 }
 
-/// Of an image and of what is decoded of it at once, as the file says and as OpenImageIO does.
-void check_size(const fs::path& path, const ImageClaim& found, const ImageLimits& limits) {
-  if (found.width < 1 || found.height < 1 || found.width > limits.side || found.height > limits.side) {
+/// Rejects an image, or its chunks, beyond the limits.
+void check_size(const fs::path& path, const DeclaredImage& image, const ImageLimits& limits) {
+  if (image.width < 1 || image.height < 1 || image.width > limits.side || image.height > limits.side) {
     reject(path,
-           fmt::format("{} x {} pixels; allowed are 1 to {} a side", found.width, found.height, limits.side));
+           fmt::format("{} x {} pixels; allowed: 1 to {} per side", image.width, image.height, limits.side));
   }
-  if (found.channels < 1 || found.channels > limits.channels) {
-    reject(path, fmt::format("{} channels; allowed are 1 to {}", found.channels, limits.channels));
+  if (image.channels < 1 || image.channels > limits.channels) {
+    reject(path, fmt::format("{} channels; allowed: 1 to {}", image.channels, limits.channels));
   }
-  const std::int64_t tile_side = std::max({found.width, found.height, kLargestTile});
-  if (found.tiled && (found.chunk_width > tile_side || found.chunk_height > tile_side)) {
-    reject(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed are {} a side",
-                             found.chunk_width, found.chunk_height, found.width, found.height, tile_side));
+  const std::int64_t max_tile = std::max({image.width, image.height, kMaxTile});
+  if (image.tiled && (image.chunk_width > max_tile || image.chunk_height > max_tile)) {
+    reject(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed: up to {} per side",
+                             image.chunk_width, image.chunk_height, image.width, image.height, max_tile));
   }
-  if (found.deep) reject(path, "a volume or deep image; allowed are flat ones");
-  const auto check_bytes = [&](const char* what, std::int64_t width, std::int64_t height) {
-    const auto bytes = static_cast<std::size_t>(width * height * found.channels) * sizeof(float);
+  if (image.deep) reject(path, "deep image or volume; allowed: flat images");
+  const auto check_bytes = [&](const char* prefix, std::int64_t width, std::int64_t height) {
+    const auto bytes = static_cast<std::size_t>(width * height * image.channels) * sizeof(float);
     if (bytes <= limits.pixel_bytes) return;
-    reject(path, fmt::format("{}{} x {} pixels of {} channels take {} MiB; allowed are {}", what, width,
-                             height, found.channels, bytes >> 20, limits.pixel_bytes >> 20));
+    reject(path, fmt::format("{}{} x {} pixels with {} channels, {} MiB; allowed: up to {} MiB", prefix,
+                             width, height, image.channels, bytes >> 20, limits.pixel_bytes >> 20));
   };
-  check_bytes("", found.width, found.height);
-  check_bytes(found.tiled ? "tiles of " : "chunks of ", found.chunk_width, found.chunk_height);
+  check_bytes("", image.width, image.height);
+  check_bytes(image.tiled ? "tiles of " : "chunks of ", image.chunk_width, image.chunk_height);
 }
 
-ImageClaim claim_of(const OIIO::ImageSpec& spec) {
+DeclaredImage declared_by(const OIIO::ImageSpec& spec) {
   const bool tiled = spec.tile_width > 0;
   return {.width = spec.width,
           .height = spec.height,
@@ -111,23 +113,23 @@ std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
   return metadata;
 }
 
-/// OpenImageIO ends its messages with a newline, and repeats itself over several.
+/// First line of an OpenImageIO message, which may repeat itself over several lines.
 std::string first_line(const std::string& message) {
   return message.substr(0, message.find('\n'));
 }
 
-/// What a decoder would take memory by, looked at before one does, and put right: a PNG is left without its packed texts.
-void check_before_decoding(const fs::path& path, const std::string& format, std::vector<unsigned char>& bytes,
-                           const ImageLimits& limits) {
+/// Checks sizes that decoders allocate by, and strips unneeded chunks from a PNG.
+void prepare_for_decoding(const fs::path& path, const std::string& format, std::vector<unsigned char>& bytes,
+                          const ImageLimits& limits) {
   if (format == "openexr") check_size(path, read_exr_header(path, bytes), limits);
   if (format != "png") return;
   const auto header = read_image_header(bytes);
-  if (!header || !header->complete) reject(path, "damaged or truncated: a PNG's chunks do not end within it");
+  if (!header || !header->complete) reject(path, "damaged or truncated: a PNG chunk exceeds the file");
   check_size(path, {.width = header->width, .height = header->height, .channels = 1}, limits);
-  bytes = bare_png(bytes);
+  bytes = strip_png(bytes);
 }
 
-/// A file that was looked at, down to its size, and whose pixels can be read.
+/// An image file whose header is checked and whose pixels can be read.
 struct OpenImage {
   std::vector<unsigned char> bytes;
   std::string format;
@@ -141,14 +143,14 @@ struct OpenImage {
         input(OIIO::ImageInput::create(format)) {
     if (!input)
       reject(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
-    check_before_decoding(path, format, bytes, limits);
+    prepare_for_decoding(path, format, bytes, limits);
     memory.emplace(bytes);
     input->set_ioproxy(&*memory);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open(path.string(), spec, config))
       reject(path, "cannot be read: " + first_line(input->geterror()));
-    check_size(path, claim_of(spec), limits);
+    check_size(path, declared_by(spec), limits);
   }
 };
 
@@ -156,7 +158,7 @@ void add_metadata(OIIO::ImageSpec& spec, const Image& image) {
   for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
 }
 
-/// `name` is for messages.
+/// Encodes pixels; messages contain `name`.
 std::vector<unsigned char> encoded(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
                                    OIIO::TypeDesc type, const void* pixels) {
   std::vector<unsigned char> bytes;
@@ -202,12 +204,12 @@ void write_exr(const fs::path& path, const Image& image) {
 std::vector<unsigned char> png_bytes(const Image& image) {
   const std::size_t channels = image.channels.size();
   if (image.encoding != Encoding::srgb || channels < 3 || channels > 4) {
-    throw std::logic_error("a PNG wants display-encoded R, G, B and perhaps A");
+    throw std::logic_error("PNG: needs sRGB-encoded R, G, B and optionally A");
   }
   std::vector<std::uint8_t> pixels(image.pixels.size());
   std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(), [](float value) {
-    const float shown = value > 0 ? std::min(value, 1.0f) : 0.0f;  // a NaN, which no byte can hold, is black
-    return static_cast<std::uint8_t>(std::lround(shown * 255.0f));
+    const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
+    return static_cast<std::uint8_t>(std::lround(clamped * 255.0f));
   });
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels), OIIO::TypeUInt8);
   spec.channelnames = image.channels;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Images in and out, through OpenImageIO: EXR, PNG and Radiance HDR in; EXR and PNG out.
+// Image files: reads EXR, PNG and Radiance HDR, writes EXR and PNG.
 #pragma once
 
 #include <cstddef>
@@ -13,31 +13,31 @@
 
 namespace clpv {
 
-/// What an image file may hold; checked before memory is taken for it.
+/// Limits of an image file, checked before memory is allocated for it.
 struct ImageLimits {
   std::uintmax_t file_bytes = std::uintmax_t{1} << 30;
-  int side = 16384;  ///< pixels
+  int side = 16384;  ///< width and height [pixels]
   int channels = 256;
-  std::size_t pixel_bytes = std::size_t{1} << 30;  ///< as float
+  std::size_t pixel_bytes = std::size_t{1} << 30;  ///< of the decoded pixels, as float
 };
 
-/// Reads an EXR, PNG or HDR file, all channels, the finest level of the first part. PNG: values in [0,1], as
-/// they are encoded (Encoding::srgb), alpha not multiplied in. The name's extension and the content must
-/// agree. Throws Error(bad_input) that names the file, what was found, and what is allowed.
+/// Reads all channels of an EXR, PNG or HDR file, of the finest level of the first part. PNG: sRGB-encoded values in [0, 1]
+/// (Encoding::srgb) with unassociated alpha. Extension and content must agree. Throws Error(bad_input) that names the file,
+/// the value found and the values allowed.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
-/// The metadata alone, of a file that read_image reads; pixels are not looked at. Throws as it does.
+/// Reads only the metadata of a file. Throws as read_image, but does not decode pixels.
 std::map<std::string, std::string> read_metadata(const std::filesystem::path& path,
                                                  const ImageLimits& limits = {});
 
-/// Writes 32-bit float EXR with the image's channel names; metadata goes in as string attributes "clpv:NAME"
-/// (and comes back from read_image). The same image gives the same bytes. Throws Error(run_time).
+/// Writes an EXR file of 32-bit floats with the image's channel names. Metadata become string attributes "clpv:NAME". Equal
+/// images give equal bytes. Throws Error(run_time).
 void write_exr(const std::filesystem::path& path, const Image& image);
 
-/// An 8-bit PNG file of a display-encoded image (display_image): R,G,B or R,G,B,A in [0,1]. Metadata goes in as text.
+/// Encodes an sRGB-encoded image (display_image) with R, G, B and optionally A in [0, 1] as 8-bit PNG, with metadata as text.
 std::vector<unsigned char> png_bytes(const Image& image);
 
-/// The same, in a file.
+/// Writes png_bytes() to a file. Throws Error(run_time).
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace clpv

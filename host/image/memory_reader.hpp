@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An encoded image in memory, as OpenImageIO reads it.
+// Reader of an encoded image in memory for OpenImageIO, with checked offsets.
 #pragma once
 
 #include <OpenImageIO/filesystem.h>
@@ -11,11 +11,11 @@
 
 namespace clpv {
 
-/// OpenImageIO's own goes wherever a file sends it (2.4 copies from before the bytes for a negative place, which the chunk
-/// tables of an EXR may hold): here only places within the bytes are gone to, and only what is there is read.
+/// Rejects offsets outside the bytes. OpenImageIO 2.4's reader copies from before the bytes for negative offsets, which the
+/// chunk tables of an EXR may contain.
 class MemoryReader : public OIIO::Filesystem::IOMemReader {
  public:
-  /// The bytes must outlive it.
+  /// Borrows the bytes.
   explicit MemoryReader(std::span<const std::uint8_t> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
 
   bool seek(std::int64_t offset) override { return holds(offset) && IOMemReader::seek(offset); }

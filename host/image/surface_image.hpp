@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view sees, on the host: an RSM or the camera's G-buffer. Knows no OpenCL.
+// RSM or G-buffer on the host. Does not depend on OpenCL.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,13 +11,13 @@ namespace clpv {
 
 static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
 
-/// One value a pixel, row 0 first: a Surface (pipeline/surface.hpp) read back, or made by a test. What the CPU references of
-/// host/reference work on. Depth [m] along the view's forward axis, 0: no surface there; normals and colours as Surface's.
+/// Host copy of a Surface (pipeline/surface.hpp), input of the CPU reference. One value per pixel, row 0 first. Depth [m] is
+/// along the view's forward axis, 0 without a surface; normals and colours are as in Surface.
 struct SurfaceImage {
   ClpvView view{};
   std::vector<float> depth;
   std::vector<glm::vec4> normal, colour, emissive;  ///< xyz; w unused
-  std::vector<glm::vec4> position = {};             ///< [m], of points that no view sees: in place of depth
+  std::vector<glm::vec4> position = {};             ///< [m], in place of depth for points without a view
 };
 
 }  // namespace clpv

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Tone curves and sRGB encoding.
 #include "image/tone_map.hpp"
 
 #include <algorithm>
@@ -7,25 +8,26 @@
 #include <stdexcept>
 
 namespace clpv {
+
 float luminance(const glm::vec3& linear) {
   return 0.2126f * linear.r + 0.7152f * linear.g + 0.0722f * linear.b;
 }
 
 glm::vec3 tone_curve(ToneMap curve, const glm::vec3& linear) {
-  // Beyond this every curve shows white; it keeps infinity away from inf/inf.
+  // All curves are 1 at the upper bound, which avoids inf / inf.
   const glm::vec3 x = glm::clamp(linear, 0.0f, 1e6f);
-  glm::vec3 shown = x;
+  glm::vec3 mapped = x;
   switch (curve) {
     case ToneMap::none:
       break;
     case ToneMap::reinhard:
-      shown = x / (1.0f + luminance(x));
+      mapped = x / (1.0f + luminance(x));
       break;
     case ToneMap::aces:
-      shown = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
+      mapped = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
       break;
   }
-  return glm::clamp(shown, 0.0f, 1.0f);
+  return glm::clamp(mapped, 0.0f, 1.0f);
 }
 
 float srgb_encode(float linear) {
@@ -39,23 +41,23 @@ float srgb_decode(float encoded) {
 Image display_image(const Image& image, float exposure, ToneMap curve) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"), a = image.channel("A");
   if (!r || !g || !b || image.encoding != Encoding::linear) {
-    throw std::logic_error("display_image wants linear R, G and B");
+    throw std::logic_error("display_image: needs linear R, G and B");
   }
-  Image shown = make_image(image.width, image.height, {"R", "G", "B"});
-  if (a) shown = make_image(image.width, image.height, {"R", "G", "B", "A"});
-  shown.encoding = Encoding::srgb;
-  shown.metadata = image.metadata;
+  Image display = make_image(image.width, image.height, {"R", "G", "B"});
+  if (a) display = make_image(image.width, image.height, {"R", "G", "B", "A"});
+  display.encoding = Encoding::srgb;
+  display.metadata = image.metadata;
   const float gain = std::exp2(exposure);
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
     const float* in = &image.pixels[p * image.channels.size()];
-    float* out = &shown.pixels[p * shown.channels.size()];
+    float* out = &display.pixels[p * display.channels.size()];
     const float alpha = a ? in[*a] : 1.0f;
     if (a) out[3] = std::clamp(alpha, 0.0f, 1.0f);
     if (!(alpha > 0)) continue;
     const glm::vec3 colour = tone_curve(curve, gain * glm::vec3(in[*r], in[*g], in[*b]));
     for (int c = 0; c < 3; ++c) out[c] = srgb_encode(colour[c]);
   }
-  return shown;
+  return display;
 }
 
 }  // namespace clpv

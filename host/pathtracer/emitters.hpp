@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points on emissive triangles, and directions of a sky, for paths that look for light.
+// Sampling of points on emissive triangles and of directions of a sky (next event estimation).
 #pragma once
 
 #include <cstdint>
@@ -12,68 +12,73 @@
 
 namespace clpv::reference {
 
-/// A point that was picked.
-struct EmitterPoint {
+/// A sampled point.
+struct EmitterSample {
   SurfacePoint point;
-  glm::vec3 position{0};
-  double density = 0;  ///< of picking it, on its area [1/m^2]
+  glm::vec3 position{0};  ///< [m]
+  double density = 0;     ///< probability density over area [1/m^2]
 };
 
-/// The triangles of a scene that emit, each picked by about what it sends out, and its points evenly by area.
-/// Borrows what it is made of.
+/// Distribution over the emissive triangles of a scene: a triangle's probability is proportional to its approximate power,
+/// and its points have constant density over area. Borrows the scene and the materials.
 class Emitters {
  public:
   Emitters(const Scene& scene, const Materials& materials);
 
-  bool none() const { return triangles_.empty(); }
+  /// Returns true if no triangle emits.
+  bool empty() const { return triangles_.empty(); }
 
-  /// The point that a point of [0, 1)^2 stands for. Not where there are none.
-  EmitterPoint pick(glm::dvec2 at) const;
+  /// Maps a point of [0, 1)^2 to a point on a triangle. Not for empty distributions.
+  EmitterSample sample(glm::dvec2 random) const;
 
-  /// With which density pick() finds a triangle's points; 0 where it does not emit.
-  double density(std::uint32_t triangle) const { return none() ? 0 : densities_[triangle]; }
+  /// Density of sample() on a triangle [1/m^2]; 0 if the triangle does not emit.
+  double density(std::uint32_t triangle) const { return empty() ? 0 : densities_[triangle]; }
 
-  /// The unit normal of a triangle's front. Of one with an area.
-  glm::dvec3 front(std::uint32_t triangle) const;
+  /// Unit normal of a triangle's front. The triangle's area must not be 0.
+  glm::dvec3 front_normal(std::uint32_t triangle) const;
 
-  /// What a point sends towards the side that `towards` is on [W/m^2/sr].
+  /// Radiance that a point emits to the side of direction `towards` [W/m^2/sr].
   glm::dvec3 radiance(const SurfacePoint& point, const glm::dvec3& towards) const;
 
  private:
   const Scene& scene_;
   const Materials& materials_;
   std::vector<std::uint32_t> triangles_;
-  std::vector<double> upto_;       ///< of all that is sent, the share of those up to each
-  std::vector<double> densities_;  ///< of all the scene's triangles
+  std::vector<double> cdf_;        ///< cumulative probability of triangles_
+  std::vector<double> densities_;  ///< one per triangle of the scene [1/m^2]
 };
 
-/// A direction that was picked, and what shines from it.
-struct SkyDirection {
-  glm::dvec3 direction{0}, radiance{0};
-  double density = 0;  ///< of picking it [1/sr]
+/// A sampled direction and the radiance from it.
+struct SkySample {
+  glm::dvec3 direction{0}, radiance{0};  ///< unit vector, towards the sky; [W/m^2/sr]
+  double density = 0;                    ///< probability density over solid angle [1/sr]
 };
 
-/// Picks a sky's texels by what they send, in the brightest channel. Borrows the sky.
+/// Distribution over a sky's texels: density proportional to the radiance of the brightest channel. Borrows the sky.
 class SkySampler {
  public:
-  /// Null: there is none.
+  /// `sky` may be null.
   explicit SkySampler(const Sky* sky);
 
-  /// Where there is none, or it is black.
-  bool none() const { return upto_row_.empty(); }
+  /// Returns true without a sky, or for a black one. Then sample(), density() and radiance() must not be called.
+  bool empty() const { return row_cdf_.empty(); }
 
-  SkyDirection pick(const glm::dvec2& at) const;
+  /// Maps a point of [0, 1)^2 to a direction.
+  SkySample sample(const glm::dvec2& random) const;
+  /// Density of sample() in a unit direction [1/sr].
   double density(const glm::dvec3& direction) const;
+  /// Radiance of the texel in a direction [W/m^2/sr].
   glm::dvec3 radiance(const glm::dvec3& direction) const { return glm::dvec3(sky_->radiance(direction)); }
-  glm::vec3 seen(const glm::dvec3& direction) const { return sky_->seen(direction); }
+  /// Radiance interpolated between texels, as cameras show it [W/m^2/sr]. Needs a sky.
+  glm::vec3 interpolated(const glm::dvec3& direction) const { return sky_->interpolated(direction); }
 
  private:
   double weight(std::size_t texel) const;
 
   const Sky* sky_;
-  std::vector<double> upto_row_;     ///< share of all that is sent up to each row's end
-  std::vector<double> upto_column_;  ///< of what a row sends, up to each of its texels' end
-  double all_ = 0;
+  std::vector<double> row_cdf_;      ///< cumulative probability of rows
+  std::vector<double> column_cdfs_;  ///< cumulative probability of a row's texels, row by row
+  double total_ = 0;                 ///< integral of weight over the sphere
 };
 
 }  // namespace clpv::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rays of one pixel: what it sees, its direct light, and single paths of its indirect light.
+// Sampling of one pixel: primary hit, direct irradiance, and single paths of indirect irradiance.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +14,30 @@
 
 namespace clpv::reference {
 
-/// Borrows all it is made of. Cheap to make: one a thread, so that rays are counted without sharing.
+/// Borrows its arguments. Each thread has its own, for its count of rays.
 class PathSampler {
  public:
   PathSampler(const RayScene& rays, const std::vector<Light>& lights, const Emitters& emitters,
               const SkySampler& sky, const PathTracerOptions& options)
       : rays_(rays), lights_(lights), emitters_(emitters), sky_(sky), options_(options) {}
 
-  /// The surface at a pixel's centre, its depth as `distance`.
-  std::optional<Hit> see(const ClpvView& view, std::uint32_t px, std::uint32_t py);
+  /// The surface at a pixel's centre; `distance` is its depth. Empty without a surface.
+  std::optional<Hit> primary_hit(const ClpvView& view, std::uint32_t px, std::uint32_t py);
 
-  /// Irradiance [W/m^2] straight from the lights.
+  /// Irradiance from the scene's lights [W/m^2].
   glm::dvec3 direct(const Hit& hit);
 
-  /// One path's estimate of the irradiance [W/m^2] that reaches `start` from other surfaces, what these
-  /// emit included, and from the sky. Paths 0, 1, 2... of a
-  /// stream spread evenly over all directions; streams are independent of each other.
+  /// One path's estimate of the irradiance at `start` from other surfaces, emission included, and from the sky [W/m^2].
+  /// Paths 0, 1, 2... of a stream are a low-discrepancy sequence; streams are independent of each other.
   glm::dvec3 indirect(const Hit& start, std::uint32_t path, std::uint64_t stream);
 
-  std::uint64_t rays_shot() const { return shot_; }
+  std::uint64_t ray_count() const { return ray_count_; }
 
  private:
-  glm::dvec3 looked_for(const Hit& at, const glm::dvec2& point);
-  glm::dvec3 looked_up(const Hit& at, const glm::dvec2& point);
-  glm::dvec3 missed(const Hit& at, const glm::dvec3& direction) const;
-  glm::dvec3 met(const Hit& at, const glm::dvec3& direction, const Hit& next) const;
+  glm::dvec3 sample_emitter(const Hit& at, const glm::dvec2& random);
+  glm::dvec3 sample_sky(const Hit& at, const glm::dvec2& random);
+  glm::dvec3 sky_along(const Hit& at, const glm::dvec3& direction) const;
+  glm::dvec3 emission_of(const Hit& at, const glm::dvec3& direction, const Hit& next) const;
   bool shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const;
 
   const RayScene& rays_;
@@ -46,7 +45,7 @@ class PathSampler {
   const Emitters& emitters_;
   const SkySampler& sky_;
   const PathTracerOptions& options_;
-  std::uint64_t shot_ = 0;
+  std::uint64_t ray_count_ = 0;
 };
 
 }  // namespace clpv::reference

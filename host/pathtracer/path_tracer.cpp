@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
+// Path tracer: distributes tiles over threads and ranks, and adds paths until the noise is reached.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -22,20 +22,20 @@
 namespace clpv::reference {
 namespace {
 
-constexpr std::uint32_t kTile = 16;          // pixels along each side of what a thread takes at a time
-constexpr std::uint32_t kFirstSamples = 64;  // paths a pixel before the noise is judged at all
-constexpr std::uint32_t kMostSamples = PathTracerOptions::kMostSamples;
+constexpr std::uint32_t kTile = 16;          // edge of a tile [pixels], the unit of work of a thread
+constexpr std::uint32_t kFirstSamples = 64;  // paths per pixel before the first estimate of the noise
+constexpr std::uint32_t kMaxSamples = PathTracerOptions::kMaxSamples;
 
-/// Where a pixel looks.
+/// Unit direction of the ray through a pixel's centre.
 glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
   return glm::normalize(surface_position(view, px, py, 1) - surface_position(view, px, py, 0));
 }
 
-/// The image while it is traced, tile by tile.
-class Work {
+/// Traces one image, tile by tile.
+class ImageTracer {
  public:
-  Work(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
-       const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks)
+  ImageTracer(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+              const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
         sky_(scene.sky.get()),
@@ -44,46 +44,48 @@ class Work {
         progress_(progress),
         ranks_(ranks),
         hits_(std::size_t{view.width} * view.height),
-        mine_(2 * hits_.size(), glm::dvec3(0)) {
+        rank_sums_(2 * hits_.size(), glm::dvec3(0)) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
     threads_ = options.threads > 0 ? options.threads : ranks.processors();
   }
 
-  /// Everything that needs one ray a pixel: what is seen, and its direct light. Each rank does it whole, to go on from there
-  /// wherever it is needed.
-  void look() {
+  /// Traces primary rays and computes direct light, one pixel at a time. Every rank does so for the whole image.
+  void trace_primary_rays() {
     image_.depth.assign(hits_.size(), 0);
     for (auto* layer :
          {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance}) {
       layer->assign(hits_.size(), glm::vec3(0));
     }
-    by_threads({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
-      each_pixel(tile, [&](std::size_t i, std::uint32_t x, std::uint32_t y) { look(sampler, i, x, y); });
+    parallel_for({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
+      for_each_pixel(tile, [&](std::size_t i, std::uint32_t x, std::uint32_t y) {
+        trace_primary_ray(sampler, i, x, y);
+      });
     });
-    if (!ranks_.is_root()) image_.rays = 0;  // they are counted once
+    if (!ranks_.is_root()) image_.rays = 0;  // finish() sums the counts of all ranks
   }
 
-  /// Paths until there are `samples` a pixel, half of them in each half (the first takes an odd one).
+  /// Adds paths up to `samples` per pixel. The two halves get equal numbers; the first gets an odd path.
   void trace(std::uint32_t samples) {
     const auto rank = static_cast<std::size_t>(ranks_.rank()),
                count = static_cast<std::size_t>(ranks_.size());
     const Items items{rank, count, 2 * std::size_t{tiles()}};
     std::size_t done = 0;
-    by_threads(items, [&](PathSampler& sampler, std::size_t item) {
+    parallel_for(items, [&](PathSampler& sampler, std::size_t item) {
       const auto half = static_cast<std::uint32_t>(item % 2);
-      each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
+      for_each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
         if (!hits_[i]) return;
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
-        for (std::uint32_t s = share(image_.samples, half); s < share(samples, half); ++s)
-          mine_[2 * i + half] += sampler.indirect(*hits_[i], s, stream);
+        for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half); ++s)
+          rank_sums_[2 * i + half] += sampler.indirect(*hits_[i], s, stream);
       });
       const std::lock_guard lock(mutex_);
       done += count;
       if (progress_ && ranks_.is_root())
-        progress_(before_ + (after_ - before_) * std::min(1.0, static_cast<double>(done) / items.end));
+        progress_(progress_start_ +
+                  (progress_end_ - progress_start_) * std::min(1.0, static_cast<double>(done) / items.end));
     });
-    sums_ = mine_;  // each sum is made by one rank; the others add zero
+    sums_ = rank_sums_;  // one rank has each sum; the others add 0
     ranks_.sum({&sums_[0].x, 3 * sums_.size()});
     image_.samples = samples;
     image_.noise = noise();
@@ -100,37 +102,38 @@ class Work {
   }
 
   double current_noise() const { return image_.noise; }
-  void expect(double share_before, double share_after) { before_ = share_before, after_ = share_after; }
+  /// Sets the range of progress that the next trace() reports.
+  void set_progress_range(double start, double end) { progress_start_ = start, progress_end_ = end; }
 
  private:
-  /// first, first + step and so on, below end.
+  /// The range first, first + step, ... below end.
   struct Items {
     std::size_t first, step, end;
   };
 
-  static std::uint32_t share(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
+  static std::uint32_t half_of(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
 
   std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }
   std::uint32_t tiles() const { return columns() * ((image_.view.height + kTile - 1) / kTile); }
 
-  void look(PathSampler& sampler, std::size_t i, std::uint32_t x, std::uint32_t y) {
-    hits_[i] = sampler.see(image_.view, x, y);
+  void trace_primary_ray(PathSampler& sampler, std::size_t i, std::uint32_t x, std::uint32_t y) {
+    hits_[i] = sampler.primary_hit(image_.view, x, y);
     if (!hits_[i]) {
-      if (image_.sky) image_.emissive[i] = sky_.seen(direction_of(image_.view, x, y));
+      if (image_.sky) image_.emissive[i] = sky_.interpolated(direction_of(image_.view, x, y));
       return;
     }
     const Hit& hit = *hits_[i];
     image_.depth[i] = hit.distance;
     image_.normal[i] = hit.normal;
-    const Footprint around = footprint(image_.view, x, y, hit);
-    image_.albedo[i] = rays_.materials().albedo(hit.point, around);
-    image_.emissive[i] = rays_.materials().emissive(hit.point, around);
+    const Footprint pixel = footprint(image_.view, x, y, hit);
+    image_.albedo[i] = rays_.materials().albedo(hit.point, pixel);
+    image_.emissive[i] = rays_.materials().emissive(hit.point, pixel);
     image_.direct[i] = glm::vec3(sampler.direct(hit));
   }
 
-  /// action(i, x, y) on each pixel of a tile.
+  /// Calls action(i, x, y) for each pixel of a tile.
   template <typename Action>
-  void each_pixel(std::size_t tile, const Action& action) const {
+  void for_each_pixel(std::size_t tile, const Action& action) const {
     const std::uint32_t width = image_.view.width, height = image_.view.height;
     const auto left = static_cast<std::uint32_t>(tile % columns()) * kTile,
                top = static_cast<std::uint32_t>(tile / columns()) * kTile;
@@ -140,16 +143,16 @@ class Work {
     }
   }
 
-  /// Runs action(sampler, item) on each item, on as many threads as there are.
+  /// Calls action(sampler, item) for each item, on all threads.
   template <typename Action>
-  void by_threads(const Items& items, const Action& action) {
+  void parallel_for(const Items& items, const Action& action) {
     std::atomic<std::size_t> next{items.first};
     const auto run = [&] {
       PathSampler sampler(rays_, lights_, emitters_, sky_, options_);
       for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
         action(sampler, item);
       const std::lock_guard lock(mutex_);
-      image_.rays += sampler.rays_shot();
+      image_.rays += sampler.ray_count();
     };
     {
       std::vector<std::jthread> others;
@@ -159,17 +162,16 @@ class Work {
     stop_if_interrupted();
   }
 
-  /// TracedImage::noise of the paths so far. The halves differ by twice the error of their mean, in the mean
-  /// square.
+  /// TracedImage::noise of the paths so far: half the difference of the two halves estimates the error of their mean.
   double noise() const {
-    const std::uint32_t counts[2] = {share(image_.samples, 0), share(image_.samples, 1)};
+    const std::uint32_t counts[2] = {half_of(image_.samples, 0), half_of(image_.samples, 1)};
     if (counts[1] == 0) return std::numeric_limits<double>::quiet_NaN();
     double error = 0, signal = 0;
     for (std::size_t i = 0; i < hits_.size(); ++i) {
       const glm::dvec3 a = sums_[2 * i] / double(counts[0]), b = sums_[2 * i + 1] / double(counts[1]);
       const glm::dvec3 albedo(image_.albedo[i]);
-      const glm::dvec3 mean = albedo * (a + b) / 2.0, spread = albedo * (a - b) / 2.0;
-      error += glm::dot(spread, spread);
+      const glm::dvec3 mean = albedo * (a + b) / 2.0, deviation = albedo * (a - b) / 2.0;
+      error += glm::dot(deviation, deviation);
       signal += glm::dot(mean, mean);
     }
     return signal > 0 ? std::sqrt(error / signal) : 0.0;
@@ -182,36 +184,33 @@ class Work {
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
   Ranks& ranks_;
-  std::vector<std::optional<Hit>> hits_;  // a pixel
-  // Irradiance [W/m^2], summed over paths: two independent halves of each pixel's estimate, of this rank and of all.
-  std::vector<glm::dvec3> mine_, sums_;
+  std::vector<std::optional<Hit>> hits_;  // primary hits, one per pixel
+  // Irradiance [W/m^2] summed over paths, of this rank and of all ranks: two independent halves per pixel.
+  std::vector<glm::dvec3> rank_sums_, sums_;
   TracedImage image_;
   std::mutex mutex_;
   int threads_ = 1;
-  double before_ = 0, after_ = 0;
+  double progress_start_ = 0, progress_end_ = 0;
 };
 
 void check(const Scene& scene, const std::vector<Light>& lights, const PathTracerOptions& options) {
-  if (options.bounces < 0) throw Error(ExitCode::usage, "bounces {}: 1 or more, or all", options.bounces);
-  if (options.samples > kMostSamples) {
-    throw Error(ExitCode::usage, "{} samples a pixel: at most {}", options.samples, kMostSamples);
-  }
+  if (options.bounces < 0)
+    throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
+  if (options.samples > kMaxSamples)
+    throw Error(ExitCode::usage, "samples: found {}; allowed: 0 to {}", options.samples, kMaxSamples);
   if (options.samples == 0 && !(options.noise > 0))
-    throw Error(ExitCode::usage, "noise {}: above 0", options.noise);
-  if (lights.empty() && !emits(scene) && !scene.sky) {
-    throw Error(ExitCode::bad_input, "{}: no light: the whole image would be black", scene.path);
-  }
+    throw Error(ExitCode::usage, "noise: found {}; allowed: above 0", options.noise);
+  if (lights.empty() && !emits(scene) && !scene.sky)
+    throw Error(ExitCode::bad_input, "{}: no light, no emissive surface and no sky", scene.path);
 }
 
-/// The next count of paths: powers of two and the sums of two neighbouring ones, where Sobol points are most
-/// even.
+/// The next number of paths, of the sequence 2^k, 3 * 2^(k-1), 2^(k+1), where Sobol points have the lowest discrepancy.
 std::uint32_t next_count(std::uint32_t samples) {
   const bool power = (samples & (samples - 1)) == 0;
   return power ? samples + samples / 2 : samples / 3 * 4;
 }
 
-/// How many paths reach the target, if the error falls with n^(-3/4) as it does between scrambled Sobol
-/// points.
+/// Expected number of paths for the target noise, as the error of scrambled Sobol points falls with n^(-3/4).
 double expected_count(std::uint32_t samples, double noise, double target) {
   return samples * std::pow(std::max(1.0, noise / target), 4.0 / 3.0);
 }
@@ -221,24 +220,24 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, options);
-  Work work(scene, lights, view, options, progress, ranks);
-  work.look();
+  ImageTracer tracer(scene, lights, view, options, progress, ranks);
+  tracer.trace_primary_rays();
   if (options.samples > 0) {
-    work.expect(0, 1);
-    work.trace(options.samples);
-    return work.finish();
+    tracer.set_progress_range(0, 1);
+    tracer.trace(options.samples);
+    return tracer.finish();
   }
   std::uint32_t done = 0;
-  for (std::uint32_t count = kFirstSamples; count <= kMostSamples; count = next_count(count)) {
+  for (std::uint32_t count = kFirstSamples; count <= kMaxSamples; count = next_count(count)) {
     const double goal =
         done == 0 ? count
-                  : std::max<double>(count, expected_count(done, work.current_noise(), options.noise));
-    work.expect(done / goal, count / goal);
-    work.trace(count);
+                  : std::max<double>(count, expected_count(done, tracer.current_noise(), options.noise));
+    tracer.set_progress_range(done / goal, count / goal);
+    tracer.trace(count);
     done = count;
-    if (work.current_noise() <= options.noise) break;
+    if (tracer.current_noise() <= options.noise) break;
   }
-  return work.finish();
+  return tracer.finish();
 }
 
 namespace {

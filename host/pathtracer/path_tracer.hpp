@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Path tracing in a scene: the truth that an image of the pipeline is held against, pixel by pixel.
+// Path tracer: the ground truth for rendered images, pixel by pixel.
 //
-// Every surface is diffuse; lights are points, spots and suns without extent (hard shadows), and surfaces that emit,
-// and a sky beyond them all. A pixel is one
-// ray through its centre, as in the rasteriser, so there is no antialiasing. Its indirect irradiance is
-//   E = pi mean over cosine-distributed directions of the radiance L that arrives along them,
-//   L = emission + albedo / pi (E_direct [+ E of the next bounce]) at the surface the direction meets.
-// What a surface emits is thus counted as what it reflects of a light is; so is the sky, where the direction meets nothing.
+// Surfaces are diffuse. Lights are points, spots and suns without extent (hard shadows), emissive surfaces, and a sky. A
+// pixel is one ray through its centre, as in the rasteriser, without antialiasing. Its indirect irradiance is
+//   E = pi mean(L(w)) over cosine-distributed directions w,
+//   L(w) = L_emitted + albedo / pi (E_direct + E of the next bounce) at the surface hit by w, or the sky's radiance.
+// Light of emissive surfaces and of the sky is indirect: volumes carry it in the pipeline. Method: docs/quality.md.
 #pragma once
 
 #include <cstdint>
@@ -24,42 +23,39 @@ namespace clpv::reference {
 
 struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
-  static constexpr std::uint32_t kMostSamples = 1u << 24;
+  static constexpr std::uint32_t kMaxSamples = 1u << 24;
 
   int bounces =
-      1;  ///< surfaces between a light and the surface seen, or kAllBounces; an emissive one is such a surface
-  std::uint32_t samples = 0;  ///< paths a pixel; 0: as many as `noise` needs
-  double noise = 0.02;        ///< where samples is 0: stops at this TracedImage::noise
+      1;  ///< maximum number of surfaces before the visible one, emissive ones included, or kAllBounces
+  std::uint32_t samples = 0;  ///< paths per pixel; 0: as many as `noise` needs
+  double noise = 0.02;        ///< with samples 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
-  int threads = 0;  ///< of each rank; 0: one a processor that it may take
+  int threads = 0;  ///< per rank; 0: one per available processor
 };
 
-/// One value a pixel, row 0 first; 0 where there is no surface.
+/// A traced image: one value per pixel, row 0 first, 0 where there is no surface.
 struct TracedImage {
   ClpvView view{};
   std::vector<float> depth;       ///< [m] along the view's forward axis
   std::vector<glm::vec3> normal;  ///< unit, towards the viewer
   std::vector<glm::vec3> albedo;
-  std::vector<glm::vec3> emissive;    ///< radiance [W/m^2/sr]; where there is no surface, the sky's
-  bool sky = false;                   ///< the scene has one
-  std::vector<glm::vec3> direct;      ///< irradiance straight from the lights [W/m^2]
-  std::vector<glm::vec3> irradiance;  ///< irradiance from other surfaces [W/m^2]
-  std::uint32_t samples = 0;          ///< paths a pixel
-  /// Standard error of the indirect radiance: its root mean square over that of the image, all pixels and
-  /// channels (so, the NRMSE that the reference itself adds). From two independently randomised halves; NaN
-  /// with one sample.
+  std::vector<glm::vec3> emissive;    ///< radiance [W/m^2/sr]; the sky's where there is no surface
+  bool sky = false;                   ///< true if the scene has a sky
+  std::vector<glm::vec3> direct;      ///< irradiance from the scene's lights [W/m^2]
+  std::vector<glm::vec3> irradiance;  ///< indirect irradiance, from other surfaces and the sky [W/m^2]
+  std::uint32_t samples = 0;          ///< paths per pixel
+  /// Standard error of the indirect radiance: its root mean square over that of the image, all pixels and channels. Estimated
+  /// from two independent halves of the paths; NaN with one path.
   double noise = 0;
   std::uint64_t rays = 0;
 };
 
-/// Called now and then, at rank 0 by one thread at a time, with the estimated share done in [0, 1].
+/// Receives the estimated progress in [0, 1]. Called on rank 0, by one thread at a time.
 using TraceProgress = std::function<void(double)>;
 
-/// `lights` shine, whatever Scene::lights holds (Scene::lights_for).
-/// By all `ranks`, each of which has the image then: they share the tiles, and the two halves of their paths.
-/// The same bytes for the same scene, lights, view, options and seed, whatever the number of threads and ranks.
-/// Throws Error(bad_input) for a scene without surface or without light;
-/// Error(usage) for options out of range.
+/// Traces `scene` lit by `lights`, which replace Scene::lights. All `ranks` call it; they share tiles and halves of
+/// paths, and each returns the whole image. Its bytes do not depend on the number of threads and ranks.
+/// Throws Error(bad_input) for a scene without surface or without light, Error(usage) for options out of range.
 TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
                         Ranks& ranks = single_rank());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene that rays can be shot through: Embree in its robust mode, with alpha masks and the colours of what
-// is hit.
+// Builds Embree's scene, with filter functions for alpha masks and back faces.
 #include "pathtracer/ray_scene.hpp"
 
 #include <algorithm>
@@ -21,23 +20,24 @@
 namespace clpv::reference {
 namespace {
 
-// Embree 3 and 4: what each calls the ways in which rays are shot with a filter of their own.
+// Common interface to Embree 3 and 4 for queries with a filter function per ray.
 #if CLPV_EMBREE_MAJOR >= 4
 
 using RtcContext = RTCRayQueryContext;
-inline constexpr RTCSceneFlags kRtcOwnFilters = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+inline constexpr RTCSceneFlags kRtcQueryFilters = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 
-/// `filter` may be null: then it is the geometries' alone.
+/// Finds the nearest hit. `filter` runs besides the geometries' own filters; null: only those.
 inline void rtc_intersect(RTCScene scene, RtcContext& context, RTCFilterFunctionN filter, RTCRayHit& query) {
   rtcInitRayQueryContext(&context);
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.context = &context;
   arguments.filter = filter;
-  if (filter != nullptr) arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;  // of every geometry
+  if (filter != nullptr) arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;  // for all geometries
   rtcIntersect1(scene, &query, &arguments);
 }
 
+/// Sets ray.tfar to -infinity if anything blocks the ray.
 inline void rtc_occluded(RTCScene scene, RTCRay& ray) {
   rtcOccluded1(scene, &ray);
 }
@@ -45,7 +45,7 @@ inline void rtc_occluded(RTCScene scene, RTCRay& ray) {
 #else
 
 using RtcContext = RTCIntersectContext;
-inline constexpr RTCSceneFlags kRtcOwnFilters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+inline constexpr RTCSceneFlags kRtcQueryFilters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
 inline void rtc_intersect(RTCScene scene, RtcContext& context, RTCFilterFunctionN filter, RTCRayHit& query) {
   rtcInitIntersectContext(&context);
@@ -61,7 +61,7 @@ inline void rtc_occluded(RTCScene scene, RTCRay& ray) {
 
 #endif
 
-// Embree's geometries: masked triangles alone pay for the filter.
+// Embree's geometries. Only masked triangles have the filter for alpha masks.
 constexpr unsigned kOpaque = 0, kMasked = 1;
 
 struct RtcRelease {
@@ -82,7 +82,7 @@ void check(RTCDevice device) {
 struct RayScene::Impl {
   const Scene* scene = nullptr;
   std::optional<Materials> materials;
-  std::array<std::vector<std::uint32_t>, 2> triangles;  // of each geometry: indices in scene->triangles
+  std::array<std::vector<std::uint32_t>, 2> triangles;  // indices in scene->triangles, by geometry
   float extent = 0;                                     // largest coordinate [m]
   RtcDevice device;
   RtcScene rtc;
@@ -93,23 +93,23 @@ struct RayScene::Impl {
 
 namespace {
 
-/// What a ray carries to the filters.
-struct Context {
+/// Query context for the filter functions.
+struct QueryContext {
   RtcContext base;
   const RayScene::Impl* impl;
 };
 
-/// Lets rays pass through the holes of masked materials.
+/// Rejects hits in holes of masked materials.
 void filter_mask(const RTCFilterFunctionNArguments* args) {
   const auto& impl = *static_cast<const RayScene::Impl*>(args->geometryUserPtr);
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   if (impl.materials->hole({impl.triangle(*hit), {hit->u, hit->v}})) args->valid[0] = 0;
 }
 
-/// Lets rays pass through single-sided triangles from behind. Embree's normal is cross(v1 - v0, v2 - v0): it
-/// points to where the triangle is seen counter-clockwise, which is glTF's front.
+/// Rejects hits on back faces of single-sided triangles. Embree's normal is cross(v1 - v0, v2 - v0), which points to glTF's
+/// front: the side with counter-clockwise vertices.
 void filter_back_faces(const RTCFilterFunctionNArguments* args) {
-  const auto& impl = *reinterpret_cast<const Context*>(args->context)->impl;
+  const auto& impl = *reinterpret_cast<const QueryContext*>(args->context)->impl;
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
   const Triangle& triangle = impl.scene->triangles[impl.triangle(*hit)];
@@ -153,15 +153,15 @@ Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& h
   const glm::dvec3 normal(hit.geometric), here = surface_position(view, px, py, hit.distance);
   const glm::dvec3 ray = surface_position(view, px, py, 1) - surface_position(view, px, py, 0);
   const auto step = [&](double x, double y) {
-    const glm::dvec3 across = surface_position(view, x, y, hit.distance) - here;  // at the same depth
-    return across - ray * glm::dot(normal, across) / glm::dot(normal, ray);
+    const glm::dvec3 offset = surface_position(view, x, y, hit.distance) - here;  // at the same depth
+    return offset - ray * glm::dot(normal, offset) / glm::dot(normal, ray);       // onto the triangle's plane
   };
   return {step(px + 1.0, py), step(px, py + 1.0)};
 }
 
 RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   if (scene.triangles.empty()) {
-    throw Error(ExitCode::bad_input, "{}: no surface: there is nothing that light could reach", scene.path);
+    throw Error(ExitCode::bad_input, "{}: no surface", scene.path);
   }
   impl_->scene = &scene;
   impl_->materials.emplace(scene);
@@ -173,12 +173,11 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     const bool masked = scene.materials[scene.triangles[i].material].flags & CLPV_MATERIAL_MASKED;
     impl_->triangles[masked ? kMasked : kOpaque].push_back(i);
   }
-  // One thread builds, so that the tree (and which of two coincident triangles is hit) never depends on
-  // scheduling.
+  // One thread builds, so that the tree, and the choice between coincident triangles, do not depend on scheduling.
   impl_->device.reset(rtcNewDevice("threads=1,set_affinity=0"));
   if (!impl_->device) check(nullptr);
   impl_->rtc.reset(rtcNewScene(impl_->device.get()));
-  rtcSetSceneFlags(impl_->rtc.get(), RTC_SCENE_FLAG_ROBUST | kRtcOwnFilters);
+  rtcSetSceneFlags(impl_->rtc.get(), RTC_SCENE_FLAG_ROBUST | kRtcQueryFilters);
   rtcSetSceneBuildQuality(impl_->rtc.get(), RTC_BUILD_QUALITY_HIGH);
   impl_->attach(kOpaque);
   impl_->attach(kMasked);
@@ -196,11 +195,11 @@ const Materials& RayScene::materials() const {
 
 std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
                                        float furthest, Faces faces) const {
-  Context context{{}, impl_.get()};
+  QueryContext context{{}, impl_.get()};
   RTCRayHit query{};
   query.ray = make_ray(origin, direction, nearest, furthest);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtc_intersect(impl_->rtc.get(), context.base, faces == Faces::as_seen ? filter_back_faces : nullptr, query);
+  rtc_intersect(impl_->rtc.get(), context.base, faces == Faces::culled ? filter_back_faces : nullptr, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Scene& scene = *impl_->scene;
@@ -213,7 +212,7 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   if (glm::dot(hit.geometric, direction) > 0) hit.geometric = -hit.geometric;
   hit.normal = interpolate(scene, triangle, hit.point.weights, normal);
   const float length = glm::length(hit.normal);
-  hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // vertices that disagree may cancel out
+  hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // 0 if opposite normals cancel out
   if (glm::dot(hit.normal, hit.geometric) < 0) hit.normal = -hit.normal;
   return hit;
 }
@@ -224,11 +223,11 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
   return ray.tfar < 0;
 }
 
-glm::vec3 RayScene::leave(const Hit& hit) const {
-  // Embree's robust test is exact to some ulp of the triangle's coordinates; these are tens of ulp.
-  constexpr float kOfPosition = 1e-5f, kOfExtent = 1e-6f;
+glm::vec3 RayScene::offset_origin(const Hit& hit) const {
+  // Embree's robust intersection is exact to a few ulp of the triangle's coordinates; these offsets are tens of ulp.
+  constexpr float kPerPosition = 1e-5f, kPerExtent = 1e-6f;
   const glm::vec3 size = glm::abs(hit.position);
-  const float offset = kOfPosition * std::max({size.x, size.y, size.z}) + kOfExtent * impl_->extent;
+  const float offset = kPerPosition * std::max({size.x, size.y, size.z}) + kPerExtent * impl_->extent;
   return hit.position + offset * hit.geometric;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene that rays can be shot through: Embree in its robust mode, with alpha masks and the colours of what
-// is hit.
+// Ray queries in a scene: Embree in its robust mode, with alpha masks and back-face culling.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,29 +12,29 @@
 
 namespace clpv::reference {
 
-/// Where a ray met a surface.
+/// Intersection of a ray with a surface.
 struct Hit {
-  float distance = 0;      ///< in lengths of the ray's direction
-  glm::vec3 position{0};   ///< [m], from the vertices: closer to the surface than origin + distance
-  glm::vec3 geometric{0};  ///< unit normal of the triangle, towards where the ray came from
-  glm::vec3 normal{0};     ///< unit, interpolated between the vertices, on the side of `geometric`
-  SurfacePoint point;      ///< the same position on its triangle
+  float distance = 0;  ///< in lengths of the ray's direction
+  glm::vec3 position{
+      0};  ///< [m], interpolated from the vertices: more precise than origin + distance * direction
+  glm::vec3 geometric{0};  ///< unit normal of the triangle, on the side of the ray's origin
+  glm::vec3 normal{0};     ///< unit normal interpolated from the vertices, on the side of `geometric`
+  SurfacePoint point;      ///< the position in barycentric coordinates
 };
 
-/// The footprint of the pixel (px, py) that sees `hit`, its `distance` the depth.
+/// Footprint on the surface of the pixel (px, py) with primary hit `hit`, whose `distance` is the depth.
 Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit);
 
-/// Which surfaces a ray can hit.
+/// Faces that a ray can hit.
 enum class Faces {
-  as_seen,  ///< what a camera draws: single-sided triangles from their front only
-  both,     ///< what a light draws: every triangle from either side
+  culled,  ///< front faces, and back faces of double-sided materials, as rasterised for a camera
+  all,     ///< front and back faces, as rasterised for a light
 };
 
-/// Borrows the scene: it must outlive this. Safe to shoot rays through from several threads.
+/// Acceleration structure of a scene. Borrows the scene. Queries are thread-safe.
 class RayScene {
  public:
-  /// Throws Error(bad_input) where there is no triangle;
-  /// Error(run_time) where Embree fails (out of memory).
+  /// Throws Error(bad_input) for a scene without triangles, Error(run_time) if Embree fails (out of memory).
   explicit RayScene(const Scene& scene);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
@@ -43,19 +42,17 @@ class RayScene {
 
   const Materials& materials() const;
 
-  /// The nearest surface at origin + t direction, t in (nearest, furthest). Holes of masked materials let it
-  /// pass.
+  /// The nearest surface at origin + t direction, t in (nearest, furthest), without holes of masked materials.
   std::optional<Hit> intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
                                float furthest, Faces faces) const;
 
-  /// Whether anything stands on origin + t direction, t in (0, furthest), from either side.
+  /// Returns true if a surface, front or back, lies at origin + t direction, t in (0, furthest).
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const;
 
-  /// A start for rays that leave the hit's surface on the side of `geometric`: far enough off not to meet it
-  /// again.
-  glm::vec3 leave(const Hit& hit) const;
+  /// Origin for rays that leave the surface on the side of `geometric`, offset so that they do not hit it again.
+  glm::vec3 offset_origin(const Hit& hit) const;
 
-  struct Impl;  ///< Embree's side, seen by its filters in the .cpp alone
+  struct Impl;  ///< Embree's objects; public for the filter functions in the .cpp
 
  private:
   std::unique_ptr<Impl> impl_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Numbers for Monte Carlo: counter-based, so that a sample depends on what it is for and never on who
-// computes it. Owen-scrambled Sobol points after Burley, "Practical Hash-based Owen Scrambling" (JCGT 9(4),
-// 2020).
+// Counter-based random numbers and low-discrepancy points: a sample depends on its index and stream, not on the thread.
+// Owen-scrambled Sobol points: Burley, 'Practical Hash-based Owen Scrambling' (JCGT 9(4), 2020).
 #pragma once
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 
 namespace clpv::reference {
 
-/// A well-mixed 64-bit value of `x` (the finaliser of SplitMix64).
+/// 64-bit hash of `x` (the finaliser of SplitMix64).
 constexpr std::uint64_t mix(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -21,13 +20,13 @@ constexpr std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// A stream of its own for every pair (stream, what).
-constexpr std::uint64_t mix(std::uint64_t stream, std::uint64_t what) {
-  return mix(stream ^ mix(what));
+/// Substream `index` of a stream.
+constexpr std::uint64_t mix(std::uint64_t stream, std::uint64_t index) {
+  return mix(stream ^ mix(index));
 }
 
-/// In [0, 1).
-constexpr double unit(std::uint64_t bits) {
+/// Uniform number in [0, 1) from random bits.
+constexpr double uniform(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
@@ -39,8 +38,7 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x << 16) | (x >> 16);
 }
 
-/// Owen's nested uniform scramble by the Laine-Karras hash: every bit flips as the bits above it and the seed
-/// say.
+/// Owen's nested uniform scramble by the Laine-Karras hash: the bits above a bit and the seed decide whether it flips.
 constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   x = reverse_bits(x);
   x += seed;
@@ -60,8 +58,8 @@ constexpr std::uint32_t sobol_second(std::uint32_t index) {
   return result;
 }
 
-/// Point `index` of the scrambled and shuffled (0,2)-sequence of `stream`, in [0,1)^2.
-/// Sequences of different streams are independent: one serves each bounce of a path.
+/// Point `index` of the scrambled and shuffled (0,2)-sequence of `stream`, in [0,1)^2. Sequences of different streams are
+/// independent; each bounce of a path has one.
 inline glm::dvec2 sobol_point(std::uint32_t index, std::uint64_t stream) {
   const std::uint64_t second = mix(stream);
   const std::uint32_t shuffled = owen_scramble(index, static_cast<std::uint32_t>(stream >> 32));
@@ -70,7 +68,8 @@ inline glm::dvec2 sobol_point(std::uint32_t index, std::uint64_t stream) {
   return {x * 0x1p-32, y * 0x1p-32};
 }
 
-/// A unit direction round `normal` with density cos/pi, by Shirley and Chiu's concentric map of the square.
+/// Unit direction about `normal` with density cos / pi, by the concentric map of the square (Shirley and Chiu, 'A Low
+/// Distortion Map Between Disk and Square', JGT 2(3), 1997).
 inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& point) {
   const glm::dvec2 square = 2.0 * point - 1.0;
   const bool wide = std::abs(square.x) > std::abs(square.y);
@@ -79,7 +78,7 @@ inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& p
   const double quarter = std::numbers::pi / 4;
   const double angle = wide ? quarter * square.y / square.x : 2 * quarter - quarter * square.x / square.y;
   const double up = std::sqrt(std::max(0.0, 1.0 - radius * radius));
-  // An orthonormal frame without a branch at the poles: Duff et al., JCGT 6(1), 2017.
+  // Orthonormal basis without a branch: Duff et al., 'Building an Orthonormal Basis, Revisited' (JCGT 6(1), 2017).
   const double sign = std::copysign(1.0, normal.z);
   const double a = -1.0 / (sign + normal.z), b = normal.x * normal.y * a;
   const glm::dvec3 tangent{1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
@@ -87,17 +86,18 @@ inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& p
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + up * normal;
 }
 
-/// Where a share falls among those that rise to 1: which of them, and how far into it.
-struct ShareIn {
+/// A sampled interval of a discrete distribution.
+struct CdfSample {
   std::size_t index;
-  double within;
+  double fraction;  ///< position within the interval, in [0, 1]
 };
 
-inline ShareIn find_share(std::span<const double> upto, double share) {
-  const auto at = std::min(std::upper_bound(upto.begin(), upto.end(), share), upto.end() - 1);
-  const double before = at == upto.begin() ? 0 : *(at - 1);
-  return {static_cast<std::size_t>(at - upto.begin()),
-          *at > before ? std::clamp((share - before) / (*at - before), 0.0, 1.0) : 0.5};
+/// Samples the distribution with cumulative probabilities `cdf` (rising to 1) by inversion of `random` in [0, 1).
+inline CdfSample sample_cdf(std::span<const double> cdf, double random) {
+  const auto at = std::min(std::upper_bound(cdf.begin(), cdf.end(), random), cdf.end() - 1);
+  const double before = at == cdf.begin() ? 0 : *(at - 1);
+  return {static_cast<std::size_t>(at - cdf.begin()),
+          *at > before ? std::clamp((random - before) / (*at - before), 0.0, 1.0) : 0.5};
 }
 
 }  // namespace clpv::reference

@@ -10,7 +10,7 @@ namespace {
 constexpr unsigned kMostTriangles = 1u << 20;  // a launch
 
 VoxelMaskShape shape_of(int grid, int cascades) {
-  return {grid + 1, grid + 1, CLPV_BLOCK_WORDS, static_cast<std::size_t>(cascades)};
+  return {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)};
 }
 
 ProgramSource triangles_program(const SceneBuffers& scene, int grid) {
@@ -36,12 +36,12 @@ BlockerVoxelizer::BlockerVoxelizer(Session& session, const SceneBuffers& scene, 
       triangles_(session, triangles_program(scene, grid), "voxelize_blockers"),
       shares_(session, shares_program(grid, format), "blocked_areas") {}
 
-void BlockerVoxelizer::block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry) {
-  masks_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, masks_.buffer(),
-               masks_.slot(cascade));
+void BlockerVoxelizer::voxelize(std::size_t cascade, const ClpvGrid& grid, Volume& geometry) {
+  masks_.update(cascade, grid, triangles_, scene_.textures, scene_.texels, masks_.buffer(),
+                masks_.slot(cascade));
   shares_.set(masks_.buffer(), masks_.slot(cascade), geometry.memory());
   const auto corners = static_cast<std::size_t>(grid_) + 1;
-  shares_.launch(cl::NDRange(corners, corners, corners), cl::NDRange(kMarkGroup, 1, 1));
+  shares_.launch(cl::NDRange(corners, corners, corners), cl::NDRange(kMaskGroup, 1, 1));
 }
 
 }  // namespace clpv

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `block`: what a scene's own triangles block in a cascade, whoever sees them (kernels/blockers.cl; docs/method.md,
-// 'Blockers').
+// Stage `blockers`: voxelises triangles into geometry volumes (kernels/blockers.cl; docs/method.md, 'Blockers').
 #pragma once
 
 #include "device/kernel.hpp"
@@ -12,18 +11,17 @@
 
 namespace clpv {
 
-/// Fills geometry volumes of areas (Blocking::areas) from triangles, by the share of a cell's square that they cover
-/// together: what covers the same is not counted twice. Deterministic: bits are set in whatever order.
+/// Fills geometry volumes of areas (Blocking::areas) with the share of each square that triangles cover; overlapping
+/// triangles count once. Deterministic: the order in which bits are set does not matter.
 class BlockerVoxelizer {
  public:
-  /// Of `cascades` cascades of `grid` cells along each axis, into volumes of `format`. `scene` must stay as it is, but for
-  /// upload_moving().
-  /// Throws Error(run_time) where the device's memory does not suffice.
+  /// For `cascades` cascades of `grid` cells along each axis, into volumes of `format`. `scene` must stay as it is,
+  /// but for upload_moving(). Throws Error(run_time) where the device's memory does not suffice.
   BlockerVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
                    const VolumeFormat& format);
 
-  /// Overwrites `geometry`: grid + 1 samples a side, 3 numbers, one channel.
-  void block(std::size_t cascade, const ClpvGrid& grid, Volume& geometry);
+  /// Overwrites `geometry`: (grid + 1)^3 samples of 3 numbers, one channel.
+  void voxelize(std::size_t cascade, const ClpvGrid& grid, Volume& geometry);
 
  private:
   SceneBuffers scene_;

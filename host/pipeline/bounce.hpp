@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `bounce`: what a sweep leaves on a cascade's surfaces, sent back by them (kernels/bounce.cl; docs/method.md, 'More
+// Stage `bounce`: reflects swept light off the surfaces of a cascade (kernels/bounce.cl; docs/method.md, 'More
 // bounces').
 #pragma once
 
@@ -16,43 +16,46 @@
 
 namespace clpv {
 
-/// Between sweeps: `light`, `swept` and so on hold a volume for each channel and bin. Deterministic to the bit.
+/// Reflects swept light off the surfaces of cascades. `swept` and `sources` have a volume for each channel and bin.
+/// Deterministic to the bit.
 class Bouncer {
  public:
-  /// Of options.bounces beyond one: one bounce more, or all. Of all, the coarsest cascade finds out what is sent back further, and the
-  /// finer ones go by what falls on surfaces there.
+  /// `options`.bounces: two or all. With all, only the coarsest cascade evaluates the series; finer ones interpolate
+  /// incident flux.
   Bouncer(Session& session, const SweepOptions& options);
 
-  /// What reflects in a cascade from now on (ReflectorVoxelizer::reflectors, which must live on), once.
-  void reflect(std::size_t cascade, const Volume& reflectors);
+  /// Sets the reflectors of a cascade (ReflectorVoxelizer::reflectors), which must outlive this object. In the
+  /// coarsest cascade the series starts again: S = R.
+  void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
-  /// What reflects in the coarsest cascade sends back 1 W on each face, and what it sends back further, as is known by now: into
-  /// `light`, which holds zeros.
-  void send_on(const Buffer& light);
-  /// What was left of that, swept: from here on light on its way from surface to surface is known for one bounce more.
-  void meet_again(const Buffer& swept);
+  /// Adds S to `sources`, which holds zeros: in the coarsest cascade each face emits what it returns of 1 W.
+  void inject_unit(const Buffer& sources);
+  /// Adds a term to the series, S = R (1 + E). `swept`: a sweep of the sources of inject_unit().
+  void extend_series(const Buffer& swept);
 
-  /// Adds to `light` what surfaces send back of `swept`.
-  void bounce(std::size_t cascade, const Buffer& swept, const Buffer& light);
-  /// Adds to `light` what those of the coarsest cascade send back of `first`, and of `second` with all that is sent back of it further on,
-  /// from where they are.
-  void bounce_on(const Buffer& first, const Buffer& second, const Buffer& light);
+  /// Adds R D to `sources`. `swept` gives the incident flux D.
+  void inject_reflected(std::size_t cascade, const Buffer& swept, const Buffer& sources);
+  /// Adds R D_1 + S D_2 to `sources` in the coarsest cascade.
+  void inject_series(const Buffer& first_swept, const Buffer& second_swept, const Buffer& sources);
 
-  /// Where a sweep leaves what falls on faces in a cascade, all bounces in it (sweep_collect.cl); null for the finest.
-  const Buffer* arriving(std::size_t cascade) const {
-    return cascade == 0 ? nullptr : &arriving_[cascade - 1];
+  /// Incident flux on the faces of a cascade with all bounces in it, which sweep_collect.cl writes; null for the
+  /// finest cascade.
+  const Buffer* incident(std::size_t cascade) const {
+    return cascade == 0 ? nullptr : &incident_[cascade - 1];
   }
-  /// Adds to `light` what surfaces send back of that in the next coarser cascade. `offset`: offset_in_coarser().
-  void bounce_finer(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& light);
+  /// Adds R D to `sources`. D is interpolated from incident() of the next coarser cascade. `offset`:
+  /// offset_in_coarser().
+  void inject_interpolated(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& sources);
 
  private:
   SweepVolumes volumes_;
   std::vector<const Volume*> reflectors_;
-  const Volume* sending_ = nullptr;  ///< of the coarsest: once, or in all bounces known
-  std::unique_ptr<Volume> in_all_;   ///< null where there is but one bounce more
-  std::vector<Buffer> arriving_;     ///< on each side, of all cascades but the finest; none as well
-  Kernel bounce_;
-  std::optional<Kernel> send_, meet_, on_, finer_;
+  const Volume* series_ = nullptr;         ///< S so far: R of the coarsest cascade, or series_volume_
+  std::unique_ptr<Volume> series_volume_;  ///< null with two bounces
+  std::vector<Buffer>
+      incident_;  ///< flux on each face, of all cascades but the finest; empty with two bounces
+  Kernel inject_reflected_;
+  std::optional<Kernel> inject_unit_, extend_series_, inject_series_, inject_interpolated_;
 };
 
 }  // namespace clpv

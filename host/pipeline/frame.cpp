@@ -38,7 +38,7 @@ void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) 
         ray += (2 * (x + 0.5) / view.width - 1) * double{view.half_width} * right +
                (1 - 2 * (y + 0.5) / view.height) * double{view.half_height} * up;
       }
-      const glm::vec3 seen = sky.seen(glm::normalize(ray));
+      const glm::vec3 seen = sky.interpolated(glm::normalize(ray));
       for (int channel = 0; channel < 3; ++channel) pixel[channel] = seen[channel];
       pixel[3] = 1;
     }
@@ -90,8 +90,8 @@ void Frame::gather(const Surface& surface, Buffer& irradiance) {
   std::vector<bool> changed(packed_.size(), false);
   for (std::size_t c = 0; c < changed.size(); ++c)
     packed_[c].update(cascades_.key(c), [&] { changed[c] = true; });
-  gatherer_.gather(surface, gathered.grids, gathered.accumulated, irradiance, gathered.scale, gathered.hidden,
-                   changed);
+  gatherer_.gather(surface, gathered.grids, gathered.accumulated, irradiance, gathered.scale,
+                   gathered.occluded, changed);
 }
 
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {

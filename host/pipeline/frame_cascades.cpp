@@ -27,7 +27,7 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
       keys_(options.cascades) {
   if (swept) {
     sweeper_.emplace(session, basis, transport, sweep_options(options));
-    if (scene.sky) sweeper_->let_in(*scene.sky);
+    if (scene.sky) sweeper_->set_sky(*scene.sky);
   } else {
     propagator_.emplace(session, basis, transport, propagate_options(options));
   }
@@ -101,7 +101,7 @@ void FrameCascades::block(int cascade) {
   geometry.cached.update(keys_[cascade].geometry, [&] {
     if (!blocker_) return inject_geometry(cascade, *geometry.volume);
     const StageScope scope(session_, {Pass::blockers, cascade});
-    blocker_->block(cascade, grids_[cascade], *geometry.volume);
+    blocker_->voxelize(cascade, grids_[cascade], *geometry.volume);
   });
 }
 
@@ -115,7 +115,7 @@ void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
 
 void FrameCascades::let_through(int cascade) {
   if (const Volume* blockers = geometry(cascade))
-    links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->block(cascade, *blockers); });
+    links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->set_blockers(cascade, *blockers); });
 }
 
 void FrameCascades::reflect(int cascade) {
@@ -123,8 +123,8 @@ void FrameCascades::reflect(int cascade) {
   reflected_[cascade].update(keys_[cascade].reflected, [&] {
     const StageScope scope(session_, {Pass::reflectors, cascade});
     let_through(cascade);
-    reflector_->reflect(cascade, grids_[cascade]);
-    sweeper_->reflect(cascade, reflector_->reflectors(cascade));
+    reflector_->voxelize(cascade, grids_[cascade]);
+    sweeper_->set_reflectors(cascade, reflector_->reflectors(cascade));
   });
 }
 
@@ -132,7 +132,7 @@ void FrameCascades::see(int cascade) {
   if (!sight_) return;
   seen_[cascade].update(keys_[cascade].triangles, [&] {
     const StageScope scope(session_, {Pass::visibility, cascade});
-    sight_->see(cascade, grids_[cascade]);
+    sight_->update(cascade, grids_[cascade]);
   });
 }
 
@@ -162,7 +162,7 @@ void FrameCascades::update(int cascade, const CascadeObserver& observer) {
 }
 
 GatheredLight FrameCascades::light() const {
-  GatheredLight light{grids_, {}, sight_ ? &sight_->hidden() : nullptr, lights_.scale()};
+  GatheredLight light{grids_, {}, sight_ ? &sight_->occluded() : nullptr, lights_.scale()};
   for (const CachedVolume& accumulated : accumulated_) light.accumulated.push_back(accumulated.volume.get());
   return light;
 }

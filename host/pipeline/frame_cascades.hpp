@@ -40,8 +40,8 @@ using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;
-  const Buffer* hidden;  ///< CellVisibility::hidden(); null where all cells light a surface
-  float scale;           ///< they hold so many times the light
+  const Buffer* occluded;  ///< CellVisibility::occluded(); null where all cells light a surface
+  float scale;             ///< they hold so many times the light
 };
 
 class FrameCascades {

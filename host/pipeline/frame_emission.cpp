@@ -12,7 +12,7 @@ namespace {
 
 /// Whether a triangle is of a part that moves.
 bool moves(const Scene& scene, std::uint32_t triangle) {
-  return std::ranges::any_of(scene.moving, [&](const Part& part) {
+  return std::ranges::any_of(scene.moving, [&](const MeshRange& part) {
     return triangle >= part.first_triangle && triangle - part.first_triangle < part.triangles;
   });
 }
@@ -30,7 +30,7 @@ FrameEmission::FrameEmission(Session& session, const Scene& scene, const SceneBu
 
 double FrameEmission::most(double cell) {
   measured_.update(Fingerprint().add(cell).add(instant()).value(),
-                   [&] { most_ = most_emitted(scene_, triangles_, cell); });
+                   [&] { most_ = max_emitted_flux(scene_, triangles_, cell); });
   return most_;
 }
 
@@ -40,7 +40,7 @@ void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, float scale, uns
   planned_.update(wanted.add(instant()).value(), [&] { plan_ = plan_emission(scene_, triangles_, grids); });
   if (plan_.coarsened > coarsened_) {
     spdlog::warn("emissive surfaces: points {} times as far apart as usual, so that there are at most {}",
-                 1 << plan_.coarsened, kMostEmittedPoints);
+                 1 << plan_.coarsened, kMaxEmittedPoints);
     coarsened_ = plan_.coarsened;
   }
   scale_ = scale;

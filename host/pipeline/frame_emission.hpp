@@ -16,7 +16,7 @@ class FrameEmission {
   /// All must stay as long as this does. `scene` has emissive triangles; `buffers` are of it, at the instant it shows.
   FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers);
 
-  /// most_emitted() of the scene as it is now.
+  /// max_emitted_flux() of the scene as it is now.
   double most(double cell);
 
   /// Decides where points are, for cascades at `grids`; they have `scale` times their flux. Another `epoch` computes them again.

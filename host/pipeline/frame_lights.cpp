@@ -30,7 +30,7 @@ FrameLights::FrameLights(Session& session, const Scene& scene, const SceneBuffer
       buffers_(buffers),
       rasterizer_(rasterizer),
       options_(options),
-      brightest_sky_(scene.sky ? scene.sky->brightest() : 0) {
+      brightest_sky_(scene.sky ? scene.sky->max_radiance() : 0) {
   if (emits(scene)) emission_.emplace(session, scene, buffers);
 }
 

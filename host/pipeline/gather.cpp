@@ -93,9 +93,9 @@ void Gatherer::pack(const Volume& volume, std::size_t slot) {
 
 void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
                       const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale,
-                      const Buffer* hidden, const std::vector<bool>& changed) {
+                      const Buffer* occluded, const std::vector<bool>& changed) {
   require_fit(camera, grids, accumulated);
-  if (sees() && hidden == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is hidden");
+  if (sees() && occluded == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is occluded");
   reserve(grids.size());
   session_.write(grids_, grids);
   Kernel& kernel = gather_kernel(grids.size());
@@ -106,7 +106,7 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
       if (changed.empty() || changed[c]) pack(*accumulated[c], c);
     }
     kernel.add(packed_);
-    if (sees()) kernel.add(*hidden);
+    if (sees()) kernel.add(*occluded);
   } else {
     for (const Volume* volume : accumulated) kernel.add(volume->memory());
   }

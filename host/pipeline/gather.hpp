@@ -35,11 +35,11 @@ class Gatherer {
   /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
   /// there is no surface. `scale`: the volumes hold so many times the light (light_scale.hpp). Throws Error(run_time) where counts or shapes do not fit, or the device's memory
   /// does not suffice.
-  /// `hidden`: CellVisibility::hidden() of these grids, where GatherOptions::gather is `visible`.
+  /// `occluded`: CellVisibility::occluded() of these grids, where GatherOptions::gather is `visible`.
   /// `changed`: which volumes are not as they were in the last call; none told: all.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
               const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1,
-              const Buffer* hidden = nullptr, const std::vector<bool>& changed = {});
+              const Buffer* occluded = nullptr, const std::vector<bool>& changed = {});
 
  private:
   bool sees() const { return options_.gather == Gathering::visible; }

@@ -45,8 +45,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
     : session_(session),
       scene_(scene),
       most_listed_(most_listed),
-      sum_places_(session, kBin, "sum_places"),
-      start_places_(session, kBin, "start_places"),
+      sum_slices_(session, kBin, "sum_slices"),
+      scan_slices_(session, kBin, "scan_slices"),
       bin_entries_(session, kBin, "bin_entries"),
       draw_tiles_(session, kDraw, "draw_tiles"),
       resolve_depth_(session, kDraw, "resolve_depth") {
@@ -107,7 +107,7 @@ void Rasterizer::find_visible(const Pass& pass) {
   const std::size_t pixels = padded_pixels(pass.view), slices = slice_count(pass.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
-  session_.reserve(places_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
+  session_.reserve(slice_counts_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
   draw(pass, 0, list_runs(pass.view), true);
 }
@@ -125,15 +125,15 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   SetUp& kernels = set_up_kernels(pass.view);
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
-  session_.fill_zero(places_, slice_count(pass.view) * sizeof(cl_uint));
+  session_.fill_zero(slice_counts_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
   kernels.triangles
       .set(pass.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
-           scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, places_, to_clip_)
+           scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, slice_counts_, to_clip_)
       .launch(count * kItemsARun, kRasterGroup);
   kernels.clipped
       .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
-           listed_, entry_room(), entries_, places_, to_clip_)
+           listed_, entry_room(), entries_, slice_counts_, to_clip_)
       .launch(kClippers, kRasterGroup);
 }
 
@@ -141,10 +141,10 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
 void Rasterizer::bin(const ClpvView& view) {
   const unsigned slices = slice_count(view);
   const std::size_t chunks = (slices + CLPV_SLICE_CHUNK - 1) / CLPV_SLICE_CHUNK;
-  sum_places_.set(slices, places_, totals_).launch(chunks, kRasterGroup);
-  start_places_.set(slices, places_, totals_).launch(chunks, kRasterGroup);
+  sum_slices_.set(slices, slice_counts_, totals_).launch(chunks, kRasterGroup);
+  scan_slices_.set(slices, slice_counts_, totals_).launch(chunks, kRasterGroup);
   const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
-  bin_entries_.set(counts_, list_room(), entry_room(), entries_, places_, binned_)
+  bin_entries_.set(counts_, list_room(), entry_room(), entries_, slice_counts_, binned_)
       .launch(groups * kRasterGroup, kRasterGroup);
 }
 
@@ -173,7 +173,7 @@ void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fre
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   draw_tiles_
-      .set(view, cl_uint{fresh}, listed_, places_, binned_, scene_.vertices, scene_.triangles,
+      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, scene_.vertices, scene_.triangles,
            scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
       .launch(cl::NDRange(tiles_along(view.width), tiles_along(view.height)), kTileRow);
 }

@@ -76,8 +76,8 @@ class Rasterizer {
   std::size_t most_listed_;
   std::map<bool, SetUp> set_up_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
-  Kernel sum_places_, start_places_, bin_entries_, draw_tiles_, resolve_depth_;
-  Buffer clusters_, listed_, to_clip_, counts_, entries_, places_, totals_, binned_, keys_, seen_;
+  Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;
+  Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_, seen_;
 };
 
 }  // namespace clpv

@@ -8,12 +8,12 @@
 namespace clpv {
 namespace {
 
-static_assert(kReflectingSides == CLPV_SIDES);
+static_assert(kCellFaces == CLPV_CELL_FACES);
 
 constexpr unsigned kMostReflectors = 1u << 18;  // a launch
 
 VoxelMaskShape shape_of(int grid) {
-  return {grid, grid, CLPV_SIDES * CLPV_SIDE_WORDS, 1};
+  return {grid, grid, CLPV_CELL_FACES * CLPV_FACE_WORDS, 1};
 }
 
 ProgramSource reflect_program(const SceneBuffers& scene, int grid) {
@@ -26,7 +26,7 @@ ProgramSource reflect_program(const SceneBuffers& scene, int grid) {
 }
 
 ProgramSource reflect_shares_program(int grid, const VolumeFormat& format) {
-  ProgramSource source{"face_albedo.cl", {}, coefficient_macros(kReflectingSides)};
+  ProgramSource source{"face_albedo.cl", {}, coefficient_macros(kCellFaces)};
   source.literals.integer("CLPV_GRID", grid).real("CLPV_EDGE_LOSS", edge_loss());
   add_format_literals(source.literals, format);
   return source;
@@ -43,15 +43,15 @@ ReflectorVoxelizer::ReflectorVoxelizer(Session& session, const SceneBuffers& sce
       shares_(session, reflect_shares_program(grid, format), "face_albedo") {
   for (int c = 0; c < cascades; ++c) {
     reflectors_.push_back(
-        std::make_unique<Volume>(session, VolumeShape{grid, kReflectingSides, 3}, "reflectors", format));
+        std::make_unique<Volume>(session, VolumeShape{grid, kCellFaces, 3}, "reflectors", format));
   }
 }
 
-void ReflectorVoxelizer::reflect(std::size_t cascade, const ClpvGrid& grid) {
-  sides_.bring(cascade, grid, triangles_, scene_.textures, scene_.texels, sides_.buffer());
+void ReflectorVoxelizer::voxelize(std::size_t cascade, const ClpvGrid& grid) {
+  sides_.update(cascade, grid, triangles_, scene_.textures, scene_.texels, sides_.buffer());
   shares_.set(sides_.buffer(), reflectors_[cascade]->memory());
   const std::size_t cells = grid_;
-  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMarkGroup, 1, 1));
+  shares_.launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMaskGroup, 1, 1));
 }
 
 }  // namespace clpv

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `reflect`: what a scene's own triangles reflect in a cascade (kernels/reflectors.cl; docs/method.md, 'More bounces').
+// Stage `reflectors`: voxelises the albedo of triangles per face direction (kernels/reflectors.cl; docs/method.md, 'More
+// bounces').
 #pragma once
 
 #include <cstddef>
@@ -15,20 +16,20 @@
 
 namespace clpv {
 
-/// Reflecting areas of the light cells: of each channel six numbers in [0, 1], for what faces +x, -x, +y, -y, +z, -z: its area
-/// in faces of a cell times its albedo. Deterministic: integers are summed, in whatever order.
+/// Reflectance of the faces of light cells: six numbers in [0, 1] per channel, for +x, -x, +y, -y, +z, -z: covered share
+/// of the face times mean albedo. Deterministic: sums are integers, and their order does not matter.
 class ReflectorVoxelizer {
  public:
-  /// Of `cascades` cascades of `grid` cells along each axis, in volumes of `format`. `scene` must stay as it is,
+  /// For `cascades` cascades of `grid` cells along each axis, in volumes of `format`. `scene` must stay as it is,
   /// but for upload_moving().
   /// Throws Error(run_time) where the device's memory does not suffice.
   ReflectorVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
                      const VolumeFormat& format);
 
-  /// Makes what is known of a cascade anew.
-  void reflect(std::size_t cascade, const ClpvGrid& grid);
+  /// Recomputes the reflectors of a cascade.
+  void voxelize(std::size_t cascade, const ClpvGrid& grid);
 
-  /// kReflectingSides numbers, three channels.
+  /// kCellFaces numbers per cell, three channels.
   const Volume& reflectors(std::size_t cascade) const { return *reflectors_[cascade]; }
 
  private:

@@ -147,9 +147,9 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
 }
 
 void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) {
-  const std::vector<Part> changed = buffers.clusters->move(scene);
+  const std::vector<MeshRange> changed = buffers.clusters->move(scene);
   if (changed.empty()) return;
-  for (const Part& part : changed) {
+  for (const MeshRange& part : changed) {
     session.write(buffers.vertices, std::span(scene.vertices).subspan(part.first_vertex, part.vertices),
                   part.first_vertex);
     session.write(buffers.triangles, std::span(scene.triangles).subspan(part.first_triangle, part.triangles),

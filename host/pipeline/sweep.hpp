@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `sweep`: the injected light of all cascades, moved to wherever it goes in one pass a direction (kernels/sweep.cl;
-// docs/method.md, 'The sweep').
+// Stage `sweep`: transports the injected light of all cascades in one pass over the grid per direction
+// (kernels/sweep_*.cl; docs/method.md, 'The sweep').
 #pragma once
 
 #include <optional>
@@ -22,83 +22,87 @@ namespace clpv {
 
 static_assert(sizeof(ClpvSweepBin) == CLPV_SIZEOF_SWEEP_BIN &&
               sizeof(ClpvSweepDirection) == CLPV_SIZEOF_SWEEP_DIRECTION &&
-              sizeof(ClpvSweepHalo) == CLPV_SIZEOF_SWEEP_SHELL);
+              sizeof(ClpvSweepHalo) == CLPV_SIZEOF_SWEEP_HALO);
 
-/// Sweeps the cascades of a frame, coarsest first. Deterministic to the bit, whatever the number of compute units.
+/// Sweeps the cascades of a frame, coarsest first. Deterministic to the bit for any number of compute units.
 class Sweeper {
  public:
-  /// `basis`: of injected light; what comes out is of swept_basis(). `transport`: TransportKind::sweep, which says what blocks.
+  /// `basis`: of injected light; results are in swept_basis(). `transport`: TransportKind::sweep, which also gives
+  /// the blocking mode.
   Sweeper(Session& session, const Basis& basis, const Transport& transport, const SweepOptions& options);
 
-  /// What blocks in a cascade from now on: (grid + 1)^3 samples.
-  void block(std::size_t cascade, const Volume& geometry);
+  /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3 samples.
+  void set_blockers(std::size_t cascade, const Volume& geometry);
 
-  /// What reflects in a cascade from now on (ReflectorVoxelizer), where SweepOptions::bounces are more than one; after block(),
-  /// for what is sent back in all bounces depends on both. `reflectors` must live on.
-  void reflect(std::size_t cascade, const Volume& reflectors);
+  /// Sets the reflectors of a cascade (ReflectorVoxelizer), for SweepOptions::bounces other than one. `reflectors`
+  /// must outlive the sweeper. Call after set_blockers(): the series of all bounces depends on both.
+  void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
-  /// What shines into the coarsest cascade from beyond it, from now on.
-  void let_in(const Sky& sky);
-  /// So many times as bright: what `injected` holds in place of 1 W/sr.
+  /// Sets the sky that lights the coarsest cascade at its border.
+  void set_sky(const Sky& sky);
+  /// Sets the number that volumes store for 1 W/sr, by which the sky is multiplied.
   void scale_sky(float scale) { sky_scale_ = scale; }
 
-  /// Sweeps `injected` through cascade `cascade` of `grids`, whose coarser one has been swept before, and leaves light of
-  /// swept_basis(), as radiance times s^2, in `accumulated`. Throws Error(run_time) for grids that are not nested.
+  /// Sweeps `injected` through cascade `cascade` of `grids`, after the next coarser one. Writes light of
+  /// swept_basis(), as radiance times s^2, to `accumulated`. Throws Error(run_time) for grids that are not nested.
   void sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
              Volume& accumulated);
 
-  /// The cells of a cascade whose light a sweep of it keeps for the next finer one; those of the finest are none.
+  /// Cells of a cascade whose light a sweep stores for the next finer one; empty for the finest.
   ClpvSweepHalo halo(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
 
-  /// Whether a launch sweeps all planes, a work-item a bin; else it sweeps one (kernels/sweep.cl).
+  /// Returns true if a launch sweeps whole bins (kernels/sweep_bins.cl), false if it sweeps a plane
+  /// (kernels/sweep_planes.cl).
   bool whole_bins() const;
 
-  /// Whether it reads injected light where it lies, for the bins across z (swept_in_place()).
+  /// Returns true if bins across z are swept from the injected volume (swept_in_place()).
   bool in_place() const { return in_place_; }
 
  private:
-  struct Pass {  ///< of a cascade
+  /// Directions, kernels and boundary light of one cascade.
+  struct Pass {
     int parts;
     Buffer directions;  ///< ClpvSweepDirection
     Kernel sweep;
-    std::optional<Kernel> let_in;      ///< none: no coarser cascade is beyond
-    Buffer halo;                       ///< light for the next finer cascade
-    std::optional<Kernel> let_sky_in;  ///< none: nor is a sky
-    Buffer sky;                        ///< what comes in along each direction, of cells of 1 m^2
+    std::optional<Kernel> border;      ///< boundary condition from the coarser cascade; none for the coarsest
+    Buffer halo_light;                 ///< boundary light for the next finer cascade
+    std::optional<Kernel> sky_border;  ///< boundary condition from the sky; for the coarsest under a sky
+    Buffer sky;                        ///< swept_sky()
   };
-  using Passes = std::vector<Pass>;  ///< one a cascade
-  Passes make_passes(const std::vector<int>& parts);
-  ProgramSource source_program(const Basis& basis) const;
-  void let_nothing_in(const Pass& pass);
-  void launch_at_border(Kernel& kernel, const Pass& pass);
-  bool let_sky_in(Pass& pass, float cell);
-  bool let_in(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  using Passes = std::vector<Pass>;  ///< one per cascade
   struct Light {
-    const cl::Memory& injected;  ///< as bins_ says, some of the sources are here
+    const cl::Memory& injected;  ///< sources of some bins, as bins_ says
     const Buffer& sources;
-    const Buffer& sums;  ///< may be the same
+    const Buffer& sums;  ///< may be `sources`
   };
-  void sweep(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepHalo& halo, bool lit);
-  void sweep(Passes& passes, std::size_t cascade, const Light& light, const std::vector<ClpvGrid>& grids);
-  void bounce(std::size_t cascade, const std::vector<ClpvGrid>& grids);
-  void bounce_in_all(float cell);
+  ProgramSource source_program(const Basis& basis) const;
+  Passes make_passes(const std::vector<int>& parts);
+  bool set_boundary(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  bool set_boundary(Pass& coarsest, float cell);
+  void set_dark_boundary(const Pass& pass);
+  void launch_border(Kernel& kernel, const Pass& pass);
+  void sweep_cascade(Passes& passes, std::size_t cascade, const Light& light,
+                     const std::vector<ClpvGrid>& grids);
+  void launch(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepHalo& halo, bool lit);
+  void add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  void add_series(float cell);
   void collect(std::size_t cascade, Volume& accumulated);
-  cl_int before_first(const Pass& pass) const;
+  cl_int upstream_plane(const Pass& pass) const;
 
   Session& session_;
   SweepOptions options_;
   SweepVolumes volumes_;
-  Buffer bins_, light_, live_, border_;
-  std::vector<Buffer> through_;  ///< transmittance of the links through each cascade
+  Buffer bins_, light_, plane_buffer_, border_;
+  std::vector<Buffer> links_;  ///< transmittance of the links of each cascade
   bool in_place_;
   Kernel source_, collect_;
-  std::optional<Kernel> links_, collect_for_finer_;
+  std::optional<Kernel> transmittance_, collect_with_incident_;
   Passes passes_;
-  std::optional<Bouncer> bouncer_;  ///< none: one bounce
-  Passes
-      first_passes_;  ///< of what is to bounce, along 24 directions: of each cascade; for all bounces, of the coarsest
-  Buffer first_light_;   ///< that these sweep
-  Buffer second_light_;  ///< sent back of it, where that bounces on; none else
+  std::optional<Bouncer> bouncer_;  ///< none with one bounce
+  /// Along 24 directions, for incident flux: of each cascade, or with all bounces of the coarsest one.
+  Passes bounce_passes_;
+  Buffer first_swept_;   ///< light swept along 24 directions: D_1 of docs/method.md
+  Buffer second_swept_;  ///< D_2; only with all bounces
   float sky_scale_ = 1;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables of bins and directions that the kernels of a sweep read (kernels/shared/sweep.h).
+// Tables of bins and directions for the kernels of the sweep (kernels/shared/sweep.h).
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace clpv {
 
-/// Whether injected light can be swept from where it lies: it is the bins' means, row by row. So are those across z alone; rows of
-/// those across x lie along y there, and of planes across y each lies in another page of memory (1.25 times the time).
+/// Returns true if bins across z can be swept from the injected volume: it holds the bins' means (bins24) in layout soa. Bins
+/// across x and y need volumes of planes: their rows or planes are scattered in the injected volume.
 bool swept_in_place(const Basis& basis, const VolumeFormat& injected);
-/// `injected`: where light is swept from, if swept_in_place(); none: all of it from volumes of planes.
+/// `injected`: format of the volume that bins across z are swept from; none: all bins are swept from volumes of planes.
 std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected = {});
-/// `coarser_parts`: of the next coarser cascade; 0: there is none.
+/// `coarser_parts`: parts of the next coarser cascade; 0 for the coarsest.
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);
 
 }  // namespace clpv

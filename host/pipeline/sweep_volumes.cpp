@@ -35,7 +35,7 @@ void SweepVolumes::launch(Kernel& kernel, int channels) const {
 }
 
 Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
-  const std::size_t numbers = count * CLPV_SWEEP_BORDERED_OF(std::size_t(grid_));
+  const std::size_t numbers = count * CLPV_SWEEP_BORDERED_VOLUME_OF(std::size_t(grid_));
   return zeroed_buffer(session_, numbers * number_bytes(format_.storage), what);
 }
 

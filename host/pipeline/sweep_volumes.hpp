@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Volumes of planes, and the kernels that go over them a tile at a time (kernels/sweep.h): what the stages round a sweep share.
+// Allocates volumes of planes and launches the kernels that process them by tiles (kernels/sweep_tiles.h): shared by the stages of a sweep.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace clpv {
 
-/// Of a grid of `grid` cells along each axis; their numbers are of `format`'s storage.
+/// Volumes of planes for a grid of `grid` cells along each axis, in the storage of `format`.
 class SweepVolumes {
  public:
   SweepVolumes(Session& session, int grid, const VolumeFormat& format);
 
-  /// A program whose work-items are tiles: its literals name grid, lanes, layout and storage.
+  /// Program with a work-item per tile; its literals are grid, lanes, layout and storage.
   ProgramSource program(const char* file, std::string generated) const;
-  /// Over the tiles of all slices, of `channels` channels.
+  /// Launches a kernel over the tiles of all slices and `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// `count` of them, zeroed; and of those with a border. Throws Error(device) "unsupported: ..." for more than kernels can address.
+  /// Allocates `count` zeroed volumes, without and with a border. Throws Error(device) "unsupported: ..." for more than kernels can address.
   Buffer make(std::size_t count, const char* what) const;
   Buffer make_bordered(std::size_t count, const char* what) const;
 
@@ -31,9 +31,9 @@ class SweepVolumes {
   int tile_;  ///< cells along the edges of a tile
 };
 
-/// Zeroed, of at least `bytes`. Errors as of Session::buffer().
+/// Returns a zeroed buffer of at least `bytes`. Errors as in Session::buffer().
 Buffer zeroed_buffer(Session& session, std::size_t bytes, const char* what);
 
-inline constexpr std::size_t kRowGroup = 64;  ///< work-items of a row, on devices of many
+inline constexpr std::size_t kRowGroup = 64;  ///< work-items of a row in a work-group
 
 }  // namespace clpv

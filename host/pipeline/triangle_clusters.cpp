@@ -14,13 +14,13 @@ Bounds about(const Bounds& a, const Bounds& b) {
   return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};
 }
 
-std::uint64_t print_of(const Scene& scene, const Part& part) {
+std::uint64_t print_of(const Scene& scene, const MeshRange& part) {
   Fingerprint print;
-  add_part(print, scene, part);
+  add_range(print, scene, part);
   return print.value();
 }
 
-Bounds part_bounds(const Scene& scene, const Part& part) {
+Bounds part_bounds(const Scene& scene, const MeshRange& part) {
   return bounds_of(scene.vertices, std::span(scene.triangles).subspan(part.first_triangle, part.triangles));
 }
 
@@ -44,7 +44,8 @@ TriangleClusters::TriangleClusters(const Scene& scene)
     : triangles_(static_cast<unsigned>(scene.triangles.size())) {
   bounds_.resize((scene.triangles.size() + CLPV_CLUSTER - 1) / CLPV_CLUSTER);
   bound_runs(scene, 0, scene.triangles.size());
-  for (const Part& part : scene.moving) moving_.push_back({part_bounds(scene, part), print_of(scene, part)});
+  for (const MeshRange& part : scene.moving)
+    moving_.push_back({part_bounds(scene, part), print_of(scene, part)});
 }
 
 /// Of the clusters that hold triangles of a range.
@@ -58,11 +59,11 @@ void TriangleClusters::bound_runs(const Scene& scene, std::size_t first, std::si
   }
 }
 
-std::vector<Part> TriangleClusters::move(const Scene& scene) {
-  std::vector<Part> changed;
+std::vector<MeshRange> TriangleClusters::move(const Scene& scene) {
+  std::vector<MeshRange> changed;
   std::vector<Bounds> moved;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
-    const Part& part = scene.moving[i];
+    const MeshRange& part = scene.moving[i];
     const std::uint64_t print = print_of(scene, part);
     if (print == moving_[i].print) continue;
     const Bounds now = part_bounds(scene, part);

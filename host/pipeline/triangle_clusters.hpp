@@ -20,7 +20,7 @@ class TriangleClusters {
   explicit TriangleClusters(const Scene& scene);
 
   /// To be called when the scene shows another instant. Gives the moving parts that are not as they were.
-  std::vector<Part> move(const Scene& scene);
+  std::vector<MeshRange> move(const Scene& scene);
 
   const std::vector<Bounds>& bounds() const { return bounds_; }
   unsigned triangles() const { return triangles_; }

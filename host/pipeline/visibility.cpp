@@ -14,22 +14,22 @@ ProgramSource program_of(int grid) {
 }
 
 /// A cube between centres for each cell but the last ones.
-VoxelMaskShape hidden_shape(int grid, int cascades) {
+VoxelMaskShape occlusion_shape(int grid, int cascades) {
   return {grid, grid - 1, kPoints / sizeof(cl_uint), static_cast<std::size_t>(cascades)};
 }
 
 }  // namespace
 
 std::size_t CellVisibility::bytes(int grid) {
-  return hidden_shape(grid, 1).bytes();
+  return occlusion_shape(grid, 1).bytes();
 }
 
 CellVisibility::CellVisibility(Session& session, const SceneBuffers& scene, int grid, int cascades)
-    : hidden_(session, scene, hidden_shape(grid, cascades), kMostHiders, "cells hidden by triangles"),
-      triangles_(session, program_of(grid), "hide_cells") {}
+    : occluded_(session, scene, occlusion_shape(grid, cascades), kMostHiders, "cells occluded by triangles"),
+      triangles_(session, program_of(grid), "occlude_cells") {}
 
-void CellVisibility::see(std::size_t cascade, const ClpvGrid& grid) {
-  hidden_.bring(cascade, grid, triangles_, hidden_.buffer(), hidden_.slot(cascade));
+void CellVisibility::update(std::size_t cascade, const ClpvGrid& grid) {
+  occluded_.update(cascade, grid, triangles_, occluded_.buffer(), occluded_.slot(cascade));
 }
 
 }  // namespace clpv

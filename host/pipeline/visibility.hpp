@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `see`: what a scene's own triangles hide of the cells round a point (kernels/visibility.cl; docs/method.md, 'Gathering').
+// Stage `visibility`: tests which cell centres triangles occlude (kernels/visibility.cl; docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,26 @@
 
 namespace clpv {
 
-/// Which of the eight cells round each of 64 points between them are hidden: a byte a point, of every cube between the
-/// centres of cells, as kernels/visibility.cl lays them out. Deterministic: bits are set in whatever order.
+/// Occlusion bits of the eight cells about each of 64 points in every cube between cell centres: a byte per point, in the
+/// order of kernels/visibility.cl. Deterministic: the order in which bits are set does not matter.
 class CellVisibility {
  public:
-  /// Of `cascades` cascades of `grid` cells along each axis. `scene` must stay as it is, but for
+  /// For `cascades` cascades of `grid` cells along each axis. `scene` must stay as it is, but for
   /// upload_moving().
-  /// Throws Error(run_time) where the device's memory does not suffice.
+  /// Throws Error(run_time) if device memory does not suffice.
   CellVisibility(Session& session, const SceneBuffers& scene, int grid, int cascades);
 
-  /// Brings what is known of a cascade to where `grid` stands and what the scene is now.
-  void see(std::size_t cascade, const ClpvGrid& grid);
+  /// Updates the bits of a cascade for the position of `grid` and the present scene.
+  void update(std::size_t cascade, const ClpvGrid& grid);
 
-  /// bytes() a cascade, finest first.
-  const Buffer& hidden() const { return hidden_.buffer(); }
+  /// bytes() per cascade, finest first.
+  const Buffer& occluded() const { return occluded_.buffer(); }
 
-  /// Of one cascade.
+  /// Bytes of one cascade.
   static std::size_t bytes(int grid);
 
  private:
-  VoxelMasks hidden_;
+  VoxelMasks occluded_;
   Kernel triangles_;
 };
 

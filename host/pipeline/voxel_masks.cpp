@@ -56,9 +56,9 @@ std::optional<ClpvBox> within(ClpvBox box, int valid) {
 
 ProgramSource program(const VoxelMaskShape& shape) {
   ProgramSource source{"voxel_masks.cl", {}, {}};
-  source.literals.integer("CLPV_MARK_CELLS", shape.cells)
-      .integer("CLPV_MARK_VALID", shape.valid)
-      .integer("CLPV_MARK_WORDS", static_cast<int>(shape.words));
+  source.literals.integer("CLPV_MASK_CELLS", shape.cells)
+      .integer("CLPV_MASK_VALID", shape.valid)
+      .integer("CLPV_MASK_WORDS", static_cast<int>(shape.words));
   return source;
 }
 
@@ -175,7 +175,7 @@ void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
 void VoxelMasks::clear(std::size_t cascade, const ClpvRegion& region) {
   const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
   const std::size_t along = shape_.cells;
-  const cl::NDRange cells(along, along, along), group(kMarkGroup, 1, 1);
+  const cl::NDRange cells(along, along, along), group(kMaskGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(masks_, bytes, from);
   if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
     move_.set(region, masks_, slot(cascade), spare_).launch(cells, group);

@@ -16,7 +16,7 @@
 
 namespace clpv {
 
-inline constexpr std::size_t kMarkGroup = 64;  // work-items a group
+inline constexpr std::size_t kMaskGroup = 64;  // work-items per group
 
 static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
 
@@ -38,19 +38,19 @@ class VoxelMasks {
   VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape, unsigned most,
              const std::string& what);
 
-  /// Brings a cascade's masks to where `grid` stands and to what the scene is now, by `leave`, a kernel that masks what of
-  /// the region given triangles are in, whatever their order: its arguments are the region, those of CLPV_TRIANGLES
-  /// (kernels/region.h), and the rest.
+  /// Updates a cascade's masks for the position of `grid` and the present scene. `voxelize`: a kernel that sets masks of the
+  /// region's cells from triangles in any order. Its arguments are the region, the clusters (clpv_triangle_number of
+  /// kernels/region.h), the scene's triangles, and `rest`.
   template <KernelArgument... Rest>
-  void bring(std::size_t cascade, const ClpvGrid& grid, Kernel& leave, const Rest&... rest) {
+  void update(std::size_t cascade, const ClpvGrid& grid, Kernel& voxelize, const Rest&... rest) {
     const std::optional<ClpvRegion> region = prepare(cascade, grid);
     if (!region) return;
     const unsigned step = std::max(most_ / CLPV_CLUSTER, 1u);
     for (unsigned first = 0; first < near_; first += step) {
       const cl_uint count = std::min(near_ - first, step);
-      leave.set(*region, clusters_, cl_uint{first}, count, scene_.triangle_count, scene_.vertices,
-                scene_.triangles, scene_.materials, rest...);
-      leave.launch(cl::NDRange(std::size_t{count} * CLPV_CLUSTER), cl::NDRange(CLPV_CLUSTER));
+      voxelize.set(*region, clusters_, cl_uint{first}, count, scene_.triangle_count, scene_.vertices,
+                   scene_.triangles, scene_.materials, rest...);
+      voxelize.launch(cl::NDRange(std::size_t{count} * CLPV_CLUSTER), cl::NDRange(CLPV_CLUSTER));
     }
   }
 

@@ -32,10 +32,10 @@ LightField::LightField(Session& session, const Frame& frame)
     volumes_.push_back(read_light(session, *light.accumulated[c], light.scale));
     cascades_.push_back({light.grids[c], &volumes_.back()});
   }
-  if (light.hidden == nullptr) return;
+  if (light.occluded == nullptr) return;
   const std::size_t bytes = CellVisibility::bytes(options_.grid);
-  hidden_ = session.read<std::uint8_t>(*light.hidden, bytes * cascades_.size());
-  for (std::size_t c = 0; c < cascades_.size(); ++c) cascades_[c].hidden = hidden_.data() + c * bytes;
+  occluded_ = session.read<std::uint8_t>(*light.occluded, bytes * cascades_.size());
+  for (std::size_t c = 0; c < cascades_.size(); ++c) cascades_[c].occluded = occluded_.data() + c * bytes;
 }
 
 glm::dvec3 LightField::irradiance(const glm::dvec3& position, const glm::dvec3& normal) const {

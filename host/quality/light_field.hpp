@@ -32,7 +32,7 @@ class LightField {
   TransportKind transport_;
   GatherOptions options_;
   std::vector<reference::Volume> volumes_;
-  std::vector<std::uint8_t> hidden_;  ///< empty where all cells light a surface
+  std::vector<std::uint8_t> occluded_;  ///< empty where all cells light a surface
   std::vector<reference::Cascade> cascades_;
 };
 

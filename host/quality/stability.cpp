@@ -23,7 +23,7 @@ glm::dvec3 normal_of(const SurfaceImage& image, std::size_t pixel) {
 }
 
 bool same_surface(const SurfaceImage& later, const glm::dvec3& point, const glm::dvec3& normal) {
-  const reference::Projected at = reference::project(later.view, point);
+  const reference::ProjectedPoint at = reference::project(later.view, point);
   if (!(at.depth > later.view.near_depth)) return false;
   const double x = std::round(at.pixel.x), y = std::round(at.pixel.y);
   if (!(x >= 0 && x < later.view.width && y >= 0 && y < later.view.height)) return false;

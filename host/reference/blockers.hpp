@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `block` in double: the CPU reference of kernels/blockers.cl.
+// CPU reference of stage `blockers` (kernels/blockers.cl): geometry volume from triangles, in double (docs/method.md,
+// 'Blockers').
 #pragma once
 
 #include <cstdint>
@@ -11,13 +12,13 @@
 
 namespace clpv::reference {
 
-/// Shares [0, 1] of each corner and axis, as BlockerVoxelizer gives them: 3 numbers a sample, one channel. A sample within a
-/// hair's breadth of an edge, of a border between cells, or of an alpha cutoff is covered or not by how numbers are
-/// rounded: `least` has none of those, `most` has all.
-struct Blocked {
-  Volume least, most;
+/// Bounds on the covered shares [0, 1] of BlockerVoxelizer: 3 numbers per corner, one channel. Rounding decides whether a
+/// sample very close to an edge, a cell boundary or an alpha cutoff is covered: `lower` excludes and `upper` includes it.
+struct BlockerBounds {
+  Volume lower, upper;
 };
 
-Blocked block(const Scene& scene, const ClpvGrid& grid);
+/// Returns the bounds for n + 1 corners of the cells along each axis.
+BlockerBounds voxelize_blockers(const Scene& scene, const ClpvGrid& grid);
 
 }  // namespace clpv::reference

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `emit` in double: the CPU reference of kernels/emit.cl.
+// CPU reference of stage `emit` (kernels/emit.cl): virtual point lights of emissive triangles, in double (docs/method.md,
+// 'Emissive surfaces').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,14 +11,15 @@
 
 namespace clpv::reference {
 
+/// A virtual point light. Its flux is P = pi L A.
 struct EmittedPoint {
   glm::dvec3 position{0};
-  glm::dvec3 normal{0};  ///< unit, on the side that shines; 0 where the triangle has no area
+  glm::dvec3 normal{0};  ///< unit, on the emitting side; 0 for a triangle without area
   glm::dvec3 flux{0};    ///< [W]
-  double doubt =
-      0;  ///< of the flux, where rounding decides whether looks at a masked material meet a hole [W]
+  double tolerance = 0;  ///< flux of samples close to a masked material's alpha cutoff [W]
 };
 
+/// Returns the points of `plan` in order.
 std::vector<EmittedPoint> emit(const Scene& scene, const EmissionPlan& plan);
 
 }  // namespace clpv::reference

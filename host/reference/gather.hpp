@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `gather` in double: the CPU reference of kernels/gather.cl.
+// CPU reference of stage `gather` (kernels/gather.cl): irradiance from light volumes, in double (docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@
 
 namespace clpv::reference {
 
-/// A cascade's light as gathering reads it.
+/// Light of one cascade.
 struct Cascade {
   ClpvGrid grid{};
   const Volume* accumulated = nullptr;
-  const std::uint8_t* hidden =
-      nullptr;  ///< as CellVisibility keeps it, where GatherOptions::gather is `visible`
+  /// Bits of CellVisibility; required if GatherOptions::gather is `visible`.
+  const std::uint8_t* occluded = nullptr;
 };
 
-/// Irradiance [W/m^2] of red, green, blue that the cascades, finest first, put on a surface at `position` [m]
-/// with unit `normal`. As Gatherer, one surface at a time.
+/// Returns the irradiance [W/m^2] in red, green, blue of a surface at `position` [m] with unit `normal`. `cascades`: finest
+/// first.
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position, const glm::dvec3& normal);
 
-/// The same for every pixel of what a camera sees, row 0 first; 0 where there is no surface.
+/// Returns the irradiance of every pixel of a G-buffer, row 0 first; 0 for pixels without a surface.
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                                const std::vector<Cascade>& cascades, const SurfaceImage& camera);
 

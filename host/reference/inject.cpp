@@ -11,8 +11,8 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kLeastCosine = 0.1;  // of a surfel seen edge-on
-constexpr double kTie = 2e-3;         // of the energy: four times what halves round a coefficient by
+constexpr double kMinCosine = 0.1;  // of a surfel seen edge-on
+constexpr double kTie = 2e-3;       // relative energy: 4x the rounding error of half precision
 
 glm::dvec3 xyz(const glm::vec4& v) {
   return {v.x, v.y, v.z};
@@ -22,7 +22,7 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// The lobe round `normal`, scaled to a flux of pi where asked for.
+/// The lobe about `normal`; with `unit_flux` scaled to a flux of pi.
 std::vector<double> lobe(const Basis& basis, const Lobes& lobes, const glm::dvec3& normal, bool unit_flux) {
   std::vector<double> c = lobes(normal);
   if (!unit_flux) return c;
@@ -50,18 +50,18 @@ bool has_surface(const SurfaceImage& surface, std::size_t pixel) {
   return surface.depth[pixel] > 0 && std::isfinite(surface.depth[pixel]);
 }
 
-/// One source's blocking shares, before it is merged with others.
+/// Sum of all surfels of one source, before merging.
 Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                    const InjectOptions& options, int stride) {
   const Lobes lobes(basis, options.lobes);
   Volume blocking(static_cast<int>(grid.n) + 1, blocking_size(options.blocking, basis), 1);
   const std::size_t every = stride;
   for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
-    const bool taken =
+    const bool sampled =
         pixel % surface.view.width % every == every / 2 && pixel / surface.view.width % every == every / 2;
-    if (!taken || !has_surface(surface, pixel)) continue;
+    if (!sampled || !has_surface(surface, pixel)) continue;
     const glm::dvec3 normal = xyz(surface.normal[pixel]);
-    const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kLeastCosine);
+    const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kMinCosine);
     const double share = stride * stride *
                          footprint(surface.view, pixel % surface.view.width, pixel / surface.view.width,
                                    surface.depth[pixel]) /
@@ -100,11 +100,11 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
 
 void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, Volume& geometry) {
   for_each_cell(geometry.n, [&](const glm::ivec3& p) {
-    const std::vector<double> c = found.cell(0, p), kept = geometry.cell(0, p);
+    const std::vector<double> c = found.cell(0, p), old = geometry.cell(0, p);
     const bool areas = !blocks_by_lobes(blocking);
-    if (!areas && basis.energy(c) <= basis.energy(kept)) return;
+    if (!areas && basis.energy(c) <= basis.energy(old)) return;
     for (int i = 0; i < found.coefficients; ++i)
-      geometry.at(0, i, p.x, p.y, p.z) = areas ? std::max(c[i], kept[i]) : c[i];
+      geometry.at(0, i, p.x, p.y, p.z) = areas ? std::max(c[i], old[i]) : c[i];
   });
 }
 
@@ -113,16 +113,17 @@ void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Ba
   merge_geometry(blocking_of(surface, grid, basis, options, stride), basis, options.blocking, geometry);
 }
 
-Volume otherwise_merged(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking) {
-  Volume other = a;
-  merge_geometry(b, basis, blocking, other);
-  if (!blocks_by_lobes(blocking)) return other;
+Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking) {
+  Volume merged = a;
+  merge_geometry(b, basis, blocking, merged);
+  if (!blocks_by_lobes(blocking)) return merged;
   for_each_cell(a.n, [&](const glm::ivec3& p) {
-    const std::vector<double> of_a = a.cell(0, p), of_b = b.cell(0, p);
-    const double in_a = basis.energy(of_a), in_b = basis.energy(of_b);
-    if (std::abs(in_a - in_b) <= kTie * std::max(in_a, in_b)) other.set_cell(0, p, in_b > in_a ? of_a : of_b);
+    const std::vector<double> c_a = a.cell(0, p), c_b = b.cell(0, p);
+    const double energy_a = basis.energy(c_a), energy_b = basis.energy(c_b);
+    if (std::abs(energy_a - energy_b) <= kTie * std::max(energy_a, energy_b))
+      merged.set_cell(0, p, energy_b > energy_a ? c_a : c_b);
   });
-  return other;
+  return merged;
 }
 
 }  // namespace clpv::reference

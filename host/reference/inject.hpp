@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CPU reference of kernels/inject.cl: one texel after another in double, straight from docs/method.md, 'Injection'.
+// CPU reference of stage `inject` (kernels/inject.cl), in double: light and surfels of an RSM or G-buffer into volumes
+// (docs/method.md, 'Injection', 'Blockers').
 #pragma once
 
 #include "basis/basis.hpp"
@@ -10,23 +11,25 @@
 
 namespace clpv::reference {
 
-/// Adds the virtual point lights of `rsm` to `light`: grid.n cells, 3 channels.
+/// Adds the virtual point lights of `rsm` to `light` (grid.n^3 cells, 3 channels): c += (P / pi) c(n) in each light's cell.
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
                   const InjectOptions& options, Volume& light);
 
-/// Merges what `surface` sees into `geometry`: grid.n + 1 samples a side, 1 channel. Of its pixels every `stride`-th each
-/// way, the middle one of those it stands for.
+/// Merges the surfels of `surface` into `geometry` (grid.n + 1 samples along each axis, 1 channel). Uses every `stride`-th
+/// pixel along each axis, the middle one of stride^2, with stride^2 times the area.
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                      const InjectOptions& options, Volume& geometry, int stride = 1);
 
-/// What `found`, seen by one more surface, leaves of `geometry`: of functions the one of more energy, of areas the larger.
+/// Merges the blockers `found` of one source into `geometry`: each sample keeps the function of higher energy, or the larger
+/// areas.
 void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, Volume& geometry);
 
-/// `a` and `b` merged, but where their energies are so near each other that rounding decides: there the other one.
-Volume otherwise_merged(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking);
+/// Merges `a` and `b`, but chooses the function of lower energy where energies differ by rounding only. merge_geometry() and
+/// this function bound the result of a device.
+Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking);
 
-/// Where a pixel's surface is, in units of cells from the grid's origin. Light: moved half a cell off the
-/// surface.
+/// Returns the position of a pixel's surface in cells from the grid's origin. `light`: moved by half a cell along the
+/// normal.
 glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light);
 
 }  // namespace clpv::reference

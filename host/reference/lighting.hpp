@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a light sends to a point in space, before anything stands in its way: the CPU reference of kernels/lighting.h.
+// CPU reference of kernels/lighting.h: unshadowed irradiance of directional, point and spot lights (KHR_lights_punctual).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,15 +8,15 @@
 
 namespace clpv::reference {
 
-/// Irradiance [W/m^2] a channel, on a plane across the light's ray, and where the light is.
+/// Light that arrives at a point.
 struct Incident {
-  glm::dvec3 irradiance{0};
-  glm::dvec3 towards{0};  ///< unit, from the point to the light
+  glm::dvec3 irradiance{0};  ///< on a plane across the ray [W/m^2]
+  glm::dvec3 towards{0};     ///< unit, from the point to the light
 };
 
-/// The light at `position` [m]: directional constant; else intensity / r^2, 0 beyond the range, and for a
-/// spot times clamp(cos(angle) cone_scale + cone_offset, 0, 1)^2 (KHR_lights_punctual). A hard edge at the
-/// range, not the recommended smooth window: inside it the inverse square stays exact.
+/// Returns the light at `position` [m]. Directional: constant. Point: intensity / r^2, 0 beyond the range. Spot: the same
+/// times clamp(cos(angle) cone_scale + cone_offset, 0, 1)^2 (KHR_lights_punctual). The range is a hard edge, not the
+/// recommended smooth window, so that the inverse square is exact inside it.
 Incident light_at(const ClpvLight& light, const glm::dvec3& position);
 
 }  // namespace clpv::reference

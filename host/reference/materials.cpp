@@ -20,14 +20,14 @@ glm::vec4 untextured(const Scene& scene, const SurfacePoint& point) {
          interpolate(scene, triangle, point.weights, colour);
 }
 
-/// The linear values of every 8-bit one.
+/// Linear values of all 8-bit sRGB values.
 std::array<float, 256> decode_table() {
   std::array<float, 256> table{};
   for (unsigned i = 0; i < table.size(); ++i) table[i] = linear_from_srgb(i);
   return table;
 }
 
-/// The index inside [0, size) that stands for texel `i`.
+/// Maps texel index `i` into [0, size) by wrap mode.
 std::uint32_t wrap(std::int64_t i, std::uint32_t size, std::uint32_t mode) {
   const std::int64_t n = size;
   if (mode == CLPV_WRAP_CLAMP) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, n - 1));
@@ -43,7 +43,7 @@ glm::vec4 texel(const Texture& texture, std::uint32_t x, std::uint32_t y) {
   return {decoded[rgba[0]], decoded[rgba[1]], decoded[rgba[2]], rgba[3] / 255.0f};
 }
 
-/// log2 of the root of `square`, by straight lines between the powers of two of `square`; at least 0.
+/// log2(sqrt(square)), piecewise linear between powers of two of `square`; at least 0.
 double mip_level(double square) {
   if (!(square < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::infinity();
   if (square <= 1) return 0;
@@ -66,7 +66,7 @@ glm::vec3 Materials::albedo(const SurfacePoint& point, const Footprint& footprin
 glm::vec3 Materials::emissive(const SurfacePoint& point, const Footprint& footprint) const {
   const Material& material = scene_->materials[scene_->triangles[point.triangle].material];
   const glm::vec3 radiance{material.emissive[0], material.emissive[1], material.emissive[2]};
-  if (radiance == glm::vec3(0)) return radiance;  // most materials: spares them the look at a texture
+  if (radiance == glm::vec3(0)) return radiance;  // most materials: needs no texture
   return radiance * textured(material.emissive_texture, point, footprint);
 }
 
@@ -89,7 +89,7 @@ bool Materials::hole(const SurfacePoint& point) const {
   return solidity(point) < 0;
 }
 
-/// What a texture multiplies the colour with.
+/// Factor of the colour from a texture.
 glm::vec3 Materials::textured(std::uint32_t texture, const SurfacePoint& point,
                               const Footprint& footprint) const {
   if (texture == CLPV_NO_TEXTURE) return glm::vec3(1);
@@ -102,7 +102,7 @@ glm::vec3 Materials::textured(std::uint32_t texture, const SurfacePoint& point,
                            texture_step(triangle, footprint.below)));
 }
 
-/// How far (u, v) of the texture moves when the point moves by `step` [m] on the triangle's plane.
+/// Change of (u, v) for a move of `step` [m] on the triangle's plane.
 glm::dvec2 Materials::texture_step(const Triangle& triangle, const glm::dvec3& step) const {
   const Vertex &a = scene_->vertices[triangle.vertex[0]], &b = scene_->vertices[triangle.vertex[1]],
                &c = scene_->vertices[triangle.vertex[2]];
@@ -116,11 +116,10 @@ glm::dvec2 Materials::texture_step(const Triangle& triangle, const glm::dvec3& s
 }
 
 glm::vec4 look_up(const Texture& texture, const glm::vec2& uv) {
-  // Beyond 2^24 texels a float coordinate no longer tells neighbours apart, and the cast below would
-  // overflow.
-  constexpr float kLargest = 16777216.0f;
+  // Beyond 2^24, float coordinates cannot distinguish adjacent texels, and the cast below would overflow.
+  constexpr float kMaxCoordinate = 16777216.0f;
   const glm::vec2 at = uv * glm::vec2(texture.width, texture.height) - 0.5f;
-  if (!(std::abs(at.x) < kLargest && std::abs(at.y) < kLargest)) return texel(texture, 0, 0);
+  if (!(std::abs(at.x) < kMaxCoordinate && std::abs(at.y) < kMaxCoordinate)) return texel(texture, 0, 0);
   const glm::vec2 base = glm::floor(at), weight = at - base;
   const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
   const std::uint32_t x0 = wrap(x, texture.width, texture.wrap_u),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// F = max(0, Omega_f I(w_f)) T_f; the destination gains c += (F / pi) c(n_f).
 #include "reference/propagate.hpp"
 
 #include <algorithm>
@@ -14,34 +15,36 @@ int column_of(const glm::ivec3& normal) {
   return std::find(kAxes.begin(), kAxes.end(), normal) - kAxes.begin();
 }
 
-/// One number a cell, in the order of Volume::values.
-using Plane = std::vector<double>;
+/// One number per cell, in the order of Volume::values.
+using CellValues = std::vector<double>;
 
-/// 1 - B of every cell on one link into it.
-Plane transmittances(const Volume& geometry, const glm::ivec3& side, const std::vector<double>& weights) {
-  Plane open;
+/// Transmittance of one link into every cell.
+CellValues cell_transmittances(const Volume& geometry, const glm::ivec3& side,
+                               const std::vector<double>& weights) {
+  CellValues result;
   for_each_cell(geometry.n - 1,
-                [&](const glm::ivec3& p) { open.push_back(transmitted(geometry, p, side, weights)); });
-  return open;
+                [&](const glm::ivec3& p) { result.push_back(transmittance(geometry, p, side, weights)); });
+  return result;
 }
 
 const FaceTransport& faces_of(const Transport& transport) {
   return std::get<FaceTransport>(transport.scheme);
 }
 
-/// The links into a cell, each with what it lets through; empty where nothing blocks.
-std::vector<Plane> shares_of(const Transport& transport, const Volume* geometry) {
-  std::vector<Plane> shares;
-  if (geometry == nullptr) return shares;
+/// Transmittances of all links; empty without blockers.
+std::vector<CellValues> link_transmittances(const Transport& transport, const Volume* geometry) {
+  std::vector<CellValues> links;
+  if (geometry == nullptr) return links;
   for (const Face& face : faces_of(transport).faces)
-    shares.push_back(transmittances(*geometry, face.normal, face.blocked_by));
-  return shares;
+    links.push_back(cell_transmittances(*geometry, face.normal, face.blocked_by));
+  return links;
 }
 
-/// sum_i weights[i] c_i of the cell that lies `travel` upstream of each one; 0 from outside.
-Plane arriving(const Volume& from, int channel, const glm::ivec3& travel, std::span<const double> weights) {
+/// sum_i weights[i] c_i of the cell at -`travel` from each cell; 0 outside the grid.
+CellValues upstream_sum(const Volume& from, int channel, const glm::ivec3& travel,
+                        std::span<const double> weights) {
   const int n = from.n, first = std::max(0, travel.x), last = n + std::min(0, travel.x);
-  Plane sum(static_cast<std::size_t>(n) * n * n, 0.0);
+  CellValues sum(static_cast<std::size_t>(n) * n * n, 0.0);
   for (int i = 0; i < from.coefficients; ++i) {
     const double weight = weights[i];
     if (weight == 0) continue;
@@ -56,35 +59,35 @@ Plane arriving(const Volume& from, int channel, const glm::ivec3& travel, std::s
   return sum;
 }
 
-void add(const Plane& light, double factor, int channel, int i, Volume& to) {
+void add(const CellValues& light, double factor, int channel, int i, Volume& to) {
   double* c = to.values.data() + to.index(channel, i, 0, 0, 0);
   for (std::size_t at = 0; at < light.size(); ++at) c[at] += factor * light[at];
 }
 
-void block(Plane& light, const std::vector<Plane>& shares, std::size_t link) {
-  if (shares.empty()) return;
-  for (std::size_t at = 0; at < light.size(); ++at) light[at] *= shares[link][at];
+void attenuate(CellValues& light, const std::vector<CellValues>& links, std::size_t link) {
+  if (links.empty()) return;
+  for (std::size_t at = 0; at < light.size(); ++at) light[at] *= links[link][at];
 }
 
-void add_faces(const FaceTransport& scheme, const Volume& from, const std::vector<Plane>& shares, bool clamp,
-               int channel, Volume& to) {
+void add_faces(const FaceTransport& scheme, const Volume& from, const std::vector<CellValues>& links,
+               bool clamp, int channel, Volume& to) {
   for (std::size_t w = 0; w < scheme.faces.size(); ++w) {
     const Face& face = scheme.faces[w];
-    Plane flux = arriving(from, channel, face.travel, face.flux);
+    CellValues flux = upstream_sum(from, channel, face.travel, face.flux);
     if (clamp) {
       for (double& value : flux) value = std::max(0.0, value);
     }
-    block(flux, shares, w);
+    attenuate(flux, links, w);
     for (int i = 0; i < from.coefficients; ++i)
       add(flux, scheme.lobes(i, column_of(face.normal)), channel, i, to);
   }
 }
 
-Volume step(const Transport& transport, const Volume& travelling, const std::vector<Plane>& shares,
+Volume step(const Transport& transport, const Volume& travelling, const std::vector<CellValues>& links,
             bool clamp) {
   Volume next(travelling.n, travelling.coefficients, travelling.channels);
   for (int channel = 0; channel < next.channels; ++channel)
-    add_faces(faces_of(transport), travelling, shares, clamp, channel, next);
+    add_faces(faces_of(transport), travelling, links, clamp, channel, next);
   return next;
 }
 
@@ -92,15 +95,15 @@ Volume step(const Transport& transport, const Volume& travelling, const std::vec
 
 Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
                       bool clamp) {
-  return step(transport, travelling, shares_of(transport, geometry), clamp);
+  return step(transport, travelling, link_transmittances(transport, geometry), clamp);
 }
 
 Propagation propagate(const Transport& transport, const Volume& injected, const Volume* geometry,
                       int iterations, bool clamp) {
-  const std::vector<Plane> shares = shares_of(transport, geometry);
+  const std::vector<CellValues> links = link_transmittances(transport, geometry);
   Propagation result{injected, injected};
   for (int t = 1; t <= iterations; ++t) {
-    result.travelling = step(transport, result.travelling, t > 1 ? shares : std::vector<Plane>(), clamp);
+    result.travelling = step(transport, result.travelling, t > 1 ? links : std::vector<CellValues>(), clamp);
     for (std::size_t i = 0; i < result.accumulated.values.size(); ++i) {
       result.accumulated.values[i] += result.travelling.values[i];
     }
@@ -117,18 +120,19 @@ std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
   return sum;
 }
 
-std::array<double, 3> leaving(const Basis& basis, const Transport& transport, const Volume& travelling) {
+std::array<double, 3> escaping_energy(const Basis& basis, const Transport& transport,
+                                      const Volume& travelling) {
   std::array<double, 3> lost{};
   const FaceTransport& faces = faces_of(transport);
   const auto outside = [&](const glm::ivec3& p) { return !travelling.inside(p.x, p.y, p.z); };
   for_each_cell(travelling.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < travelling.channels; ++channel) {
       double& sum = lost[channel];
-      std::vector<double> here;
+      std::vector<double> c;
       for (const Face& face : faces.faces) {
         if (!outside(p + face.travel)) continue;
-        if (here.empty()) here = travelling.cell(channel, p);
-        const double flux = std::max(0.0, dot(face.flux, here));
+        if (c.empty()) c = travelling.cell(channel, p);
+        const double flux = std::max(0.0, dot(face.flux, c));
         for (int i = 0; i < basis.size(); ++i)
           sum += flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[i];
       }

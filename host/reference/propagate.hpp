@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CPU reference of kernels/propagate.cl: one step after another in double, a plane at a time (a plane: one coefficient of all
-// cells), straight from docs/method.md, 'Propagation'.
+// CPU reference of stage `propagate` (kernels/propagate.cl), in double: steps of light between neighbouring cells
+// (Kaplanyan and Dachsbacher 2010; docs/method.md, 'Propagation').
 #pragma once
 
 #include <array>
@@ -11,23 +11,26 @@
 
 namespace clpv::reference {
 
-/// One step. `travelling`: n^3 cells, N coefficients [W/sr]; `geometry`: (n+1)^3 corners of what transport.blocking says,
-/// one channel, or null. `clamp`: fluxes below 0 are dropped, as the kernels do; without it energy is conserved exactly.
+/// Returns the light after one step. `travelling`: n^3 cells, N coefficients [W/sr]. `geometry`: (n+1)^3 corners in the
+/// representation transport.blocking, one channel; null: no blockers. `clamp`: sets fluxes below 0 to 0, as the kernels do;
+/// without it, energy is conserved exactly.
 Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
                       bool clamp = true);
 
+/// Result of several steps.
 struct Propagation {
-  Volume travelling;   ///< after the last step
-  Volume accumulated;  ///< the injected field and every step's output
+  Volume travelling;   ///< light after the last step
+  Volume accumulated;  ///< sum of the injected light and the result of each step
 };
-/// `iterations` steps; the first does not block.
+/// Runs `iterations` steps; the first one is not blocked.
 Propagation propagate(const Transport& transport, const Volume& injected, const Volume* geometry,
                       int iterations, bool clamp = true);
 
-/// Int f dw summed over all cells, a channel [W].
+/// Returns the sum of Int f dw over all cells, per channel [W].
 std::array<double, 3> energy(const Basis& basis, const Volume& volume);
 
-/// What the step from `travelling` sends out of the grid, a channel [W].
-std::array<double, 3> leaving(const Basis& basis, const Transport& transport, const Volume& travelling);
+/// Returns the energy that the step from `travelling` transports out of the grid, per channel [W].
+std::array<double, 3> escaping_energy(const Basis& basis, const Transport& transport,
+                                      const Volume& travelling);
 
 }  // namespace clpv::reference

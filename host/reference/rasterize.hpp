@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view sees of a scene, by brute force in double: the CPU reference of the rasteriser.
+// CPU reference of stage `rasterize`, in double: tests every pixel against every triangle (docs/method.md, 'Rasterize').
 #pragma once
 
 #include <vector>
@@ -9,18 +9,18 @@
 
 namespace clpv::reference {
 
-/// A CPU reference's surface, and where rounding may decide otherwise.
-struct Rasterized {
+/// Image of the CPU reference, and the pixels where rounding may change it.
+struct RasterizedImage {
   SurfaceImage image;
-  /// Pixels where a hair's breadth decides what they see: an edge within 1/64 pixel of their centre, two surfaces
-  /// within 1e-5 of their depth, a texel's alpha within 1e-3 of its cutoff, a surface seen edge-on.
-  std::vector<bool> doubtful;
+  /// Pixels whose result depends on rounding. They have an edge within 1/64 pixel of the centre, two surfaces within 1e-5
+  /// of their depth, alpha within 1e-3 of its cutoff, or a surface seen edge-on.
+  std::vector<bool> uncertain;
 };
 
-/// The rasteriser's rules (pipeline/rasterize.hpp), every pixel against every triangle: corners snapped to 1/256
-/// pixel, the top-left rule, perspective-correct values, the nearest surface and of equals the first.
-Rasterized rasterize_camera(const Scene& scene, const ClpvView& view);
-/// `colour` is the flux [W] of each texel's virtual point light; format float32.
-Rasterized rasterize_rsm(const Scene& scene, const ClpvLight& light, const ClpvView& view);
+/// Returns the G-buffer of a view by the rules of pipeline/rasterize.hpp: corners snapped to 1/256 pixel, top-left rule,
+/// perspective-correct attributes, nearest surface. The first triangle of equal depth wins.
+RasterizedImage rasterize_camera(const Scene& scene, const ClpvView& view);
+/// Returns the RSM of a view. `colour` is the flux [W] of each texel's virtual point light; format float32.
+RasterizedImage rasterize_rsm(const Scene& scene, const ClpvLight& light, const ClpvView& view);
 
 }  // namespace clpv::reference

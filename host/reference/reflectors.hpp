@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `reflect` in double: the CPU reference of kernels/reflectors.cl.
+// CPU reference of stage `reflectors` (kernels/reflectors.cl): reflecting areas of cell faces, in double (docs/method.md,
+// 'More bounces').
 #pragma once
 
 #include "kernels/shared/grid.h"
@@ -8,14 +9,15 @@
 
 namespace clpv::reference {
 
-/// Reflecting areas as ReflectorVoxelizer gives them: six numbers a cell, three channels.
-struct Reflected {
+/// Reflecting areas of ReflectorVoxelizer: R_a of six faces per cell, three channels.
+struct ReflectingAreas {
   Volume areas;
-  /// How far each may be off where rounding decides whether samples within a hair's breadth of an edge, of a border between
-  /// cells, or of an alpha cutoff are covered.
-  Volume doubt;
+  /// Tolerance of each number: rounding decides whether samples very close to an edge, a cell boundary or an alpha cutoff are
+  /// covered.
+  Volume tolerance;
 };
 
-Reflected reflect(const Scene& scene, const ClpvGrid& grid);
+/// Returns R_a for the grid's cells.
+ReflectingAreas voxelize_reflectors(const Scene& scene, const ClpvGrid& grid);
 
 }  // namespace clpv::reference

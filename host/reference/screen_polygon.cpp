@@ -17,24 +17,24 @@ double depth_of(const ClpvView& view, const glm::dvec3& p) {
   return depth;
 }
 
-/// What of the triangle is not nearer than the near plane, as a polygon.
+/// Clips the triangle at the near plane; returns a polygon.
 std::vector<glm::dvec3> clipped(const ClpvView& view, const std::array<glm::dvec3, 3>& corners) {
   if (view.orthographic != 0) return {corners.begin(), corners.end()};
-  std::vector<glm::dvec3> kept;
+  std::vector<glm::dvec3> polygon;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
     const double da = depth_of(view, a) - view.near_depth, db = depth_of(view, b) - view.near_depth;
-    if (da >= 0) kept.push_back(a);
-    if ((da >= 0) != (db >= 0)) kept.push_back(a + (b - a) * (da / (da - db)));
+    if (da >= 0) polygon.push_back(a);
+    if ((da >= 0) != (db >= 0)) polygon.push_back(a + (b - a) * (da / (da - db)));
   }
-  return kept;
+  return polygon;
 }
 
 glm::dvec2 centre(unsigned px, unsigned py) {
   return (glm::dvec2(px, py) + 0.5) * static_cast<double>(CLPV_SUBPIXELS);
 }
 
-/// Whether the point is left of the edge from a to b, or on it and the edge is a top or a left one, for triangles
+/// Returns true if the point is left of the edge from a to b, or on it if it is a top or left edge. For triangles that are
 /// clockwise on the screen (y down).
 bool inside_edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& point) {
   const double side = cross(b - a, point - a);
@@ -62,7 +62,7 @@ ScreenPolygon::ScreenPolygon(const ClpvView& view, const std::array<glm::dvec3, 
   nearest_ = std::numeric_limits<double>::max();
   farthest_ = std::numeric_limits<double>::lowest();
   for (const glm::dvec3& corner : clipped(view, corners)) {
-    const Projected projected = project(view, corner);
+    const ProjectedPoint projected = project(view, corner);
     const glm::dvec2 at = (projected.pixel + 0.5) * static_cast<double>(CLPV_SUBPIXELS);
     corners_.emplace_back(std::nearbyint(at.x), std::nearbyint(at.y));
     nearest_ = std::min(nearest_, projected.depth);
@@ -82,12 +82,12 @@ bool ScreenPolygon::covers(unsigned px, unsigned py) const {
 }
 
 double ScreenPolygon::distance_to_edge(unsigned px, unsigned py) const {
-  double least = std::numeric_limits<double>::max();
+  double smallest = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    least = std::min(least,
-                     distance_to_segment(corners_[i], corners_[(i + 1) % corners_.size()], centre(px, py)));
+    smallest = std::min(
+        smallest, distance_to_segment(corners_[i], corners_[(i + 1) % corners_.size()], centre(px, py)));
   }
-  return least / CLPV_SUBPIXELS;
+  return smallest / CLPV_SUBPIXELS;
 }
 
 }  // namespace clpv::reference

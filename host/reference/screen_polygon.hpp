@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A triangle on the screen, in double: clipped, snapped, and what pixels it covers.
+// A triangle projected on the screen: clipping, snapping and coverage tests, in double.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace clpv::reference {
 
-/// Which pixel centres a triangle covers, by the rasteriser's rules.
+/// Coverage of pixel centres by a triangle: corners snapped to 1/256 pixel, top-left rule.
 class ScreenPolygon {
  public:
-  /// `corners` in the world [m]. Cut at the near plane where the view is a perspective one.
+  /// `corners` in world space [m]. Clipped at the near plane in perspective views.
   ScreenPolygon(const ClpvView& view, const std::array<glm::dvec3, 3>& corners);
 
   bool covers(unsigned px, unsigned py) const;
-  /// From the pixel's centre to the nearest edge [pixels].
+  /// Distance from the pixel's centre to the nearest edge [pixels].
   double distance_to_edge(unsigned px, unsigned py) const;
-  /// Whether it shows its front: counter-clockwise on the screen.
+  /// Returns true if the front faces the viewer: counter-clockwise on the screen.
   bool faces_viewer() const { return front_; }
-  double nearest() const { return nearest_; }    ///< least depth of its corners [m]
-  double farthest() const { return farthest_; }  ///< greatest depth of its corners [m]
+  double nearest() const { return nearest_; }    ///< minimum depth of its corners [m]
+  double farthest() const { return farthest_; }  ///< maximum depth of its corners [m]
   bool empty() const { return corners_.empty(); }
 
  private:

@@ -12,7 +12,7 @@
 namespace clpv::reference {
 namespace {
 
-/// Depth at which a pixel's ray meets the plane through `point`; infinite where the ray runs away from it.
+/// Depth at which a pixel's ray meets the plane through `point`; infinite if it does not approach the plane.
 double plane_depth(const ClpvView& view, const glm::dvec2& pixel, const glm::dvec3& point,
                    const glm::dvec3& normal) {
   const glm::dvec3 at0 = surface_position(view, pixel.x, pixel.y, 0);
@@ -26,8 +26,8 @@ double tap_weight(double distance) {
   return std::clamp(CLPV_SHADOW_TAPS / 2 - std::abs(distance), 0.0, 1.0);
 }
 
-/// The map, of those of one light, that looks most along `offset`.
-const ShadowMap& facing(const std::vector<ShadowMap>& maps, const glm::dvec3& offset) {
+/// The shadow map of a light whose axis is closest to `offset`.
+const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset) {
   const auto along = [&](const ShadowMap& map) { return glm::dot(offset, vector(map.view.forward)); };
   return *std::max_element(maps.begin(), maps.end(),
                            [&](const ShadowMap& a, const ShadowMap& b) { return along(a) < along(b); });
@@ -36,25 +36,26 @@ const ShadowMap& facing(const std::vector<ShadowMap>& maps, const glm::dvec3& of
 }  // namespace
 
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal, double cosine) {
-  const Projected at = project(map.view, position);
+  const ProjectedPoint at = project(map.view, position);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   const double lift =
       pixel_edge(map.view, at.depth) * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
   const glm::dvec3 lifted = position + lift * normal;
-  const double own = plane_depth(map.view, at.pixel, lifted, normal);
-  double blocked = 0, whole = 0;
+  const double receiver = plane_depth(map.view, at.pixel, lifted, normal);
+  double blocked = 0, total = 0;
   for (unsigned y = 0; y < map.view.height; ++y) {
     const double wy = tap_weight(y - at.pixel.y);
     for (unsigned x = 0; wy > 0 && x < map.view.width; ++x) {
       const double weight = wy * tap_weight(x - at.pixel.x);
       if (weight <= 0) continue;
       const double depth = map.depth[static_cast<std::size_t>(y) * map.view.width + x];
-      const bool blocks = depth > 0 && depth < own && depth < plane_depth(map.view, {x, y}, lifted, normal);
-      whole += weight;
+      const bool blocks =
+          depth > 0 && depth < receiver && depth < plane_depth(map.view, {x, y}, lifted, normal);
+      total += weight;
       blocked += blocks ? weight : 0;
     }
   }
-  return whole > 0 ? 1 - blocked / whole : 1;
+  return total > 0 ? 1 - blocked / total : 1;
 }
 
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position, const glm::dvec3& normal) {
@@ -62,7 +63,7 @@ glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& positio
   const double cosine = glm::dot(normal, incident.towards);
   if (cosine <= 0) return glm::dvec3(0);
   if (light.maps.empty()) return cosine * incident.irradiance;
-  const ShadowMap& map = facing(light.maps, position - vector(light.maps.front().view.eye));
+  const ShadowMap& map = map_towards(light.maps, position - vector(light.maps.front().view.eye));
   return cosine * visibility(map, position, normal, cosine) * incident.irradiance;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `shade` in double: the CPU reference of kernels/shade.cl.
+// CPU reference of stage `shade` (kernels/shade.cl): shadowed direct light and the final image, in double (docs/method.md,
+// 'Shading').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,29 +12,30 @@
 
 namespace clpv::reference {
 
-/// Depths [m] along the view's forward axis, row 0 first; 0: nothing there.
+/// Depths [m] along the view's forward axis, row 0 first; 0: no surface.
 struct ShadowMap {
   ClpvView view{};
   std::vector<float> depth;
 };
 
-/// A light and its maps, as ShadowedLight.
+/// A light and its shadow maps; the counterpart of ShadowedLight.
 struct MappedLight {
   ClpvLight light{};
   std::vector<ShadowMap> maps;
 };
 
-/// Share of the light, 0..1, that reaches a surface at `position` [m] with unit `normal` turned to the light; `cosine`
-/// between normal and the way to the light.
+/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] with unit `normal` on the lit side.
+/// `cosine`: cosine between the normal and the direction to the light.
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal, double cosine);
 
-/// What the light puts on that surface [W/m^2].
+/// Returns the irradiance of a light on that surface [W/m^2].
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position, const glm::dvec3& normal);
 
-/// The same of all lights for every pixel of what a camera sees; 0 where there is no surface.
+/// Returns the irradiance of all lights for every pixel of a G-buffer; 0 for pixels without a surface.
 std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights, const SurfaceImage& camera);
 
-/// RGBA of every pixel, from the two irradiances [W/m^2]. Without emissive in `camera` nothing emits.
+/// Returns RGBA of every pixel: albedo / pi (direct + indirect) + emission, or the part that `show` selects. `direct` and
+/// `indirect` are irradiances [W/m^2]. Without `camera.emissive`, emission is 0.
 std::vector<glm::dvec4> shade(Show show, const SurfaceImage& camera, const std::vector<glm::dvec3>& direct,
                               const std::vector<glm::dvec3>& indirect);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// D = I + sum_k t_k T_k D_k from upstream to downstream, for each direction; L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).
 #include "reference/sweep.hpp"
 
 #include <algorithm>
@@ -14,43 +15,48 @@
 namespace clpv::reference {
 namespace {
 
-/// D of every direction in every cell, one volume of 3 channels a direction: [bin * parts^2 + part].
+/// D of every direction: one volume of 3 channels per direction, [bin * parts^2 + part].
 using Fields = std::vector<Volume>;
 
-/// What a cascade's border knows of the coarser one.
-struct Beyond {
-  const SweptCascade* cascade = nullptr;  ///< null: there is none
+/// Boundary condition of a cascade: light of the coarser cascade, or of the sky.
+struct BoundaryCondition {
+  const SweptCascade* cascade = nullptr;  ///< coarser cascade; null: none
   const Fields* fields = nullptr;
   const std::vector<SweepBin>* bins = nullptr;
-  std::vector<glm::dvec3> sky =
-      {};  ///< radiance of each direction, where no cascade is; none: nothing comes in
+  std::vector<glm::dvec3> sky = {};  ///< radiance of each direction without a coarser cascade; empty: dark
 };
 
+/// Sweep of one cascade.
 class Sweep {
  public:
-  Sweep(const Basis& basis, const Transport& transport, const SweptCascade& cascade, const Beyond& beyond)
-      : cascade_(cascade), beyond_(beyond), n_(cascade.grid.n), sources_(in_bins(basis, *cascade.injected)) {
-    let_through(std::get<std::vector<SweepLink>>(transport.scheme));
+  Sweep(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
+        const BoundaryCondition& boundary)
+      : cascade_(cascade),
+        boundary_(boundary),
+        n_(cascade.grid.n),
+        sources_(in_bins(basis, *cascade.injected)) {
+    set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
-  Volume direction(int bin, const SweepBin& of, int part) const {
-    const SweepDirection& d = of.directions[part];
+  /// D of one direction.
+  Volume direction(int bin, const SweepBin& sweep_bin, int part) const {
+    const SweepDirection& d = sweep_bin.directions[part];
     Volume field(n_, 1, 3);
     for_each_cell(n_, [&](const glm::ivec3& along) {
-      glm::ivec3 p;  // upstream ones first
-      const std::array<int, 3> order = {of.axis, of.v, of.u};
+      glm::ivec3 p;  // in order from upstream to downstream
+      const std::array<int, 3> order = {sweep_bin.axis, sweep_bin.v, sweep_bin.u};
       for (int i = 0; i < 3; ++i) {
         const int axis = order[i], step = along[2 - i];
-        p[axis] = of.sign[axis] > 0 ? step : n_ - 1 - step;
+        p[axis] = sweep_bin.sign[axis] > 0 ? step : n_ - 1 - step;
       }
       for (int channel = 0; channel < 3; ++channel) {
         double value = sources_.value(channel, bin, p.x, p.y, p.z);
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
-          const glm::ivec3 q = p - of.offset[k];
-          const double open = open_[link_of(of.offset[k])].value(0, 0, p.x, p.y, p.z);
-          const double carried = field.inside(q.x, q.y, q.z) ? field.value(channel, 0, q.x, q.y, q.z)
-                                                             : inflow(channel, bin, part, d, q);
-          value += d.taps[k] * open * carried;
+          const glm::ivec3 q = p - sweep_bin.offset[k];
+          const double transmitted = transmittance_[link_of(sweep_bin.offset[k])].value(0, 0, p.x, p.y, p.z);
+          const double upstream = field.inside(q.x, q.y, q.z) ? field.value(channel, 0, q.x, q.y, q.z)
+                                                              : inflow(channel, bin, part, d, q);
+          value += d.taps[k] * transmitted * upstream;
         }
         field.at(channel, 0, p.x, p.y, p.z) = value;
       }
@@ -63,51 +69,53 @@ class Sweep {
     return offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1);
   }
 
-  void let_through(const std::vector<SweepLink>& links) {
-    open_.assign(27, Volume(n_, 1, 1));
+  void set_transmittances(const std::vector<SweepLink>& links) {
+    transmittance_.assign(27, Volume(n_, 1, 1));
     for (const SweepLink& link : links) {
-      Volume& open = open_[link_of(link.offset)];
+      Volume& transmittances = transmittance_[link_of(link.offset)];
       for_each_cell(n_, [&](const glm::ivec3& p) {
-        open.at(0, 0, p.x, p.y, p.z) =
-            cascade_.geometry == nullptr ? 1
-                                         : transmitted(*cascade_.geometry, p, -link.offset, link.blocked_by);
+        transmittances.at(0, 0, p.x, p.y, p.z) =
+            cascade_.geometry == nullptr
+                ? 1
+                : transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
       });
     }
   }
 
-  /// Light of the coarser cascade at a cell outside this grid: the same radiance, D = L s^2 w_m.
+  /// Boundary condition at a cell outside this grid: equal radiance on both sides, D = L s^2 |w_m|.
   double inflow(int channel, int bin, int part, const SweepDirection& d, const glm::ivec3& cell) const {
-    if (beyond_.cascade == nullptr) {
-      if (beyond_.sky.empty()) return 0;
+    if (boundary_.cascade == nullptr) {
+      if (boundary_.sky.empty()) return 0;
       const double edge = double{cascade_.grid.cell};
-      return beyond_.sky[bin * cascade_.parts * cascade_.parts + part][channel] * edge * edge * d.flux;
+      return boundary_.sky[bin * cascade_.parts * cascade_.parts + part][channel] * edge * edge * d.flux;
     }
-    const ClpvGrid &fine = cascade_.grid, &coarse = beyond_.cascade->grid;
-    const int parts = beyond_.cascade->parts, from = coarser_part(part, cascade_.parts, parts);
-    const SweepBin& of = (*beyond_.bins)[bin];
+    const ClpvGrid &fine = cascade_.grid, &coarse = boundary_.cascade->grid;
+    const int parts = boundary_.cascade->parts, from = coarser_part(part, cascade_.parts, parts);
+    const SweepBin& sweep_bin = (*boundary_.bins)[bin];
     const double edge = double{fine.cell} / coarse.cell;
-    return edge * edge * d.flux / of.directions[from].flux *
-           sampled((*beyond_.fields)[bin * parts * parts + from], channel, place_in(coarse, fine, cell))[0];
+    return edge * edge * d.flux / sweep_bin.directions[from].flux *
+           trilinear((*boundary_.fields)[bin * parts * parts + from], channel,
+                     position_in(coarse, fine, cell))[0];
   }
 
   SweptCascade cascade_;
-  Beyond beyond_;
+  BoundaryCondition boundary_;
   int n_;
   Volume sources_;
-  std::vector<Volume> open_;  ///< of each offset, link_of()
+  std::vector<Volume> transmittance_;  ///< by link_of()
 };
 
-/// Fluence of each bin's directions, as radiance times s^2.
-Volume collect(const std::vector<SweepBin>& bins, const Fields& fields) {
+/// Mean light of each bin, as radiance times s^2.
+Volume collect_bins(const std::vector<SweepBin>& bins, const Fields& fields) {
   const int n = fields.front().n;
   Volume sums(n, kSweepBins, 3);
   for (int bin = 0; bin < kSweepBins; ++bin) {
-    const SweepBin& of = bins[bin];
-    const std::size_t parts = of.directions.size();
+    const SweepBin& sweep_bin = bins[bin];
+    const std::size_t parts = sweep_bin.directions.size();
     for (std::size_t part = 0; part < parts; ++part) {
-      const SweepDirection& d = of.directions[part];
+      const SweepDirection& d = sweep_bin.directions[part];
       const Volume& field = fields[static_cast<std::size_t>(bin) * parts + part];
-      const double share = d.solid_angle / (d.flux * of.solid_angle);
+      const double share = d.solid_angle / (d.flux * sweep_bin.solid_angle);
       for (int channel = 0; channel < 3; ++channel) {
         const std::size_t cells = field.values.size() / 3, from = field.index(channel, 0, 0, 0, 0),
                           to = sums.index(channel, bin, 0, 0, 0);
@@ -120,19 +128,19 @@ Volume collect(const std::vector<SweepBin>& bins, const Fields& fields) {
 
 }  // namespace
 
-glm::dvec3 place_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell) {
+glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell) {
   const glm::dvec3 centre = vector(fine.origin) + double{fine.cell} * (glm::dvec3(cell) + 0.5);
   return (centre - vector(coarse.origin)) / double{coarse.cell} - 0.5;
 }
 
-std::vector<double> sampled(const Volume& volume, int channel, const glm::dvec3& at) {
+std::vector<double> trilinear(const Volume& volume, int channel, const glm::dvec3& at) {
   const glm::dvec3 low = glm::floor(at), t = at - low;
   std::vector<double> sum(volume.coefficients, 0.0);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2);
     const glm::dvec3 weights = glm::mix(1.0 - t, t, glm::dvec3(up));
-    const std::vector<double> there = volume.cell(channel, glm::ivec3(low) + up);
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weights.x * weights.y * weights.z * there[i];
+    const std::vector<double> c = volume.cell(channel, glm::ivec3(low) + up);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weights.x * weights.y * weights.z * c[i];
   }
   return sum;
 }
@@ -152,39 +160,39 @@ std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
   std::vector<Volume> results(cascades.size());
   Fields coarser;
   std::vector<SweepBin> coarser_bins;
-  Beyond beyond;
-  if (sky != nullptr) beyond.sky = sky_means(*sky, cascades.back().parts);
+  BoundaryCondition boundary;
+  if (sky != nullptr) boundary.sky = sky_means(*sky, cascades.back().parts);
   for (std::size_t c = cascades.size(); c-- > 0;) {
     std::vector<SweepBin> bins = sweep_bins(cascades[c].parts);
-    const Sweep sweep(basis, transport, cascades[c], beyond);
+    const Sweep sweep(basis, transport, cascades[c], boundary);
     Fields fields;
     for (int bin = 0; bin < kSweepBins; ++bin) {
       for (int part = 0; part < cascades[c].parts * cascades[c].parts; ++part)
         fields.push_back(sweep.direction(bin, bins[bin], part));
     }
-    results[c] = collect(bins, fields);
+    results[c] = collect_bins(bins, fields);
     coarser = std::move(fields);
     coarser_bins = std::move(bins);
-    beyond = {&cascades[c], &coarser, &coarser_bins};
+    boundary = {&cascades[c], &coarser, &coarser_bins};
   }
   return results;
 }
 
-Volume kept_of(const Volume& swept) {
+Volume project_bins(const Volume& swept) {
   const Matrix projection = swept_projection();
-  Volume kept(swept.n, projection.rows(), 3);
+  Volume result(swept.n, projection.rows(), 3);
   const std::size_t cells = swept.values.size() / (3 * kSweepBins);
   for (int channel = 0; channel < 3; ++channel) {
     for (int j = 0; j < projection.rows(); ++j) {
-      const std::size_t to = kept.index(channel, j, 0, 0, 0);
+      const std::size_t to = result.index(channel, j, 0, 0, 0);
       for (int bin = 0; bin < kSweepBins; ++bin) {
         const std::size_t from = swept.index(channel, bin, 0, 0, 0);
         for (std::size_t i = 0; i < cells; ++i)
-          kept.values[to + i] += projection(j, bin) * swept.values[from + i];
+          result.values[to + i] += projection(j, bin) * swept.values[from + i];
       }
     }
   }
-  return kept;
+  return result;
 }
 
 }  // namespace clpv::reference

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `sweep` in double: the CPU reference of kernels/sweep.cl and of the kernels round it (docs/method.md, 'The sweep').
+// CPU reference of the sweep (kernels/sweep*.cl), in double: discrete ordinates with short characteristics (docs/method.md,
+// 'The sweep').
 #pragma once
 
 #include <vector>
@@ -12,28 +13,28 @@
 
 namespace clpv::reference {
 
-/// What one cascade's sweep starts from.
+/// Input of one cascade's sweep.
 struct SweptCascade {
   ClpvGrid grid{};
-  const Volume* injected = nullptr;  ///< of the basis [W/sr]
-  const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
-  int parts = 1;                     ///< of its bins (sweep_bins)
+  const Volume* injected = nullptr;  ///< n^3 cells, coefficients in the basis [W/sr]
+  const Volume* geometry = nullptr;  ///< blockers at the cells' corners; null: no blockers
+  int parts = 1;                     ///< subdivision of its bins (sweep_bins)
 };
 
-/// Injected light [W/sr] as its means over bins.
+/// Returns injected light [W/sr] as means over the bins of bins24.
 Volume in_bins(const Basis& basis, const Volume& injected);
 
-/// The centre of a finer grid's cell, in a coarser grid's cells from the centre of its first one.
-glm::dvec3 place_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell);
-/// All coefficients of a channel there, trilinear between cells' centres, zero beyond them.
-std::vector<double> sampled(const Volume& volume, int channel, const glm::dvec3& at);
+/// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of its first cell.
+glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell);
+/// Returns all coefficients of a channel at such a position, interpolated trilinearly between cell centres; 0 outside.
+std::vector<double> trilinear(const Volume& volume, int channel, const glm::dvec3& at);
 
-/// Light of `bins24`, radiance times s^2, of every cascade: finest first, as `cascades` are. `transport`: TransportKind::sweep.
-/// `sky`: shines into the coarsest; null: none.
+/// Returns the swept light of every cascade in bins24, as radiance times s^2. `cascades`: finest first. `transport`:
+/// TransportKind::sweep. `sky`: boundary condition of the coarsest cascade; null: dark border.
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
                           const std::vector<SweptCascade>& cascades, const Sky* sky = nullptr);
 
-/// What is kept of it: light of swept_basis().
-Volume kept_of(const Volume& swept);
+/// Projects swept light on swept_basis().
+Volume project_bins(const Volume& swept);
 
 }  // namespace clpv::reference

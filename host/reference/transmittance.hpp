@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CPU reference of kernels/transmittance.cl: what blockers let through on one link into a cell (docs/method.md, 'Propagation').
+// CPU reference of kernels/transmittance.cl: transmittance of a link into a cell, T = 1 - clamp(B, 0, 1) (docs/method.md,
+// 'Blockers').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,9 +10,9 @@
 
 namespace clpv::reference {
 
-/// 1 - B in [0, 1], B the mean blocker over those corners of `cell` that lie towards `side` (components -1, 0, 1), by
-/// `weights` of its numbers: a Face's or Neighbour's blocked_by. `geometry`: (n+1)^3 corners, one channel.
-double transmitted(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
-                   const std::vector<double>& weights);
+/// Returns T in [0, 1]. B = weights . mean of the blockers over the corners of `cell` on `side` (components -1, 0, 1).
+/// `weights`: blocked_by of a Face or SweepLink. `geometry`: (n+1)^3 corners, one channel.
+double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
+                     const std::vector<double>& weights);
 
 }  // namespace clpv::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A triangle's values between its vertices, on the host.
+// Interpolation of vertex attributes on triangles, and constants of sampling them.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace clpv::reference {
 
-inline constexpr int kSamples = 8;          // of a cell's face along each axis, where triangles are sampled
-inline constexpr double kSeam = 1.0 / 256;  // [samples] outside an edge that still count
-/// Alpha within this of the cut-off is undecided: a texture's step between texels magnifies a sample's rounding.
-inline constexpr double kAlphaHair = 0.03;
+inline constexpr int kSamples = 8;          // per cell face along each axis
+inline constexpr double kSeam = 1.0 / 256;  // [samples]: points this far outside an edge count as inside
+/// Alpha closer than this to the cutoff is uncertain: texture gradients amplify rounding errors of the sample's position.
+inline constexpr double kAlphaTolerance = 0.03;
 
 inline glm::vec3 position(const Vertex& v) {
   return {v.position[0], v.position[1], v.position[2]};
@@ -28,7 +28,7 @@ inline glm::vec4 colour(const Vertex& v) {
   return {v.colour[0], v.colour[1], v.colour[2], v.colour[3]};
 }
 
-/// get(vertex) between the vertices; `weights` of the second and the third.
+/// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex.
 template <typename Get>
 auto interpolate(const Scene& scene, const Triangle& triangle, const glm::vec2& weights, Get get) {
   return (1 - weights.x - weights.y) * get(scene.vertices[triangle.vertex[0]]) +

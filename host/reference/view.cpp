@@ -12,7 +12,7 @@ glm::dvec3 surface_position(const ClpvView& view, double px, double py, double d
   return vector(view.eye) + depth * vector(view.forward) + sx * vector(view.right) + sy * vector(view.up);
 }
 
-Projected project(const ClpvView& view, const glm::dvec3& point) {
+ProjectedPoint project(const ClpvView& view, const glm::dvec3& point) {
   const glm::dvec3 offset = point - vector(view.eye);
   const double depth = glm::dot(offset, vector(view.forward));
   const double scale = view.orthographic != 0 ? 1.0 : depth;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `see` in double: the CPU reference of kernels/visibility.cl.
+// CPU reference of stage `visibility` (kernels/visibility.cl): cells occluded from points between them, in double
+// (docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,14 @@
 
 namespace clpv::reference {
 
-/// A byte a point and a bit a corner, as CellVisibility keeps them. Where a way ends within a hair's breadth of a triangle, or
-/// passes its edge so, rounding decides: `least` has none of those bits, `most` has all.
-struct Hidden {
-  std::vector<std::uint8_t> least, most;
+/// Bounds on the bits of CellVisibility: one byte per point, one bit per cell of its cube, set if a triangle crosses the segment
+/// between them. Rounding decides where a segment ends very close to a triangle or passes very close to its edge: `lower`
+/// excludes those bits, `upper` includes them.
+struct Occlusion {
+  std::vector<std::uint8_t> lower, upper;
 };
 
-Hidden see(const Scene& scene, const ClpvGrid& grid);
+/// Returns the bounds for all cubes of the grid: [cube z][y][x][point], 64 points per cube.
+Occlusion occlude(const Scene& scene, const ClpvGrid& grid);
 
 }  // namespace clpv::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A volume in double on the host, for the CPU references.
+// Volume of coefficients on the host, in double.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace clpv::reference {
 
-/// Values [channel][coefficient][z][y][x]; a sample outside reads as 0 through value().
+/// n^3 samples: values[channel][coefficient][z][y][x]. value() returns 0 outside the grid.
 struct Volume {
   int n = 0, coefficients = 0, channels = 3;
   std::vector<double> values;
@@ -29,7 +29,7 @@ struct Volume {
   double value(int channel, int i, int x, int y, int z) const {
     return inside(x, y, z) ? values[index(channel, i, x, y, z)] : 0.0;
   }
-  /// All coefficients of a channel at a sample.
+  /// Returns all coefficients of a channel at a sample.
   std::vector<double> cell(int channel, const glm::ivec3& p) const {
     std::vector<double> c(coefficients);
     for (int i = 0; i < coefficients; ++i) c[i] = value(channel, i, p.x, p.y, p.z);
@@ -40,7 +40,7 @@ struct Volume {
   }
 };
 
-/// visit(cell) for each of n^3 cells, x fastest.
+/// Calls visit(cell) for each of n^3 cells, x fastest.
 template <typename Visit>
 void for_each_cell(int n, Visit visit) {
   for (int z = 0; z < n; ++z) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much a scene may ask for. Scenes are untrusted: each bound is checked before anything of that size is
-// allocated.
+// Bounds of scenes. Scenes are untrusted: every bound is checked before memory of that size is allocated.
 #pragma once
 
 #include <cstddef>
@@ -10,49 +9,48 @@
 
 namespace clpv::bounds {
 
-// Bytes. All buffers of a model together, and one image file; a .glb holds both kinds and the JSON.
+// Bytes of all buffers of a model, of one image file, and of a .glb file, which has both and JSON.
 inline constexpr std::uint64_t kBufferBytes = 2ull << 30;
 inline constexpr std::uint64_t kImageFileBytes = 256ull << 20;
 inline constexpr std::uint64_t kGlbBytes = kBufferBytes + kJsonBytes;
 
-// Decoded images. 16384 is the largest texture side common devices take; 1 GiB of texels is 64 of 2048 x
-// 2048.
+// Decoded images. Common devices support textures of up to 16384 x 16384; 1 GiB is 64 textures of 2048 x 2048.
 inline constexpr std::uint32_t kImageSide = 16384;
 inline constexpr std::uint64_t kTexelBytes = 1ull << 30;
 inline constexpr std::size_t kTextures = 4096;
 
-// A sky's map, 12 bytes a texel, and its radiance [W/m^2/sr]: the sun's own is 2e7 as radiance, 1.6e9 as luminance.
+// Map of a sky, 12 bytes per texel, and its radiance [W/m^2/sr]. The sun has a radiance of 2e7 and a luminance of 1.6e9.
 inline constexpr int kSkyWidth = 8192, kSkyHeight = 4096, kSkyChannels = 16;
 inline constexpr double kSkyRadiance = 1e10;
 
-// Entries of any one array of the JSON (nodes, meshes, accessors, ...), materials, and depth of the node tree. A
-// material takes tinygltf some 3 kB.
+// Entries of a JSON array (nodes, meshes, accessors, ...), materials (about 3 kB each in tinygltf), and depth of the node
+// tree.
 inline constexpr std::size_t kListEntries = 1u << 18;
 inline constexpr std::size_t kMaterials = 1u << 14;
 inline constexpr int kNodeDepth = 1024;
 
-// Geometry after instancing: 16 Mi vertices of 48 bytes are 768 MiB, 16 Mi triangles of 16 bytes are 256 MiB.
-// And all replaced elements of sparse accessors, several of which may share one view.
+// Geometry after instancing: 768 MiB of vertices (48 bytes each), 256 MiB of triangles (16 bytes each). Replaced elements of
+// all sparse accessors, several of which may share a view.
 inline constexpr std::uint64_t kVertices = 16ull << 20;
 inline constexpr std::uint64_t kTriangles = 16ull << 20;
 inline constexpr std::uint64_t kSparseElements = 64ull << 20;
 
-// Animation: times and values of all curves of a model, 8 bytes each, and keys of one thing in a scene file. Times [s]: a
-// day is 1e5.
+// Animation: times and values of all curves of a model (8 bytes each), keys of one camera or light in a scene file, and
+// times [s].
 inline constexpr std::uint64_t kKeyNumbers = 16ull << 20;
-inline constexpr std::uint64_t kMorphNumbers = 64ull << 20;  // of morph targets, 4 bytes each
-inline constexpr std::size_t kJoints = 1u << 16;             // of all skins
+inline constexpr std::uint64_t kMorphNumbers = 64ull << 20;  // in all morph targets, 4 bytes each
+inline constexpr std::size_t kJoints = 1u << 16;             // in all skins
 inline constexpr std::size_t kSceneKeys = 1u << 16;
 inline constexpr double kSeconds = 1e6;
 
-// Each light costs its own RSMs and shadow map.
+// Every light has RSMs and a shadow map.
 inline constexpr std::size_t kLights = 64;
 inline constexpr std::size_t kCameras = 1024;
 
-// Coordinates [m]: at 1e7 a float resolves 1 m, far too little to light anything.
+// Coordinates [m]. At 1e7 m the resolution of a float is 1 m.
 inline constexpr double kCoordinate = 1e7;
 
-// Notes to the user kept word for word; the rest are counted.
+// Notes to the user that are stored; further ones are counted.
 inline constexpr std::size_t kNotes = 32;
 
 }  // namespace clpv::bounds

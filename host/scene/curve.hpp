@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A quantity that changes with time by going through keys. In double; what is shown rounds last.
+// Keyframe curves: quantities that change with time (glTF 2.0, appendix C), in double.
 #pragma once
 
 #include <cstddef>
@@ -12,38 +12,37 @@
 
 namespace clpv {
 
-/// How a curve goes from key to key. The names are glTF's.
+/// Interpolation between keys, with glTF's names.
 enum class Interpolation : unsigned {
-  linear,        ///< evenly; rotations and directions along the shorter great circle
-  step,          ///< not at all, until the next key
-  cubic_spline,  ///< Hermite's cubic, by the value and the tangents of each key
+  linear,        ///< linear; rotations and directions spherically, along the shorter great circle
+  step,          ///< constant until the next key
+  cubic_spline,  ///< cubic Hermite spline by values and tangents
 };
 
 template <>
 inline constexpr auto kNames<Interpolation> = name_list("LINEAR", "STEP", "CUBICSPLINE");
 
-/// Before the first key and after the last one it stands still.
+/// A curve is constant before its first key and after its last.
 struct Curve {
   Interpolation interpolation = Interpolation::linear;
   std::size_t components = 1;
   std::vector<double> times;  ///< [s], at least one, strictly rising
-  /// `components` numbers a key; of a cubic spline three times as many: the tangent it is reached with, its value, the
-  /// tangent it is left with, both tangents a second (glTF 2.0, appendix C.5).
+  /// `components` numbers per key. A cubic spline has three times as many: in-tangent [1/s], value, out-tangent [1/s]
+  /// (glTF 2.0, appendix C.5).
   std::vector<double> values;
 };
 
-/// Each component by itself, into `out`, which has as many.
+/// Evaluates each component independently into `out`, of size `components`.
 void evaluate(const Curve& curve, double seconds, std::span<double> out);
 
-/// Of three components.
+/// Evaluates a curve of three components.
 glm::dvec3 vector_at(const Curve& curve, double seconds);
 
-/// Of three components that are a unit vector at each key, no two neighbours opposite each other: a unit vector, along the
-/// great circle between them. Not for cubic splines.
+/// Evaluates a curve of unit vectors by spherical interpolation. Adjacent keys must not be opposite. Not for cubic splines.
 glm::dvec3 direction_at(const Curve& curve, double seconds);
 
-/// Of four components x, y, z, w, unit quaternions at each key: their spherical interpolation by the shorter way. A cubic
-/// spline's is made unit; of length 0 where it passes through no rotation.
+/// Evaluates a curve of unit quaternions x, y, z, w by spherical interpolation along the shorter arc. Cubic splines are
+/// normalised, unless their length is 0.
 glm::dquat rotation_at(const Curve& curve, double seconds);
 
 }  // namespace clpv

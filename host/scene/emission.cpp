@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Divides emissive triangles into parts with points.
 #include "scene/emission.hpp"
 
 #include <algorithm>
@@ -11,17 +12,17 @@
 namespace clpv {
 namespace {
 
-constexpr int kMostDoublings = 24;  // of the distance between points: by then a part has one
+constexpr int kMaxDoublings = 24;  // of the points' distance; each part then has one point
 
 double brightest(const Material& material) {
   return std::max({material.emissive[0], material.emissive[1], material.emissive[2], 0.0f});
 }
 
-/// Cuts triangles into parts of the size that suits where they are.
+/// Divides triangles into parts by the grids that they reach.
 class Planner {
  public:
-  Planner(const std::vector<ClpvGrid>& grids, double spacing, std::uint32_t most)
-      : grids_(grids), spacing_(spacing), most_(most) {}
+  Planner(const std::vector<ClpvGrid>& grids, double spacing, std::uint32_t max_parts)
+      : grids_(grids), spacing_(spacing), max_parts_(max_parts) {}
 
   void add(const Scene& scene, std::uint32_t triangle) {
     triangle_ = triangle;
@@ -29,16 +30,16 @@ class Planner {
     corners_ = corners_of(scene, scene.triangles[triangle]);
     const auto [a, b, c] = corners_;
     longest_ = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
-    if (longest_ > 0) add_part(0, 0, 1);
+    if (longest_ > 0) add_range(0, 0, 1);
   }
 
   std::uint64_t points() const { return points_; }
   std::vector<ClpvEmitter> take() { return std::move(parts_); }
 
  private:
-  /// The finest grid that light of a box may go into: it starts half a cell off its surface. Null: none.
+  /// The finest grid that light from a box can enter, as light starts half a cell off its surface; null if there is none.
   const ClpvGrid* reached(const glm::dvec3& lower, const glm::dvec3& upper) const {
-    const auto meets = [&](const ClpvGrid& grid) {
+    const auto overlaps = [&](const ClpvGrid& grid) {
       const double cell = double{grid.cell}, edge = grid.n * cell;
       for (int axis = 0; axis < 3; ++axis) {
         const double first = double{grid.origin[axis]};
@@ -46,11 +47,12 @@ class Planner {
       }
       return true;
     };
-    const auto found = std::ranges::find_if(grids_, meets);
-    return found == grids_.end() ? nullptr : &*found;
+    const auto finest = std::ranges::find_if(grids_, overlaps);
+    return finest == grids_.end() ? nullptr : &*finest;
   }
 
-  void add_part(double u, double v, double size) {
+  /// Adds the part with corner (u, v) and edge `size`, in barycentric coordinates, or the four halves of a large one.
+  void add_range(double u, double v, double size) {
     const auto at = [&](double s, double t) {
       const double w1 = u + size * s, w2 = v + size * t;
       return corners_[0] + w1 * (corners_[1] - corners_[0]) + w2 * (corners_[2] - corners_[0]);
@@ -61,17 +63,18 @@ class Planner {
     const double cell = double{grid->cell}, edge = longest_ * std::abs(size);
     if (edge > grid->n * cell) {
       const double half = size / 2;
-      add_part(u, v, half);
-      add_part(u + half, v, half);
-      add_part(u, v + half, half);
-      add_part(u + half, v + half, -half);
+      add_range(u, v, half);
+      add_range(u + half, v, half);
+      add_range(u, v + half, half);
+      add_range(u + half, v + half, -half);
       return;
     }
     const auto rows = static_cast<std::uint32_t>(std::max(1.0, std::ceil(edge / (spacing_ * cell))));
     for (int side = 0; side < sides_; ++side) {
-      if (parts_.size() == most_) {
+      if (parts_.size() == max_parts_) {
         throw Error(ExitCode::run_time,
-                    "emissive triangles: more than {} parts in the cascades; allowed are as many", most_);
+                    "emissive triangles: found over {} parts in the cascades; allowed: up to {}", max_parts_,
+                    max_parts_);
       }
       parts_.push_back({triangle_, static_cast<float>(u), static_cast<float>(v), static_cast<float>(size),
                         rows, static_cast<std::uint32_t>(points_), side == 0 ? 1.0f : -1.0f, 0});
@@ -81,14 +84,14 @@ class Planner {
 
   const std::vector<ClpvGrid>& grids_;
   double spacing_;  // [cells]
-  std::uint32_t most_;
+  std::uint32_t max_parts_;
   std::vector<ClpvEmitter> parts_;
   std::uint64_t points_ = 0;
-  // of the triangle at hand
+  // The current triangle.
   std::uint32_t triangle_ = 0;
   int sides_ = 1;
   std::array<glm::dvec3, 3> corners_;
-  double longest_ = 0;  // [m], of its edges
+  double longest_ = 0;  // edge [m]
 };
 
 }  // namespace
@@ -111,11 +114,11 @@ bool emits(const Material& material) {
 }
 
 std::vector<std::uint32_t> emissive_triangles(const Scene& scene) {
-  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-    if (emits(scene.materials[scene.triangles[i].material])) found.push_back(i);
+    if (emits(scene.materials[scene.triangles[i].material])) triangles.push_back(i);
   }
-  return found;
+  return triangles;
 }
 
 bool emits(const Scene& scene) {
@@ -123,25 +126,25 @@ bool emits(const Scene& scene) {
       scene.triangles, [&](const Triangle& triangle) { return emits(scene.materials[triangle.material]); });
 }
 
-double most_emitted(const Scene& scene, const std::vector<std::uint32_t>& triangles, double cell) {
-  double all = 0, one = 0;
+double max_emitted_flux(const Scene& scene, const std::vector<std::uint32_t>& triangles, double cell) {
+  double total = 0, brightest_cell = 0;
   for (const std::uint32_t i : triangles) {
     const Triangle& triangle = scene.triangles[i];
     const Material& material = scene.materials[triangle.material];
     const double exitance = std::numbers::pi * brightest(material) * (double_sided(material) ? 2 : 1);
     const auto [a, b, c] = corners_of(scene, triangle);
-    all += exitance * glm::length(glm::cross(b - a, c - a)) / 2;
-    one = std::max(one, exitance * cell * cell);
+    total += exitance * glm::length(glm::cross(b - a, c - a)) / 2;
+    brightest_cell = std::max(brightest_cell, exitance * cell * cell);
   }
-  return std::min(all, one);
+  return std::min(total, brightest_cell);
 }
 
 EmissionPlan plan_emission(const Scene& scene, const std::vector<std::uint32_t>& triangles,
-                           const std::vector<ClpvGrid>& grids, std::uint32_t most) {
+                           const std::vector<ClpvGrid>& grids, std::uint32_t max_count) {
   for (int coarsened = 0;; ++coarsened) {
-    Planner planner(grids, std::ldexp(1.0 / kEmittedPointsPerCell, coarsened), most);
+    Planner planner(grids, std::ldexp(1.0 / kEmittedPointsPerCell, coarsened), max_count);
     for (const std::uint32_t triangle : triangles) planner.add(scene, triangle);
-    if (planner.points() <= most || coarsened == kMostDoublings)
+    if (planner.points() <= max_count || coarsened == kMaxDoublings)
       return {planner.take(), static_cast<std::uint32_t>(planner.points()), coarsened};
   }
 }

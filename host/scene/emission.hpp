@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which surfaces of a scene glow, and where on them points are put that light is sent from (kernels/emit.cl). Knows no OpenCL.
+// Emissive triangles of a scene, and the points on them that kernels/emit.cl injects. Does not depend on OpenCL.
 #pragma once
 
 #include <array>
@@ -15,40 +15,40 @@ namespace clpv {
 
 static_assert(sizeof(ClpvEmitter) == CLPV_SIZEOF_EMITTER);
 
-/// Whether a material gives light of its own: its front, and its back where it is double sided.
+/// Returns true for an emissive material. Its front emits, and also its back if it is double sided.
 bool emits(const Material& material);
 
-/// Whether both sides do, where one does.
+/// Returns true for a double-sided material.
 bool double_sided(const Material& material);
 
+/// Corners of a triangle [m].
 std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangle);
 
-/// The triangles of such materials.
+/// Indices of the triangles with emissive materials.
 std::vector<std::uint32_t> emissive_triangles(const Scene& scene);
 
-/// Whether there is one.
+/// Returns true if a triangle of the scene emits.
 bool emits(const Scene& scene);
 
-/// Most that all of it sends through a cell of edge `cell` [m], in the brightest channel [W]: what its brightest surface
-/// sends from all of the cell's cross-section, or all there is where that is less. Textures count as white.
-double most_emitted(const Scene& scene, const std::vector<std::uint32_t>& triangles, double cell);
+/// Upper bound of the emitted flux through a cell of edge `cell` [m], in the brightest channel [W]: min(flux of all
+/// triangles, largest exitance times cell^2). Textures count as white.
+double max_emitted_flux(const Scene& scene, const std::vector<std::uint32_t>& triangles, double cell);
 
 /// Points on emissive triangles.
 struct EmissionPlan {
-  std::vector<ClpvEmitter> parts;
+  std::vector<ClpvEmitter> parts;  ///< parts of triangles, each with a regular pattern of points
   std::uint32_t points = 0;
-  int coarsened = 0;  ///< how often their distance was doubled, so that there are at most kMostEmittedPoints
+  int coarsened = 0;  ///< number of doublings of the points' distance, to stay within the maximum
 };
 
 /// Points along each edge of a cell.
 inline constexpr int kEmittedPointsPerCell = 4;
-inline constexpr std::uint32_t kMostEmittedPoints = 1u << 20;
+inline constexpr std::uint32_t kMaxEmittedPoints = 1u << 20;
 
-/// Parts of `triangles`, which must be emissive, in and next to the grids, which are finest first: a part has
-/// kEmittedPointsPerCell points a cell of the finest grid that it reaches into, and is no larger than that grid; what lies
-/// beside all grids lights nothing there, and gets none. Both sides of what is double sided.
-/// Throws Error(run_time) where there are more than `most` parts.
+/// Distributes points on the emissive `triangles`. `grids` are sorted from fine to coarse. A part has kEmittedPointsPerCell
+/// points per cell edge of the finest grid that it reaches, and is at most as large as that grid; parts outside all grids are
+/// omitted. Double-sided triangles have parts on both sides. Throws Error(run_time) for more than `max_count` parts.
 EmissionPlan plan_emission(const Scene& scene, const std::vector<std::uint32_t>& triangles,
-                           const std::vector<ClpvGrid>& grids, std::uint32_t most = kMostEmittedPoints);
+                           const std::vector<ClpvGrid>& grids, std::uint32_t max_count = kMaxEmittedPoints);
 
 }  // namespace clpv

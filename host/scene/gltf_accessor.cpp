@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads elements of accessors, checked against their buffer views.
 #include "scene/gltf_accessor.hpp"
 
 #include <fmt/ranges.h>
@@ -15,7 +16,7 @@
 
 namespace clpv {
 
-static_assert(std::endian::native == std::endian::little, "glTF buffers are little endian and read in place");
+static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian and read in place");
 
 namespace {
 
@@ -94,7 +95,7 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index)
 }
 
 GltfAccessor::GltfAccessor(const GltfDocument& document, int index, std::string place,
-                           std::initializer_list<int> types, const Numbers& numbers,
+                           std::initializer_list<int> types, const ComponentTypes& numbers,
                            std::optional<std::size_t> count)
     : GltfAccessor(document, index) {
   place_ = std::move(place);
@@ -108,26 +109,26 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index, std::string 
                      type_name(accessor_->type), accessor_->componentType,
                      accessor_->normalized ? ", normalized" : ""),
          fmt::format("{}{} of {}", count ? fmt::format("{} of ", *count) : "", fmt::join(names, " or "),
-                     numbers.words));
+                     numbers.description));
 }
 
-/// `count` elements of `bytes`, `stride` apart, from `offset` on. No product overflows 64 bits: counts are below 2^32.
+/// Bytes of `count` elements of `bytes` each, with `stride`, from `offset`. Products fit 64 bits, as counts are below 2^32.
 std::span<const std::uint8_t> GltfAccessor::elements(int view, std::size_t offset, std::size_t count,
                                                      std::size_t stride, std::size_t bytes) const {
-  const auto all = document_->view(view);
+  const auto view_bytes = document_->view(view);
   if (stride < bytes) {
     reject(document_->file, place_, fmt::format("elements of {} bytes", bytes),
            fmt::format("at most the byteStride {} of /bufferViews/{}", stride, view));
   }
   const std::size_t end = offset + (count - 1) * stride + bytes;
-  if (end > all.size()) {
+  if (end > view_bytes.size()) {
     reject(document_->file, place_, fmt::format("{} elements up to byte {}", count, end),
-           fmt::format("at most the {} bytes of /bufferViews/{}", all.size(), view));
+           fmt::format("at most the {} bytes of /bufferViews/{}", view_bytes.size(), view));
   }
-  return all.subspan(offset, end - offset);
+  return view_bytes.subspan(offset, end - offset);
 }
 
-std::uint32_t GltfAccessor::replaced(std::size_t i) const {
+std::uint32_t GltfAccessor::sparse_index(std::size_t i) const {
   const int type = accessor_->sparse.indices.componentType;
   return load_unsigned(&sparse_indices_[i * bytes_of(type)], type);
 }
@@ -135,10 +136,10 @@ std::uint32_t GltfAccessor::replaced(std::size_t i) const {
 const std::uint8_t* GltfAccessor::address(std::size_t element, int component) const {
   const std::size_t within = component_bytes_ * static_cast<unsigned>(component);
   if (sparse_count_ > 0) {
-    const auto all = std::views::iota(std::size_t{0}, sparse_count_);
-    const auto found = std::ranges::lower_bound(all, element, {}, [&](std::size_t i) { return replaced(i); });
-    if (found != all.end() && replaced(*found) == element)
-      return &sparse_values_[*found * element_bytes_ + within];
+    const auto range = std::views::iota(std::size_t{0}, sparse_count_);
+    const auto i =
+        std::ranges::lower_bound(range, element, {}, [&](std::size_t k) { return sparse_index(k); });
+    if (i != range.end() && sparse_index(*i) == element) return &sparse_values_[*i * element_bytes_ + within];
   }
   return values_.empty() ? nullptr : &values_[element * stride_ + within];
 }
@@ -172,8 +173,8 @@ void check_accessors(const GltfDocument& document) {
              fmt::format("at most {} in all", bounds::kSparseElements));
     }
     for (std::size_t i = 0; i < accessor.sparse_count_; ++i) {
-      const std::uint32_t element = accessor.replaced(i);
-      if (element >= accessor.count() || (i > 0 && element <= accessor.replaced(i - 1))) {
+      const std::uint32_t element = accessor.sparse_index(i);
+      if (element >= accessor.count() || (i > 0 && element <= accessor.sparse_index(i - 1))) {
         reject(document.file, accessor.place_ + "/sparse/indices", fmt::format("index {} at {}", element, i),
                fmt::format("ascending indices below {}", accessor.count()));
       }

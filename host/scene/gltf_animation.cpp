@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads glTF animations as curves of nodes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,31 +17,31 @@ namespace {
 
 using CurvePointer = std::shared_ptr<const Curve>;
 
-/// What a channel may move: by its path in glTF, the values of a sampler, and the curve of the node.
+/// An animated property of a node: its path in glTF, type and component types of the sampler's output, and its curve.
 struct Target {
   std::string_view path;
   int type;
-  Numbers numbers;
+  ComponentTypes numbers;
   CurvePointer NodeCurves::*curve;
 };
 
-constexpr std::array<Target, 4> kAnimated = {
+constexpr std::array<Target, 4> kAnimatedProperties = {
     {{"translation", TINYGLTF_TYPE_VEC3, kFloats, &NodeCurves::translation},
-     {"rotation", TINYGLTF_TYPE_VEC4, kShares, &NodeCurves::rotation},
+     {"rotation", TINYGLTF_TYPE_VEC4, kFractions, &NodeCurves::rotation},
      {"scale", TINYGLTF_TYPE_VEC3, kFloats, &NodeCurves::scale},
-     {"weights", TINYGLTF_TYPE_SCALAR, kShares, &NodeCurves::weights}}};
+     {"weights", TINYGLTF_TYPE_SCALAR, kFractions, &NodeCurves::weights}}};
 
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, Notes& notes) : document_(document), notes_(notes) {}
 
-  /// `place`: "/animations/0". tinygltf leaves out channels without a node, so that none here is named by its place.
+  /// `place`: "/animations/0". Messages do not number channels, as tinygltf omits those without a node.
   void read(const tinygltf::Animation& animation, const std::string& place) {
     std::map<std::tuple<int, std::string_view, std::size_t>, CurvePointer>
-        read;  // channels may share a sampler
+        curves;  // by sampler, path and size, as channels may share a sampler
     for (const tinygltf::AnimationChannel& channel : animation.channels) {
-      const auto target = std::ranges::find(kAnimated, channel.target_path, &Target::path);
-      if (target == kAnimated.end()) continue;  // of an extension that is not read
+      const auto target = std::ranges::find(kAnimatedProperties, channel.target_path, &Target::path);
+      if (target == kAnimatedProperties.end()) continue;  // extensions
       const int count = static_cast<int>(animation.samplers.size());
       if (channel.sampler >= count) {
         reject(document_.file, place + "/channels", fmt::format("sampler {}", channel.sampler),
@@ -48,11 +49,11 @@ class AnimationReader {
       }
       const std::size_t components = components_of(*target, channel.target_node);
       if (components == 0) {
-        notes_.add(fmt::format("{}: animates {} of node {}, which has none that are read", place,
-                               target->path, channel.target_node));
+        notes_.add(fmt::format("{}: animates {} of node {}, which has no such property", place, target->path,
+                               channel.target_node));
         continue;
       }
-      CurvePointer& curve = read[{channel.sampler, target->path, components}];
+      CurvePointer& curve = curves[{channel.sampler, target->path, components}];
       if (!curve) {
         curve = read_curve(entry(animation.samplers, channel.sampler), *target, components,
                            fmt::format("{}/samplers/{}", place, channel.sampler));
@@ -64,7 +65,7 @@ class AnimationReader {
   std::map<int, NodeCurves> take() { return std::move(nodes_); }
 
  private:
-  /// Numbers a key has; 0: nothing of the node that is read.
+  /// Numbers per key; 0 for weights of a node without mesh or morph targets.
   std::size_t components_of(const Target& target, int node) const {
     if (target.type == TINYGLTF_TYPE_VEC3) return 3;
     if (target.type == TINYGLTF_TYPE_VEC4) return 4;
@@ -77,9 +78,9 @@ class AnimationReader {
       reject(document_.file, fmt::format("/nodes/{}/matrix", node),
              fmt::format("a matrix, and a {} by {}", target.path, place), "translation, rotation and scale");
     }
-    CurvePointer& taken = nodes_[node].*target.curve;
-    if (taken) return notes_.add(fmt::format("{}: node {} is moved by an earlier channel", place, node));
-    taken = curve;
+    CurvePointer& assigned = nodes_[node].*target.curve;
+    if (assigned) return notes_.add(fmt::format("{}: node {} is moved by an earlier channel", place, node));
+    assigned = curve;
   }
 
   CurvePointer read_curve(const tinygltf::AnimationSampler& sampler, const Target& target,
@@ -98,7 +99,7 @@ class AnimationReader {
     for (std::size_t i = 0; i < output.count(); ++i) {
       for (int k = 0; k < output.components(); ++k) curve.values.push_back(output.finite(i, k));
     }
-    if (target.curve == &NodeCurves::rotation) make_unit(curve, parts, place + "/output");
+    if (target.curve == &NodeCurves::rotation) normalise_rotations(curve, parts, place + "/output");
     return std::make_shared<const Curve>(std::move(curve));
   }
 
@@ -122,8 +123,8 @@ class AnimationReader {
     }
   }
 
-  /// Of a cubic spline's, the values: tangents are no rotations, and stay as they are.
-  void make_unit(Curve& curve, std::size_t parts, const std::string& place) const {
+  /// Checks that values are quaternions, and normalises those of curves other than cubic splines.
+  void normalise_rotations(Curve& curve, std::size_t parts, const std::string& place) const {
     for (std::size_t key = 0; key < curve.times.size(); ++key) {
       const std::size_t element = parts * key + parts / 2;
       double* v = &curve.values[4 * element];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// tinygltf 2.7 trusts indices and sizes, opens what URIs name, and decodes images as it parses. It therefore reads only JSON
-// that we have checked, opens only buffers in the model's folder, and hands images on as they are.
+// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, and decodes images. Here it
+// reads only checked JSON, opens only buffers in the model's folder, and does not decode images.
 #include "scene/gltf_document.hpp"
 
 #include <nlohmann/json.hpp>
@@ -20,7 +20,7 @@ bool is_glb(const Bytes& bytes) {
   return bytes.size() >= 4 && little_endian_word(bytes, 0) == kMagic;
 }
 
-/// The first chunk of a .glb. Checks what tinygltf does not: the version, and all 8 bytes before the second chunk's data.
+/// JSON of a .glb, its first chunk. Checks the version and the header of the second chunk, which tinygltf does not.
 std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
   constexpr std::size_t kChunkHeader = 8, kText = 12 + kChunkHeader;
   if (bytes.size() < kText)
@@ -42,12 +42,12 @@ std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
   return {reinterpret_cast<const char*>(bytes.data()) + kText, size};
 }
 
-/// The buffers that tinygltf asks for as files, one after the other. Images it asks for later, and is told that there are none:
-/// those in use are read by load_textures.
+/// Buffers in files, in the order in which tinygltf opens them. After them it looks for image files and finds none:
+/// load_textures reads those in use.
 struct BufferFiles {
   const GltfDocument& document;
   const json& parsed;
-  std::vector<std::size_t> waiting = {};  ///< the next one last
+  std::vector<std::size_t> remaining = {};  ///< indices; the next buffer is the last
   std::uint64_t bytes_left = bounds::kBufferBytes;
 };
 
@@ -56,33 +56,33 @@ BufferFiles find_buffer_files(const GltfDocument& document, const json& parsed) 
   for (std::size_t i = parsed.contains("buffers") ? parsed["buffers"].size() : 0; i-- > 0;) {
     const json& buffer = parsed["buffers"][i];
     if (buffer.contains("uri") && !tinygltf::IsDataURI(buffer["uri"].get_ref<const std::string&>()))
-      files.waiting.push_back(i);
+      files.remaining.push_back(i);
   }
   return files;
 }
 
 bool read_next_buffer(Bytes* bytes, std::string*, const std::string&, void* user_data) {
   auto& files = *static_cast<BufferFiles*>(user_data);
-  const std::size_t index = files.waiting.back();
-  files.waiting.pop_back();
+  const std::size_t index = files.remaining.back();
+  files.remaining.pop_back();
   const json& buffer = files.parsed["buffers"][index];
   const std::string& file = files.document.file;
   const std::string place = fmt::format("/buffers/{}", index), uri_place = place + "/uri";
   const auto path = resolve_uri(files.document.folder, buffer["uri"], file, uri_place);
   *bytes = read_file(path, files.bytes_left, file, uri_place);
   files.bytes_left -= bytes->size();
-  const std::size_t wanted = buffer["byteLength"];
-  if (bytes->size() < wanted) {
-    reject(file, place + "/byteLength", fmt::format("{}", wanted),
-           fmt::format("at most the {} bytes there are: truncated?", bytes->size()));
+  const std::size_t length = buffer["byteLength"];
+  if (bytes->size() < length) {
+    reject(file, place + "/byteLength", fmt::format("{}", length),
+           fmt::format("at most the {} bytes of the file: truncated?", bytes->size()));
   }
-  bytes->resize(wanted);
+  bytes->resize(length);
   return true;
 }
 
 tinygltf::FsCallbacks callbacks(BufferFiles& files) {
   return {[](const std::string&, void* user_data) {
-            return !static_cast<BufferFiles*>(user_data)->waiting.empty();
+            return !static_cast<BufferFiles*>(user_data)->remaining.empty();
           },
           [](const std::string& path, void*) { return path; }, read_next_buffer, nullptr, &files};
 }
@@ -93,7 +93,7 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
-/// The entry that tinygltf stopped at: of the lists in which it rejects what we do not, in its order.
+/// JSON pointer of the entry at which tinygltf failed, in those lists, and in the order, in which it can fail.
 std::string place_of_failure(const tinygltf::Model& model, const json& document) {
   const std::pair<std::string, std::size_t> read[] = {
       {"/buffers", model.buffers.size()},
@@ -120,7 +120,7 @@ void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) 
                           ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size)
                           : loader.LoadASCIIFromString(&document.model, &error, &warning,
                                                        reinterpret_cast<const char*>(bytes.data()), size, "");
-  if (!loaded) reject(document.file, place_of_failure(document.model, parsed), shown(error), "glTF 2.0");
+  if (!loaded) reject(document.file, place_of_failure(document.model, parsed), excerpt(error), "glTF 2.0");
 }
 
 }  // namespace

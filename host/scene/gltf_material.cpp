@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A metal reflects nothing diffusely in glTF; here its base colour does, since light propagation volumes
-// carry diffuse light only and a black Sponza would teach nothing. Metalness, roughness and normal maps are
-// not read.
+// Reads materials. Metals reflect their base colour diffusely, unlike in glTF, as light propagation volumes carry diffuse
+// light only. Metalness, roughness and normal maps are not read.
 #include <algorithm>
 
 #include "scene/bounds.hpp"
@@ -11,7 +10,7 @@
 namespace clpv {
 namespace {
 
-constexpr float kBlendCutoff = 0.5f;  // BLEND is drawn as MASK with this cutoff
+constexpr float kBlendCutoff = 0.5f;  // alphaMode BLEND is rendered as MASK with this cutoff
 
 using tinygltf::Value;
 
@@ -24,7 +23,7 @@ glm::dvec2 pair_in(const Value& object, const char* key, glm::dvec2 fallback) {
   return {object.Get(key).Get(0).GetNumberAsDouble(), object.Get(key).Get(1).GetNumberAsDouble()};
 }
 
-/// KHR_texture_transform: scale, then rotation, then offset. Its rotation is counter-clockwise as seen with v
+/// Texture coordinates by KHR_texture_transform: scale, then rotation, then offset. The rotation is counter-clockwise with v
 /// pointing down (KhronosGroup/glTF issue 1563), so u turns towards -v.
 UvMapping mapping_of(int set, const tinygltf::ExtensionMap& extensions) {
   UvMapping mapping{set};
@@ -45,26 +44,26 @@ std::uint32_t wrap_of(int gltf) {
                                                          : CLPV_WRAP_REPEAT;
 }
 
-/// The index of a texture in the set, which grows by it at its first use.
+/// Index of a texture in the set; the first use adds it.
 std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set) {
   const tinygltf::Texture& source = entry(document.model.textures, texture);
   if (source.source < 0) {
     reject(document.file, fmt::format("/textures/{}", texture), "no source", "a source: a PNG or JPEG image");
   }
-  TextureRequest wanted{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
+  TextureRequest requested{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
   if (source.sampler >= 0) {
     const tinygltf::Sampler& sampler = entry(document.model.samplers, source.sampler);
-    wanted.wrap_u = wrap_of(sampler.wrapS);
-    wanted.wrap_v = wrap_of(sampler.wrapT);
+    requested.wrap_u = wrap_of(sampler.wrapS);
+    requested.wrap_v = wrap_of(sampler.wrapT);
   }
-  const auto found = std::find(set.textures.begin(), set.textures.end(), wanted);
+  const auto found = std::find(set.textures.begin(), set.textures.end(), requested);
   const auto index = static_cast<std::uint32_t>(found - set.textures.begin());
   if (found != set.textures.end()) return index;
   if (index == bounds::kTextures) {
     reject(document.file, fmt::format("/textures/{}", texture), "one more texture in use",
            fmt::format("at most {}", bounds::kTextures));
   }
-  set.textures.push_back(wanted);
+  set.textures.push_back(requested);
   return index;
 }
 
@@ -115,7 +114,7 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
       mapping = own;
     } else if (!(own == mapping)) {
       notes.add(place +
-                "/emissiveTexture: looked up with the base colour's texture coordinates, not with its own");
+                "/emissiveTexture: uses the texture coordinates of baseColorTexture in place of its own");
     }
   }
   set.materials.push_back(made);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Appends the meshes of a glTF document to a scene, one instance per node.
 #include <algorithm>
 #include <map>
 
@@ -9,19 +10,21 @@
 namespace clpv {
 namespace {
 
-/// Weights of morph targets where no curve says them: the node's, else the mesh's, else none.
+/// Weights of morph targets without a curve: those of the node, else of the mesh, else 0.
 std::vector<double> stored_weights(const GltfDocument& document, const TreeNode& node, std::size_t targets) {
   const tinygltf::Node& source = entry(document.model.nodes, node.index);
-  const bool own = !source.weights.empty();
-  const std::vector<double>& given = own ? source.weights : entry(document.model.meshes, source.mesh).weights;
-  if (given.empty()) return std::vector<double>(targets, 0.0);
-  if (given.size() != targets) {
-    reject(
-        document.file,
-        own ? fmt::format("/nodes/{}/weights", node.index) : fmt::format("/meshes/{}/weights", source.mesh),
-        fmt::format("{} weights", given.size()), fmt::format("one for each of {} morph targets", targets));
+  const bool in_node = !source.weights.empty();
+  const std::vector<double>& weights =
+      in_node ? source.weights : entry(document.model.meshes, source.mesh).weights;
+  if (weights.empty()) return std::vector<double>(targets, 0.0);
+  if (weights.size() != targets) {
+    reject(document.file,
+           in_node ? fmt::format("/nodes/{}/weights", node.index)
+                   : fmt::format("/meshes/{}/weights", source.mesh),
+           fmt::format("{} weights", weights.size()),
+           fmt::format("one for each of {} morph targets", targets));
   }
-  return given;
+  return weights;
 }
 
 class Appender {
@@ -29,7 +32,7 @@ class Appender {
   Appender(const GltfDocument& document, Scene& scene, Motion& motion, Notes& notes)
       : document_(document), scene_(scene), motion_(motion), notes_(notes), skins_(document, motion.tree) {}
 
-  /// The primitive at all these nodes; rejected before any is made where there is no room.
+  /// Appends an instance of the primitive for each node. Checks the bounds before it allocates.
   void append(const std::shared_ptr<const LocalPrimitive>& primitive, const std::vector<std::size_t>& nodes,
               PosedTree& posed) {
     reserve(*primitive, nodes.size());
@@ -48,7 +51,7 @@ class Appender {
     const std::uint64_t triangles = scene_.triangles.size() + count * primitive.triangles.size();
     if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
       reject(document_.file, primitive.place,
-             fmt::format("{} vertices and {} triangles so far, this one standing at {} nodes", vertices,
+             fmt::format("{} vertices and {} triangles so far, with this primitive at {} nodes", vertices,
                          triangles, count),
              fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
     }
@@ -84,7 +87,7 @@ class Appender {
     }
   }
 
-  /// Reserves geometrically, as push_back would: exact reserves for each primitive would copy all at each.
+  /// Reserves with geometric growth: an exact reserve for each primitive would copy all vertices each time.
   template <typename T>
   static void grow(std::vector<T>& values, std::uint64_t size) {
     if (size > values.capacity()) values.reserve(std::max<std::size_t>(size, 2 * values.capacity()));
@@ -97,7 +100,7 @@ class Appender {
   SkinReader skins_;
 };
 
-/// The primitives of a mesh have their morph targets in common.
+/// Rejects a primitive whose number of morph targets differs from that of the mesh's first.
 void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
   const auto& primitives = entry(document.model.meshes, mesh).primitives;
   if (primitives[index].targets.size() != primitives[0].targets.size()) {
@@ -112,20 +115,20 @@ void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
 void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials, Scene& scene,
                    Motion& motion, Notes& notes) {
   const std::vector<TreeNode>& nodes = motion.tree.nodes;
-  std::map<int, std::vector<std::size_t>> stands;  // each primitive is read once, however often it stands
+  std::map<int, std::vector<std::size_t>> mesh_nodes;  // nodes by mesh: each primitive is read once
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (const int mesh = entry(document.model.nodes, nodes[i].index).mesh; mesh >= 0)
-      stands[mesh].push_back(i);
+      mesh_nodes[mesh].push_back(i);
   }
   Appender appender(document, scene, motion, notes);
   std::vector<std::uint32_t> slots;
-  Room room{bounds::kVertices, bounds::kTriangles, bounds::kMorphNumbers};
-  for (const auto& [mesh, at] : stands) {
+  GeometryBudget budget{bounds::kVertices, bounds::kTriangles, bounds::kMorphNumbers};
+  for (const auto& [mesh, at] : mesh_nodes) {
     for (std::size_t i = 0; i < entry(document.model.meshes, mesh).primitives.size(); ++i) {
       check_targets(document, mesh, i);
-      room.vertices = bounds::kVertices - scene.vertices.size();
-      room.triangles = bounds::kTriangles - scene.triangles.size();
-      LocalPrimitive primitive = read_primitive(document, mesh, i, materials, room, slots, notes);
+      budget.vertices = bounds::kVertices - scene.vertices.size();
+      budget.triangles = bounds::kTriangles - scene.triangles.size();
+      LocalPrimitive primitive = read_primitive(document, mesh, i, materials, budget, slots, notes);
       if (primitive.triangles.empty()) continue;
       appender.append(std::make_shared<const LocalPrimitive>(std::move(primitive)), at, posed);
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads the node tree and the skins of a glTF document.
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
 
@@ -16,7 +17,7 @@ std::string place_of(int node) {
   return fmt::format("/nodes/{}", node);
 }
 
-/// Each node's parent. Below a node without one, a graph in which every node has at most one parent is a tree.
+/// Parent of each node. Rejects several parents, so that the nodes below a root form a tree.
 std::vector<int> find_parents(const GltfDocument& document) {
   std::vector<int> parents(document.model.nodes.size(), kNone);
   for (std::size_t i = 0; i < parents.size(); ++i) {
@@ -52,7 +53,7 @@ TreeNode make_node(const GltfDocument& document, int index, const std::map<int, 
   TreeNode made;
   made.index = index;
   made.pose = stored_pose(source, document.file, index);
-  made.still = source.matrix.empty() ? made.pose.matrix() : glm::make_mat4(source.matrix.data());
+  made.rest = source.matrix.empty() ? made.pose.matrix() : glm::make_mat4(source.matrix.data());
   if (const auto found = curves.find(index); found != curves.end()) made.curves = found->second;
   made.moves = made.curves.moves();
   return made;
@@ -67,13 +68,13 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
     if (roots.empty() && !parents.empty()) reject(document.file, "/nodes", "a cycle", "trees");
     return roots;
   }
-  const int chosen = std::max(document.model.defaultScene, 0);
-  const std::string place = fmt::format("/scenes/{}/nodes", chosen);
-  std::set<int> seen;
-  for (const int node : entry(document.model.scenes, chosen).nodes) {
+  const int scene = std::max(document.model.defaultScene, 0);
+  const std::string place = fmt::format("/scenes/{}/nodes", scene);
+  std::set<int> listed;
+  for (const int node : entry(document.model.scenes, scene).nodes) {
     if (const int parent = entry(parents, node); parent != kNone)
       reject(document.file, place, fmt::format("node {}, a child of node {}", node, parent), "root nodes");
-    if (!seen.insert(node).second)
+    if (!listed.insert(node).second)
       reject(document.file, place, fmt::format("node {} twice", node), "each node once");
     roots.push_back(node);
   }
@@ -133,8 +134,8 @@ SkinReader::SkinReader(const GltfDocument& document, const NodeTree& tree)
 }
 
 std::shared_ptr<const Skin> SkinReader::read(int index) {
-  std::shared_ptr<const Skin>& known = skins_[index];
-  if (known) return known;
+  std::shared_ptr<const Skin>& cached = skins_[index];
+  if (cached) return cached;
   const tinygltf::Skin& source = entry(document_.model.skins, index);
   const std::string place = fmt::format("/skins/{}", index);
   joints_ += source.joints.size();
@@ -150,7 +151,7 @@ std::shared_ptr<const Skin> SkinReader::read(int index) {
   }
   skin.inverse_binds = read_inverse_binds(document_, source.inverseBindMatrices, skin.joints.size(),
                                           place + "/inverseBindMatrices");
-  return known = std::make_shared<const Skin>(std::move(skin));
+  return cached = std::make_shared<const Skin>(std::move(skin));
 }
 
 }  // namespace clpv

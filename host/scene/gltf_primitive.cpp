@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads the attributes, triangles, joints and morph targets of a mesh primitive.
 #include <algorithm>
 #include <optional>
 
@@ -10,11 +11,11 @@
 namespace clpv {
 namespace {
 
-constexpr glm::dvec3 kUp{0, 1, 0};        // the normal of vertices that only degenerate triangles use
-constexpr double kShortestStored = 1e-6;  // a shorter stored normal is none
-constexpr double kMostWeight = 1e6;       // of a joint; they are made to add up to 1
+constexpr glm::dvec3 kUp{0, 1, 0};   // normal of vertices that only degenerate triangles use
+constexpr double kMinNormal = 1e-6;  // shorter stored normals count as missing
+constexpr double kMaxWeight = 1e6;   // of a joint, before weights are normalised to a sum of 1
 
-/// A primitive's attributes, checked against each other.
+/// Accessors of a primitive's attributes, with equal counts.
 struct Attributes {
   GltfAccessor position;
   std::optional<GltfAccessor> normal, uv, colour, indices;
@@ -25,8 +26,7 @@ glm::dvec3 vector_in(const GltfAccessor& from, std::uint32_t index) {
   return {from.finite(index, 0), from.finite(index, 1), from.finite(index, 2)};
 }
 
-/// The corners of triangle `i`, in the order that makes its front counter-clockwise (glTF 2.0,
-/// section 3.7.2.1).
+/// Corners of triangle `i`, counter-clockwise seen from its front (glTF 2.0, section 3.7.2.1).
 glm::uvec3 corners_of(int mode, std::uint32_t i) {
   switch (mode) {
     case TINYGLTF_MODE_TRIANGLE_STRIP:
@@ -60,28 +60,27 @@ class PrimitiveReader {
     if (textured) {
       const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
       made.uv = find(set, {TINYGLTF_TYPE_VEC2}, count);
-      if (!made.uv)
-        notes.add(fmt::format("{}: its material wants {}, which it lacks: 0, 0 instead", place_, set));
+      if (!made.uv) notes.add(fmt::format("{}: no {} for its material: uses 0, 0", place_, set));
     }
     return made;
   }
 
-  /// Of a mode that has triangles. Rejects what the mode or the room left does not allow.
-  std::uint64_t triangle_count(const Attributes& from, int mode, const Room& room) const {
+  /// Number of triangles; `mode` must have triangles. Rejects invalid numbers of corners and geometry beyond the budget.
+  std::uint64_t triangle_count(const Attributes& from, int mode, const GeometryBudget& budget) const {
     const std::uint64_t corners = from.corners();
     const bool list = mode == TINYGLTF_MODE_TRIANGLES;
     if (corners < 3 || (list && corners % 3 != 0)) {
       reject_here(fmt::format("{} corners", corners), list ? "a multiple of 3, at least 3" : "at least 3");
     }
     const std::uint64_t triangles = list ? corners / 3 : corners - 2;
-    if (triangles > room.triangles) {
+    if (triangles > budget.triangles) {
       reject_here(fmt::format("{} more triangles", triangles),
-                  fmt::format("{} left of {} in all", room.triangles, bounds::kTriangles));
+                  fmt::format("{} left of {} in all", budget.triangles, bounds::kTriangles));
     }
     const std::uint64_t stored = from.position.count(), split = from.normal ? 0 : 3 * triangles;
-    if (stored > bounds::kVertices || split > room.vertices) {
+    if (stored > bounds::kVertices || split > budget.vertices) {
       reject_here(fmt::format("{} vertices", std::max(stored, split)),
-                  fmt::format("{} left of {} in all", room.vertices, bounds::kVertices));
+                  fmt::format("{} left of {} in all", budget.vertices, bounds::kVertices));
     }
     return triangles;
   }
@@ -111,9 +110,9 @@ class PrimitiveReader {
     for (const LocalVertex& vertex : to.vertices) slots[vertex.source] = kNoSlot;
   }
 
-  /// Of the vertices there are: the joints they go with, and the morph targets.
+  /// Reads joints and normalised weights of the vertices.
   void read_influences(const Attributes& from, LocalPrimitive& to) const {
-    const auto find = [&](const char* name, const Numbers& numbers) {
+    const auto find = [&](const char* name, const ComponentTypes& numbers) {
       return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4}, from.position.count(),
                        numbers);
     };
@@ -129,10 +128,10 @@ class PrimitiveReader {
       double sum = 0;
       for (int i = 0; i < 4; ++i) {
         const double weight = weights->number(vertex.source, i);
-        if (!(weight >= 0 && weight <= kMostWeight)) {
+        if (!(weight >= 0 && weight <= kMaxWeight)) {
           reject(document_.file, place_ + "/attributes/WEIGHTS_0",
                  fmt::format("{} in component {} of vertex {}", weight, i, vertex.source),
-                 fmt::format("0 to {}", kMostWeight));
+                 fmt::format("0 to {}", kMaxWeight));
         }
         made.joints[i] = static_cast<std::uint16_t>(joints->index(vertex.source, i));
         made.weights[i] = weight;
@@ -144,7 +143,7 @@ class PrimitiveReader {
     }
   }
 
-  void read_targets(const Attributes& from, Room& room, LocalPrimitive& to) const {
+  void read_targets(const Attributes& from, GeometryBudget& budget, LocalPrimitive& to) const {
     for (std::size_t t = 0; t < source_.targets.size(); ++t) {
       const std::string place = fmt::format("/targets/{}", t);
       const auto read = [&](const char* name) {
@@ -153,11 +152,11 @@ class PrimitiveReader {
             attribute(source_.targets[t], place, name, {TINYGLTF_TYPE_VEC3}, from.position.count());
         if (!found) return made;
         const std::uint64_t numbers = 3 * to.vertices.size();
-        if (numbers > room.morph_numbers) {
+        if (numbers > budget.morph_numbers) {
           reject(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
-                 fmt::format("{} left of {} in all", room.morph_numbers, bounds::kMorphNumbers));
+                 fmt::format("{} left of {} in all", budget.morph_numbers, bounds::kMorphNumbers));
         }
-        room.morph_numbers -= numbers;
+        budget.morph_numbers -= numbers;
         made.reserve(to.vertices.size());
         for (const LocalVertex& vertex : to.vertices) made.emplace_back(vector_in(*found, vertex.source));
         return made;
@@ -174,7 +173,7 @@ class PrimitiveReader {
   std::optional<GltfAccessor> attribute(const std::map<std::string, int>& attributes,
                                         const std::string& place, const std::string& name, Types types,
                                         std::optional<std::size_t> count,
-                                        const Numbers& numbers = kNumbers) const {
+                                        const ComponentTypes& numbers = kNumbers) const {
     const auto found = attributes.find(name);
     if (found == attributes.end()) return std::nullopt;
     return GltfAccessor(document_, found->second, fmt::format("{}{}/{}", place_, place, name), types, numbers,
@@ -207,7 +206,7 @@ class PrimitiveReader {
   const UvMapping& mapping_;
 };
 
-/// Each triangle gets three vertices of its own with its normal (glTF 2.0, section 3.7.2.1: flat normals).
+/// Gives each triangle three vertices with the triangle's normal (flat normals: glTF 2.0, section 3.7.2.1).
 void split_flat(LocalPrimitive& primitive) {
   std::vector<LocalVertex> split;
   split.reserve(primitive.triangles.size() * 3);
@@ -222,12 +221,12 @@ void split_flat(LocalPrimitive& primitive) {
   primitive.vertices = std::move(split);
 }
 
-/// Stored normals become unit; those of no length take their triangle's.
+/// Normalises stored normals; missing ones become the mean of their triangles' normals.
 void normalize_stored(LocalPrimitive& primitive) {
   std::vector<bool> missing(primitive.vertices.size(), false);
   for (std::size_t i = 0; i < missing.size(); ++i) {
     glm::dvec3& normal = primitive.vertices[i].normal;
-    missing[i] = glm::length(normal) < kShortestStored;
+    missing[i] = glm::length(normal) < kMinNormal;
     normal = missing[i] ? glm::dvec3(0) : glm::normalize(normal);
   }
   if (std::find(missing.begin(), missing.end(), true) == missing.end()) return;
@@ -239,15 +238,15 @@ void normalize_stored(LocalPrimitive& primitive) {
   }
   for (std::size_t i = 0; i < missing.size(); ++i) {
     glm::dvec3& normal = primitive.vertices[i].normal;
-    if (missing[i]) normal = glm::length(normal) < kShortestStored ? kUp : glm::normalize(normal);
+    if (missing[i]) normal = glm::length(normal) < kMinNormal ? kUp : glm::normalize(normal);
   }
 }
 
 }  // namespace
 
 LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
-                              const MaterialSet& materials, Room& room, std::vector<std::uint32_t>& slots,
-                              Notes& notes) {
+                              const MaterialSet& materials, GeometryBudget& budget,
+                              std::vector<std::uint32_t>& slots, Notes& notes) {
   const tinygltf::Primitive& source = entry(document.model.meshes, mesh).primitives[index];
   LocalPrimitive made;
   made.place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
@@ -262,7 +261,7 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
   const bool textured = material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
   const PrimitiveReader reader(document, source, made.place, materials.mappings[made.material]);
   const Attributes attributes = reader.attributes(textured, notes);
-  const std::uint64_t triangles = reader.triangle_count(attributes, source.mode, room);
+  const std::uint64_t triangles = reader.triangle_count(attributes, source.mode, budget);
   reader.read_triangles(attributes, source.mode, triangles, slots, made);
   made.flat = !attributes.normal;
   if (made.flat) {
@@ -271,10 +270,9 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
     normalize_stored(made);
   }
   reader.read_influences(attributes, made);
-  reader.read_targets(attributes, room, made);
+  reader.read_targets(attributes, budget, made);
   if (source.attributes.contains("JOINTS_1"))
-    notes.add(
-        fmt::format("{}: more than four joints a vertex: those of JOINTS_0 alone are read", made.place));
+    notes.add(fmt::format("{}: more than four joints per vertex: only JOINTS_0 is read", made.place));
   return made;
 }
 

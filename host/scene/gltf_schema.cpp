@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a glTF document may say, as far as the loader and tinygltf read it.
+// Schema of glTF documents, as far as the loader and tinygltf read them.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -20,15 +20,15 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kAny = 1e30;           // finite, and its products with coordinates fit a double
-constexpr double kMany = 4294967295;    // counts and offsets: more than any bounded buffer holds
-constexpr double kInt = 2147483647;     // the same where tinygltf keeps an int
-constexpr double kBrightest = 1e15;     // of a light: intensity times colour fits a float
-constexpr std::size_t kTargets = 1024;  // of a primitive
-constexpr double kAboveZero = 1e-9;     // stands for "greater than 0"
+constexpr double kAny = 1e30;         // maximum of unbounded numbers; products with coordinates fit a double
+constexpr double kMany = 4294967295;  // maximum of counts and offsets
+constexpr double kInt = 2147483647;   // maximum of counts and offsets that tinygltf stores as int
+constexpr double kBrightest = 1e15;   // maximum intensity and colour of a light: their product fits a float
+constexpr std::size_t kTargets = 1024;  // maximum morph targets of a primitive
+constexpr double kAboveZero = 1e-9;     // minimum of positive numbers
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
 
-/// Extensions that are read. Whatever else a file requires is rejected by name.
+/// Supported extensions. A file that requires others is rejected.
 constexpr std::array kExtensions = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
                                     "KHR_materials_emissive_strength"};
 
@@ -38,7 +38,7 @@ void append(Rules& rules, Rules more) {
   rules.insert(rules.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// The top level. Lists come first, so that later rules may index them.
+/// Rules of the top level. Rules of lists come first, as later rules check indices into them.
 Rules document_rules() {
   using namespace rule;
   Rules rules = {object("").must(), object("/asset").must(), text("/asset/version").must(),
@@ -121,7 +121,7 @@ Rules geometry_rules() {
           text("/buffers/*/uri")};
 }
 
-/// A reference to a texture, as materials hold them.
+/// Rules of a material's reference to a texture.
 Rules texture_info_rules(const std::string& place) {
   using namespace rule;
   const std::string transform = place + "/extensions/KHR_texture_transform";
@@ -194,7 +194,7 @@ Rules animation_rules() {
 void check_asset(const json& document, const std::string& file) {
   const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
   if (!version.starts_with("2.")) reject(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
-  // What a loader must know to read the model; `version` alone promises that a reader of any 2.x does.
+  // A model of version 2.x can be read by readers of 2.0, unless minVersion is higher.
   const std::string least = document["asset"].value("minVersion", "2.0");
   if (least != "2.0") reject(file, "/asset/minVersion", "'" + least.substr(0, 60) + "'", "2.0");
   if (!document.contains("extensionsRequired")) return;
@@ -208,7 +208,7 @@ void check_asset(const json& document, const std::string& file) {
   }
 }
 
-/// Calls `check(entry, place)` for each entry of a list of the document.
+/// Calls `check(entry, place)` for each entry of one of the document's lists.
 template <typename Check>
 void for_each_in(const json& document, const char* list, const Check& check) {
   if (!document.contains(list)) return;
@@ -216,7 +216,8 @@ void for_each_in(const json& document, const char* list, const Check& check) {
     check(document[list][i], fmt::format("/{}/{}", list, i));
 }
 
-/// Bounds all buffers together. A binary chunk serves tinygltf for each buffer without a uri; glTF gives it to the first.
+/// Checks the size of all buffers together. tinygltf uses the binary chunk for every buffer without a uri, while glTF allows
+/// that for the first only.
 void check_buffers(const json& document, const std::string& file) {
   std::uint64_t total = 0;
   for_each_in(document, "buffers", [&](const json& buffer, const std::string& place) {
@@ -243,7 +244,7 @@ void check_views(const json& document, const std::string& file) {
   });
 }
 
-/// tinygltf rejects indices without a view, and does not say where.
+/// Rejects indices without a view by place, as tinygltf's message has no place.
 void check_indices(const json& document, const std::string& file) {
   for_each_in(document, "meshes", [&](const json& mesh, const std::string& place) {
     for (const json& primitive : mesh["primitives"]) {
@@ -257,7 +258,7 @@ void check_indices(const json& document, const std::string& file) {
   });
 }
 
-/// tinygltf 2.7 copies the extensions of an animation into each of its samplers.
+/// Bounds the extensions of animations, as tinygltf 2.7 copies them into each sampler.
 void check_animations(const json& document, const std::string& file) {
   for_each_in(document, "animations", [&](const json& animation, const std::string& place) {
     if (!animation.contains("extensions")) return;

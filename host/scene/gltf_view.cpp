@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads the cameras and lights of a glTF document.
 #include <set>
 
 #include "scene/bounds.hpp"
@@ -14,12 +15,12 @@ class ViewReader {
   ViewReader(const GltfDocument& document, double metres_per_unit, Scene& scene, Notes& notes)
       : document_(document), metres_per_unit_(metres_per_unit), scene_(scene), notes_(notes) {}
 
-  /// Whether the scene has it.
+  /// Appends the camera of a node. Returns false for an orthographic one.
   bool camera(int node, const tinygltf::Node& source, const glm::dmat4& to_world) {
     const tinygltf::Camera& given = entry(document_.model.cameras, source.camera);
     const std::string place = fmt::format("/cameras/{}", source.camera);
     if (given.type != "perspective") {
-      notes_.add(fmt::format("{} ('{}') is orthographic and left out", place, given.name));
+      notes_.add(fmt::format("{} ('{}') is orthographic: not read", place, given.name));
       return false;
     }
     if (scene_.cameras.size() == bounds::kCameras) {
@@ -63,10 +64,12 @@ class ViewReader {
  private:
   static std::string place_of(int node) { return fmt::format("/nodes/{}", node); }
 
-  static std::string unique(const std::string& wish, const char* kind, std::set<std::string>& taken) {
-    std::string name = wish.empty() ? fmt::format("{} {}", kind, taken.size()) : wish;
-    for (int i = 2; taken.contains(name); ++i) name = fmt::format("{} {}", wish.empty() ? kind : wish, i);
-    taken.insert(name);
+  /// Returns `preferred`, or a name like it that is not in `used`, and adds it there.
+  static std::string unique(const std::string& preferred, const char* kind, std::set<std::string>& used) {
+    std::string name = preferred.empty() ? fmt::format("{} {}", kind, used.size()) : preferred;
+    for (int i = 2; used.contains(name); ++i)
+      name = fmt::format("{} {}", preferred.empty() ? kind : preferred, i);
+    used.insert(name);
     return name;
   }
 

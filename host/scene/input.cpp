@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Resolves URIs of scenes and models.
 #include "scene/input.hpp"
 
 #include <algorithm>
@@ -35,17 +36,17 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 
 }  // namespace
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t kShown = 160;
-  std::string out(text.substr(0, kShown));
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMaxLength = 160;
+  std::string out(text.substr(0, kMaxLength));
   std::replace(out.begin(), out.end(), '\n', ' ');
-  return text.size() > kShown ? out + "..." : out;
+  return text.size() > kMaxLength ? out + "..." : out;
 }
 
 fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::string& file,
                      std::string_view place) {
-  const auto reject_uri = [&](const char* why) {
-    reject(file, place, fmt::format("URI '{}', {}", shown(uri), why),
+  const auto reject_uri = [&](const char* reason) {
+    reject(file, place, fmt::format("URI '{}', {}", excerpt(uri), reason),
            "a relative path to a file in the model's folder or below");
   };
   const std::optional<std::string> decoded = percent_decoded(uri);

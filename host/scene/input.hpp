@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// URIs of untrusted files: only from where a scene may read.
+// URIs in untrusted files, restricted to the model's folder.
 #pragma once
 
 #include <filesystem>
@@ -11,11 +11,11 @@
 
 namespace clpv {
 
-/// Text from a file as it may stand in a message: short, on one line.
-std::string shown(std::string_view text);
+/// Up to 160 bytes of a text on one line, for messages.
+std::string excerpt(std::string_view text);
 
-/// The file that a relative URI of `file` means, percent-decoded, links resolved. `folder` is canonical.
-/// Throws Error(bad_input) for whatever leaves `folder`, and what is no regular file.
+/// Canonical path of the relative URI `uri` in `file`, percent-decoded, with links resolved. `folder` must be canonical.
+/// Throws Error(bad_input) for paths outside `folder` and for all but regular files.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri,
                                   const std::string& file, std::string_view place);
 

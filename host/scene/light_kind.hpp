@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The kinds of light there are, by their names in scene files and in glTF: the one list of them on the host. What a kind
-// means is switched over without a default, so that a new one does not compile until it means something everywhere.
+// Kinds of lights, with their names in scene files and glTF. Switches over them have no default, so that the compiler finds
+// all places for a new kind.
 #pragma once
 
 #include <algorithm>
@@ -22,18 +22,19 @@ enum class LightKind : unsigned {
 template <>
 inline constexpr auto kNames<LightKind> = name_list("directional", "spot", "point");
 
-/// Throws Error(bad_input) for a number that is no kind.
+/// Kind of a light. Throws Error(bad_input) for an invalid number.
 inline LightKind kind_of(const ClpvLight& light) {
   const auto kinds = values_of<LightKind>();
   if (light.kind < kinds.size()) return kinds[light.kind];
-  throw Error(ExitCode::bad_input, "light of kind {}: allowed: 0..{} ({})", light.kind, kinds.size() - 1,
-              fmt::join(names_of<LightKind>(), ", "));
+  throw Error(ExitCode::bad_input, "light kind: found {}; allowed: 0 to {} ({})", light.kind,
+              kinds.size() - 1, fmt::join(names_of<LightKind>(), ", "));
 }
 
-/// Sets the cone of a spot light as KHR_lights_punctual means it. Angles [rad] from the axis: full intensity within `inner`, none beyond `outer` > inner.
+/// Sets the cone of a spot light by KHR_lights_punctual. Angles are from the axis [rad]: full intensity within `inner`, 0
+/// beyond `outer` > inner.
 inline void set_cone(ClpvLight& light, double inner, double outer) {
-  constexpr double kNarrowest = 0.001;  // the extension's own guard against inner == outer
-  light.cone_scale = static_cast<float>(1.0 / std::max(kNarrowest, std::cos(inner) - std::cos(outer)));
+  constexpr double kMinDifference = 0.001;  // from the extension, for inner == outer
+  light.cone_scale = static_cast<float>(1.0 / std::max(kMinDifference, std::cos(inner) - std::cos(outer)));
   light.cone_offset = static_cast<float>(-std::cos(outer) * light.cone_scale);
 }
 

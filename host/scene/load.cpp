@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From a path to a scene: which loader, and what the scene file replaces.
+// Loads scene files and models, and adds a default camera and light.
 #include "scene/load.hpp"
 
 #include <fmt/ranges.h>
@@ -19,20 +19,20 @@
 namespace clpv {
 namespace {
 
-/// Loads a .gltf or .glb as it is at 0 s: geometry, materials, textures, cameras, lights, all in metres; no defaults are
-/// added. `motion` becomes what of it moves.
+/// Loads a .gltf or .glb at 0 s: geometry, materials, textures, cameras and lights, in metres and without defaults. Stores
+/// animated meshes, cameras and lights in `motion`.
 Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion, Notes& notes) {
   const GltfDocument document = read_gltf_document(path);
   std::vector<std::string> ignored = document.model.extensionsUsed;
   std::erase_if(ignored, reads_extension);
-  if (!ignored.empty()) notes.add(fmt::format("extensions used but not read: {}", fmt::join(ignored, ", ")));
+  if (!ignored.empty()) notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
   Scene scene;
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
   PosedTree posed(motion.tree, 0);
   const MaterialSet materials = read_materials(document, notes);
   auto textures = std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
-  append_meshes(document, posed, materials, scene, motion, notes);  // while the images are decoded
+  append_meshes(document, posed, materials, scene, motion, notes);  // concurrent with load_textures
   append_views(document, posed, metres_per_unit, scene, motion, notes);
   scene.textures = textures.get();
   scene.materials = materials.materials;
@@ -73,25 +73,23 @@ void check_camera_lights(const Scene& scene) {
   }
 }
 
-std::vector<Part> parts_of(const std::vector<Instance>& meshes) {
-  std::vector<Part> parts;
+std::vector<MeshRange> ranges_of(const std::vector<Instance>& meshes) {
+  std::vector<MeshRange> ranges;
   for (const Instance& instance : meshes) {
-    parts.push_back({instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
-                     instance.first_triangle,
-                     static_cast<std::uint32_t>(instance.primitive->triangles.size())});
+    ranges.push_back({instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
+                      instance.first_triangle,
+                      static_cast<std::uint32_t>(instance.primitive->triangles.size())});
   }
-  return parts;
+  return ranges;
 }
 
-// The sun added to a model without lights: steep, from behind the framing camera's right shoulder. An
-// illuminance of 10 shows a white floor at radiance 3.2, so that diffuse walls fill the tone curve's range at
-// exposure 0.
+// Default light of a model without lights: a steep sun from behind and to the right of the default camera. With 10 lux, a
+// white floor has radiance 3.2, so that diffuse walls fill the tone curve's range at exposure 0.
 constexpr glm::vec3 kSunDirection{-0.35f, -0.85f, -0.4f};
 constexpr float kSunIlluminance = 10;
 
-// The camera added to a model without cameras: from above and the side, the box's sphere just within its
-// view.
-constexpr glm::vec3 kFramingDirection{-0.5f, -0.35f, -1.0f};  // of sight
+// Default camera of a model without cameras: from above and the side, with the bounding sphere just within its view.
+constexpr glm::vec3 kFramingDirection{-0.5f, -0.35f, -1.0f};  // viewing direction
 constexpr float kFramingFov = static_cast<float>(std::numbers::pi) / 4;
 
 Camera framing_camera(const Scene& scene) {
@@ -120,15 +118,15 @@ Light added_sun() {
   return sun;
 }
 
-/// Adds what is not given, to a scene whose bounding box is known; each addition gets a note. `lights_given`: an empty list
-/// of lights is meant, as darkness.
-void add_defaults(Scene& scene, bool lights_given, Notes& notes) {
+/// Adds a default camera and light, with a note each, to a scene whose bounding box is set. `has_lights`: an empty list of
+/// lights is intended, and gets no default.
+void add_defaults(Scene& scene, bool has_lights, Notes& notes) {
   if (scene.triangles.empty()) notes.add("the model has no triangles");
   if (scene.cameras.empty()) {
     scene.cameras.push_back(framing_camera(scene));
     notes.add("no camera: added one that frames the model");
   }
-  if (scene.lights.empty() && !lights_given) {
+  if (scene.lights.empty() && !has_lights) {
     scene.lights.push_back(added_sun());
     notes.add(fmt::format("no light: added a sun of {} lux", kSunIlluminance));
   }
@@ -136,10 +134,10 @@ void add_defaults(Scene& scene, bool lights_given, Notes& notes) {
 
 }  // namespace
 
-void MovingScene::load_described(const std::filesystem::path& path, const std::filesystem::path& replacement,
-                                 Notes& notes) {
+void MovingScene::load_scene_file(const std::filesystem::path& path, const std::filesystem::path& replacement,
+                                  Notes& notes) {
   description_ = read_scene_file(path);
-  DescribedViews views = views_at(description_, 0);
+  SceneViews views = views_at(description_, 0);
   const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
   if (model.empty()) reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
   std::error_code unknown;
@@ -150,14 +148,14 @@ void MovingScene::load_described(const std::filesystem::path& path, const std::f
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
   if (views.cameras) motion_.cameras.clear();
   if (views.lights) motion_.lights.clear();
-  show(std::move(views));
+  set_views(std::move(views));
   scene_.exposure = description_.exposure;
   scene_.cascade_size = description_.cascade_size;
   scene_.cascades = description_.cascades;
   scene_.sky = description_.sky;
 }
 
-void MovingScene::show(DescribedViews views) {
+void MovingScene::set_views(SceneViews views) {
   if (views.cameras) scene_.cameras = std::move(*views.cameras);
   if (views.lights) scene_.lights = std::move(*views.lights);
 }
@@ -166,7 +164,7 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
   Notes notes;
   const std::string extension = extension_of(path);
   if (extension == ".json") {
-    load_described(path, replacement, notes);
+    load_scene_file(path, replacement, notes);
     scene_.path = path.string();
   } else if (extension == ".gltf" || extension == ".glb") {
     const std::filesystem::path model = replacement.empty() ? path : replacement;
@@ -175,8 +173,8 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
   } else {
     reject(path.string(), {}, "the extension '" + extension + "'", ".json (a scene file), .gltf or .glb");
   }
-  if (motion_.empty()) motion_.tree = {};  // of no use any more
-  scene_.moving = parts_of(motion_.meshes);
+  if (motion_.empty()) motion_.tree = {};  // frees its memory
+  scene_.moving = ranges_of(motion_.meshes);
   find_bounds(scene_);
   add_defaults(scene_, description_.lights.has_value() || scene_.sky, notes);
   check_camera_lights(scene_);
@@ -188,7 +186,7 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
 void MovingScene::pose(double seconds) {
   motion_.pose(scene_, seconds);
   if (!motion_.meshes.empty()) find_bounds(scene_);
-  if (description_.moves()) show(views_at(description_, seconds));
+  if (description_.moves()) set_views(views_at(description_, seconds));
 }
 
 Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files and glTF models into a Scene.
+// Loading of scene files and glTF models, static or animated.
 #pragma once
 
 #include <filesystem>
@@ -11,40 +11,38 @@
 
 namespace clpv {
 
-/// Loads a scene file (.json: see docs/scenes.md), or a bare .gltf / .glb. `model` replaces the file's; empty: as it says.
-/// Untrusted input: everything is bounded before it is allocated, nothing outside the model's folder is read.
+/// Loads a scene file (.json: see docs/scenes.md) or a model (.gltf, .glb) at 0 s. A `model` that is not empty replaces the
+/// file's. Input is untrusted: sizes are checked before allocation, and nothing outside the model's folder is read.
 /// Throws Error(bad_input) that names file, place (JSON pointer), value found and value allowed.
-/// What it shows is the scene at 0 s.
 Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-/// A scene that may move: read once, and shown at any instant. What is added where the files say nothing (a camera that
-/// frames the model) fits the scene at 0 s, and stays.
+/// A scene that may be animated, loaded once and posed at any time. A default camera frames the scene at 0 s.
 class MovingScene {
  public:
-  /// At 0 s. Reads and throws as load_scene does.
+  /// Loads the scene at 0 s. Throws as load_scene().
   explicit MovingScene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-  /// At the instant posed last: the same scene for the same instant, whatever came before. It stays where it is as long as
-  /// the MovingScene does.
+  /// The scene at the time of the last pose(); it depends on that time only. The reference is valid as long as this object.
   const Scene& scene() const { return scene_; }
 
+  /// Returns true if anything is animated.
   bool moves() const { return !motion_.empty() || description_.moves(); }
 
-  /// Throws Error(bad_input) for what moves out of what is allowed.
+  /// Poses the scene at a time. Throws Error(bad_input) if values leave their bounds.
   void pose(double seconds);
 
   Scene take() && { return std::move(scene_); }
 
  private:
-  void load_described(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
-  void show(DescribedViews views);
+  void load_scene_file(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
+  void set_views(SceneViews views);
 
   Motion motion_;
-  SceneDescription description_;  ///< without a scene file: it says nothing
+  SceneDescription description_;  ///< empty without a scene file
   Scene scene_;
 };
 
-/// Whether the scene is a model without a scene file, which says nothing of cascades.
+/// Returns true if the scene is a model without a scene file, and thus without settings of cascades.
 bool is_bare_model(const Scene& scene);
 
 }  // namespace clpv

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Box filter for mip levels, in linear light.
 #include "scene/mip_chain.hpp"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ const std::array<float, 256>& decode_table() {
   return table;
 }
 
-/// Encoding by table: finer than the steepest part of the curve (slope 12.92) needs to hit the right byte or,
-/// at a boundary between two, its neighbour.
+/// sRGB encoding by a table that is fine enough for the steepest part of the curve (slope 12.92): the result is the nearest
+/// byte or, at a boundary, its neighbour.
 std::uint8_t encode(float linear) {
   constexpr std::size_t kSteps = 1 << 14;
   static const std::vector<std::uint8_t> table = [] {
@@ -31,7 +32,7 @@ std::uint8_t encode(float linear) {
   return table[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * kSteps + 0.5f)];
 }
 
-/// Which texels of the level before a texel covers along one axis, and how much of each.
+/// Texels of the previous level that a texel covers along one axis, and their weights.
 struct Taps {
   std::uint32_t first = 0;
   int count = 0;
@@ -73,6 +74,7 @@ void filter_texel(const Texture& from, const Taps& x, const Taps& y, bool weigh_
   out[3] = static_cast<std::uint8_t>(std::lround(std::min(alpha, 255.0f)));
 }
 
+/// The next mip level.
 Texture halved(const Texture& from, bool weigh_by_alpha) {
   Texture to;
   to.width = std::max(1u, from.width / 2);

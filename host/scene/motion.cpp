@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Poses meshes, cameras and lights: morph targets, skinning and node transforms (glTF 2.0, section 3.7).
 #include "scene/motion.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kShortestNormal = 1e-6;  // a shorter normal is none: the stored one stays
+constexpr double kMinMorphedNormal = 1e-6;  // shorter morphed normals are replaced by the stored ones
 
 void add_target(const MorphTarget& target, double weight, std::vector<LocalVertex>& vertices) {
   if (weight == 0) return;
@@ -24,7 +25,7 @@ void add_target(const MorphTarget& target, double weight, std::vector<LocalVerte
     vertices[i].normal += weight * glm::dvec3(target.normals[i]);
 }
 
-/// The primitive's vertices, each target added by its weight; normals unit, flat ones by their triangles anew.
+/// Vertices plus the weighted morph targets. Normals are normalised; flat ones are recomputed from the triangles.
 std::vector<LocalVertex> morphed(const LocalPrimitive& primitive, std::span<const double> weights) {
   std::vector<LocalVertex> vertices = primitive.vertices;
   for (std::size_t t = 0; t < primitive.targets.size(); ++t)
@@ -38,12 +39,12 @@ std::vector<LocalVertex> morphed(const LocalPrimitive& primitive, std::span<cons
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     glm::dvec3& normal = vertices[i].normal;
-    normal = glm::length(normal) < kShortestNormal ? primitive.vertices[i].normal : glm::normalize(normal);
+    normal = glm::length(normal) < kMinMorphedNormal ? primitive.vertices[i].normal : glm::normalize(normal);
   }
   return vertices;
 }
 
-/// What a vertex goes with: its joints' matrices by their shares.
+/// Weighted sum of the joints' matrices.
 glm::dmat4 blended(const Influence& influence, std::span<const glm::dmat4> joints) {
   glm::dmat4 sum(0.0);
   for (int i = 0; i < 4; ++i) {
@@ -52,17 +53,17 @@ glm::dmat4 blended(const Influence& influence, std::span<const glm::dmat4> joint
   return sum;
 }
 
-/// What turns normals: the cofactors of M are det(M) times its inverse transpose, so they need no division
-/// and work for flattened nodes too; the determinant's sign undoes the flip of a mirrored one.
+/// Transform of normals: the cofactor matrix of m, which is det(m) times the inverse transpose and exists for singular m
+/// too. The sign of the determinant corrects mirroring.
 glm::dmat3 normal_matrix(const glm::dmat3& m) {
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::determinant(m) < 0 ? -cofactors : cofactors;
 }
 
-/// Where vertices go: one matrix for all of them, or one each.
+/// Transform of an instance's vertices: one matrix, or one per vertex from the joints of a skin.
 struct Placement {
   glm::dmat4 to_world{1.0};
-  std::span<const glm::dmat4> joints;  ///< of a skin
+  std::span<const glm::dmat4> joints;  ///< empty without a skin
   glm::dmat4 of(const LocalPrimitive& primitive, std::size_t vertex) const {
     return joints.empty() ? to_world : blended(primitive.influences[vertex], joints);
   }
@@ -71,11 +72,11 @@ struct Placement {
 Placement placement_of(const Instance& instance, PosedTree& posed) {
   if (!instance.skin || instance.primitive->influences.empty()) return {posed.to_world(instance.node), {}};
   Placement made{glm::dmat4(1.0), posed.joints(*instance.skin)};
-  made.to_world = made.of(*instance.primitive, 0);  // tells whether it is mirrored
+  made.to_world = made.of(*instance.primitive, 0);  // for its determinant's sign
   return made;
 }
 
-/// Of its morph targets at an instant.
+/// Weights of the instance's morph targets at the time of the pose.
 std::vector<double> weights_of(const Instance& instance, const PosedTree& posed) {
   const auto& curve = posed.tree().nodes[instance.node].curves.weights;
   std::vector<double> weights = instance.weights;
@@ -96,7 +97,7 @@ Vertex placed(const LocalVertex& local, const glm::dmat4& to_world, const glm::d
   }
   glm::dvec3 n = to_normal * local.normal;
   const double length = glm::length(n);
-  n = length > 0 && std::isfinite(length) ? n / length : local.normal;  // a node flattened to a line
+  n = length > 0 && std::isfinite(length) ? n / length : local.normal;  // 0 for scales of 0
   const auto f = [](double value) { return static_cast<float>(value); };
   return {{f(p.x), f(p.y), f(p.z)},
           {f(n.x), f(n.y), f(n.z)},
@@ -126,31 +127,32 @@ void place_triangles(const Instance& instance, bool mirrored, Scene& scene) {
   }
 }
 
-/// A node's transform, and what to call it.
-struct NodePlace {
+/// A node's transform, and its file and JSON pointer for messages.
+struct NodeTransform {
   const glm::dmat4& to_world;
   const std::string& file;
-  std::string node;
+  std::string place;
 };
 
 void store(float (&to)[3], const glm::vec3& from) {
   std::copy_n(glm::value_ptr(from), 3, to);
 }
 
-glm::vec3 position(const NodePlace& place) {
-  const glm::dvec3 p(place.to_world[3]);
+glm::vec3 position(const NodeTransform& node) {
+  const glm::dvec3 p(node.to_world[3]);
   if (glm::any(glm::greaterThan(glm::abs(p), glm::dvec3(bounds::kCoordinate)))) {
-    reject(place.file, place.node, fmt::format("({}, {}, {}) m", p.x, p.y, p.z),
+    reject(node.file, node.place, fmt::format("({}, {}, {}) m", p.x, p.y, p.z),
            fmt::format("coordinates within +-{} m", bounds::kCoordinate));
   }
   return glm::vec3(p);
 }
 
-glm::vec3 axis(const NodePlace& place, const glm::dvec3& local, const char* what) {
-  const glm::dvec3 direction = glm::dmat3(place.to_world) * local;
+/// Unit direction of a local axis in world space; `member` is the part of the node for messages.
+glm::vec3 axis(const NodeTransform& node, const glm::dvec3& local, const char* member) {
+  const glm::dvec3 direction = glm::dmat3(node.to_world) * local;
   const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length)) {
-    reject(place.file, place.node + what, "a transform that leaves no direction", "scales other than 0");
+    reject(node.file, node.place + member, "a transform that leaves no direction", "scales other than 0");
   }
   return glm::vec3(direction / length);
 }
@@ -185,21 +187,22 @@ void place(const Instance& instance, PosedTree& posed, Scene& scene) {
 }
 
 void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string& file, int node) {
-  const NodePlace place{to_world, file, fmt::format("/nodes/{}", node)};
-  camera.eye = position(place);
-  camera.forward = axis(place, {0, 0, -1}, "/camera");
-  const glm::dvec3 up(axis(place, {0, 1, 0}, "/camera")), forward(camera.forward);
-  const glm::dvec3 across = up - forward * glm::dot(forward, up);  // a sheared node tilts it
-  if (glm::length(across) < 1e-6)
-    reject(file, place.node, "a camera's transform without up", "up across forward");
-  camera.up = glm::vec3(glm::normalize(across));
+  const NodeTransform transform{to_world, file, fmt::format("/nodes/{}", node)};
+  camera.eye = position(transform);
+  camera.forward = axis(transform, {0, 0, -1}, "/camera");
+  const glm::dvec3 up(axis(transform, {0, 1, 0}, "/camera")), forward(camera.forward);
+  const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);  // shear makes them oblique
+  if (glm::length(perpendicular) < 1e-6)
+    reject(file, transform.place, "a camera's transform with parallel up and forward",
+           "different directions");
+  camera.up = glm::vec3(glm::normalize(perpendicular));
 }
 
 void place_light(ClpvLight& light, const glm::dmat4& to_world, const std::string& file, int node) {
-  const NodePlace place{to_world, file, fmt::format("/nodes/{}", node)};
-  store(light.position, position(place));
+  const NodeTransform transform{to_world, file, fmt::format("/nodes/{}", node)};
+  store(light.position, position(transform));
   if (kind_of(light) != LightKind::point)
-    store(light.direction, axis(place, {0, 0, -1}, "/extensions/KHR_lights_punctual"));
+    store(light.direction, axis(transform, {0, 0, -1}, "/extensions/KHR_lights_punctual"));
 }
 
 void Motion::pose(Scene& scene, double seconds) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The meshes of a model: primitives in their own space, the nodes at which they stand, and what of that moves.
+// Meshes of a model in local space, their instances at nodes, and their animation.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +18,16 @@ struct LocalVertex {
   glm::dvec3 position, normal;
   glm::vec2 uv;
   glm::vec4 colour;
-  std::uint32_t source;  ///< its index in the accessors, for messages
+  std::uint32_t source;  ///< index in the accessors, for messages
 };
 
-/// What joints of a skin a vertex goes with, and their shares, which add up to 1.
+/// Joints that move a vertex, with weights of sum 1.
 struct Influence {
   std::uint16_t joints[4];
   double weights[4];
 };
 
-/// What a morph target adds at weight 1: one a vertex, or none.
+/// Offsets of a morph target at weight 1: one per vertex, or empty.
 struct MorphTarget {
   std::vector<glm::vec3> positions, normals;
 };
@@ -37,43 +37,43 @@ struct LocalPrimitive {
   std::vector<LocalVertex> vertices;
   std::vector<glm::uvec3> triangles;
   std::uint32_t material = 0;
-  bool flat = false;                  ///< without stored normals: each triangle has three vertices of its own
-  std::vector<Influence> influences;  ///< one a vertex; none: it has no joints
+  bool flat = false;                  ///< flat normals: triangles share no vertices
+  std::vector<Influence> influences;  ///< one per vertex; empty without joints
   std::vector<MorphTarget> targets;
 };
 
-/// The unit normal of a triangle of those vertices; 0 of one without area.
+/// Unit normal of a triangle; 0 if its area is 0.
 glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::uvec3& triangle);
 
-/// A primitive that stands at a node: its vertices and triangles in world space, and their places in the scene.
+/// A primitive at a node, and the range of the scene's vertices and triangles that it fills.
 struct Instance {
   std::shared_ptr<const LocalPrimitive> primitive;
-  std::size_t node = 0;                                ///< of the tree
-  std::shared_ptr<const Skin> skin;                    ///< null: it goes with its node
-  std::vector<double> weights;                         ///< of morph targets, where no curve says them
-  std::uint32_t first_vertex = 0, first_triangle = 0;  ///< in the scene, which has room for all from there on
+  std::size_t node = 0;                                ///< index in the tree
+  std::shared_ptr<const Skin> skin;                    ///< null: the node's transform applies
+  std::vector<double> weights;                         ///< of morph targets without a curve
+  std::uint32_t first_vertex = 0, first_triangle = 0;  ///< in the scene, whose vectors have their final size
 };
 
-/// Whether it changes with time.
+/// Returns true if the instance is animated.
 bool moves(const Instance& instance, const NodeTree& tree);
 
-/// Writes its vertices [m] and triangles into the scene: bent by its morph targets and its skin, or placed by its node; a
-/// mirrored one keeps its outside outside. Throws Error(bad_input) for coordinates beyond the bounds.
+/// Writes the vertices [m] and triangles of an instance into the scene, transformed by morph targets, then skin or node.
+/// Mirrored instances keep their fronts outside. Throws Error(bad_input) for coordinates beyond the bounds.
 void place(const Instance& instance, PosedTree& posed, Scene& scene);
 
-/// Sets eye, forward and up: it looks along the node's -z. `file` and `node`, its index, are for messages. Throws
-/// Error(bad_input) for coordinates beyond the bounds and transforms that leave no direction; so does place_light.
+/// Sets eye, forward (the node's -z) and up. Messages contain `file` and the node's index. Throws Error(bad_input) for
+/// coordinates beyond the bounds and for transforms that map the direction to 0.
 void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string& file, int node);
 
-/// Sets position, and the direction of what has one: along the node's -z.
+/// Sets position and direction (the node's -z; not for point lights). Throws as place_camera().
 void place_light(ClpvLight& light, const glm::dmat4& to_world, const std::string& file, int node);
 
-/// What of a model moves, and how.
+/// Animated meshes, cameras and lights of a model.
 struct Motion {
-  /// A camera or a light at a node that moves.
+  /// A camera or light at a moving node.
   struct MovingView {
-    std::size_t view;  ///< in the scene's cameras, or its lights
-    std::size_t node;  ///< in `tree`
+    std::size_t view;  ///< index in the scene's cameras or lights
+    std::size_t node;  ///< index in `tree`
   };
 
   NodeTree tree;
@@ -82,8 +82,7 @@ struct Motion {
 
   bool empty() const { return meshes.empty() && cameras.empty() && lights.empty(); }
 
-  /// Puts all that moves where it is at an instant [s], whatever instant the scene showed before. Throws Error(bad_input)
-  /// for what leads out of the bounds.
+  /// Poses the scene at a time [s], independently of its pose before. Throws Error(bad_input) if values leave their bounds.
   void pose(Scene& scene, double seconds) const;
 };
 

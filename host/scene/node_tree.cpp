@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Evaluates transforms of nodes and joints.
 #include "scene/node_tree.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +21,9 @@ bool finite(const glm::dmat4& m) {
   return true;
 }
 
-/// To its parent's space.
+/// Transform of a node to its parent's space.
 glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
-  if (!node.curves.moves()) return node.still;
+  if (!node.curves.moves()) return node.rest;
   Pose pose = node.pose;
   if (node.curves.translation) pose.translation = vector_at(*node.curves.translation, seconds);
   if (node.curves.scale) pose.scale = vector_at(*node.curves.scale, seconds);
@@ -30,7 +31,8 @@ glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double se
     pose.rotation = rotation_at(*node.curves.rotation, seconds);
     if (!(glm::length(*pose.rotation) > 0.5)) {
       reject(tree.file, fmt::format("/nodes/{}/rotation", node.index),
-             fmt::format("a spline through no rotation at {} s", seconds), "a way through rotations");
+             fmt::format("a quaternion of length {} at {} s", glm::length(*pose.rotation), seconds),
+             "splines through lengths above 0.5");
     }
   }
   return pose.matrix();
@@ -50,8 +52,8 @@ std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
   std::vector<glm::dmat4> made;
   made.reserve(nodes.size());
   for (const TreeNode& node : nodes) {
-    const glm::dmat4& above = node.parent ? made[*node.parent] : root;
-    made.push_back(above * local_transform(*this, node, seconds));
+    const glm::dmat4& parent = node.parent ? made[*node.parent] : root;
+    made.push_back(parent * local_transform(*this, node, seconds));
     if (!finite(made.back())) {
       reject(file, fmt::format("/nodes/{}", node.index), "a transform that overflows", "finite transforms");
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A model's nodes and skins, and where they stand at any instant. Plain numbers: the document they came from may be gone.
+// Node tree and skins of a model, and their transforms at a time. Independent of the document.
 #pragma once
 
 #include <cstddef>
@@ -22,20 +22,20 @@ struct Pose {
   glm::dmat4 matrix() const;
 };
 
-/// What of a node changes with time; null: nothing.
+/// Animation curves of a node; null for properties without one.
 struct NodeCurves {
   std::shared_ptr<const Curve> translation, rotation, scale;
-  std::shared_ptr<const Curve> weights;  ///< of its mesh's morph targets
+  std::shared_ptr<const Curve> weights;  ///< weights of the mesh's morph targets
   bool moves() const { return translation || rotation || scale; }
 };
 
 struct TreeNode {
   int index = 0;                      ///< in the document
-  std::optional<std::size_t> parent;  ///< its place in the list; parents come first
-  glm::dmat4 still{1.0};              ///< to its parent's space, where no curve moves it
-  Pose pose;                          ///< what the curves replace, where some do
+  std::optional<std::size_t> parent;  ///< position in NodeTree::nodes; parents come first
+  glm::dmat4 rest{1.0};               ///< transform to the parent's space, without curves
+  Pose pose;                          ///< values of properties without a curve, for animated nodes
   NodeCurves curves;
-  bool moves = false;  ///< it, or one above it
+  bool moves = false;  ///< true if the node or an ancestor is animated
 };
 
 struct NodeTree {
@@ -43,20 +43,20 @@ struct NodeTree {
   glm::dmat4 root{1.0};
   std::vector<TreeNode> nodes;
 
-  /// Each node's transform to world space, in their order. Throws Error(bad_input) for transforms that are not finite, and
-  /// splines that lead through no rotation.
+  /// Transforms of all nodes to world space, in order. Throws Error(bad_input) for transforms that are not finite, and for
+  /// splines of rotations with a length below 0.5.
   std::vector<glm::dmat4> to_world(double seconds) const;
 };
 
 struct Skin {
-  std::vector<std::size_t> joints;        ///< nodes of the tree
-  std::vector<glm::dmat4> inverse_binds;  ///< one a joint: from the mesh as stored to the joint's space
+  std::vector<std::size_t> joints;        ///< positions in NodeTree::nodes
+  std::vector<glm::dmat4> inverse_binds;  ///< one per joint: from the mesh's space to the joint's space
 };
 
-/// A tree at an instant: where each node stands, and what each skin does to vertices.
+/// A tree at a time: transforms of nodes and of joints. Borrows the tree.
 class PosedTree {
  public:
-  /// Throws as NodeTree::to_world does.
+  /// Throws as NodeTree::to_world().
   PosedTree(const NodeTree& tree, double seconds)
       : tree_(tree), seconds_(seconds), to_world_(tree.to_world(seconds)) {}
 
@@ -64,7 +64,7 @@ class PosedTree {
   double seconds() const { return seconds_; }
   const glm::dmat4& to_world(std::size_t node) const { return to_world_[node]; }
 
-  /// One matrix a joint, from the mesh as stored to world space.
+  /// Joint matrices of a skin, one per joint, from the mesh's space to world space.
   std::span<const glm::dmat4> joints(const Skin& skin);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the loader decided and a user should be told, bounded: a hostile file must not flood the terminal.
+// Notes of the loader to the user, bounded in number against hostile files.
 #pragma once
 
 #include <string>
@@ -10,6 +10,7 @@
 
 namespace clpv {
 
+/// Stores the first bounds::kNotes notes and counts the others.
 class Notes {
  public:
   void add(std::string_view note) {
@@ -20,7 +21,7 @@ class Notes {
     }
   }
 
-  /// The notes in order, the last one counting what was left out.
+  /// Returns the notes in order, and a last one with the number of omitted notes.
   std::vector<std::string> take() {
     if (more_ > 0) notes_.push_back("and " + std::to_string(more_) + " more notes like these");
     more_ = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cameras and lights of a scene by name, and hashes of its animated parts.
 #include "scene/scene.hpp"
 
 #include <fmt/ranges.h>
@@ -14,8 +15,8 @@ double Scene::reach() const {
   if (start_reach) return *start_reach;
   double reach = 0;
   for (const Camera& camera : cameras) {
-    const glm::vec3 away = glm::max(glm::abs(lower - camera.eye), glm::abs(upper - camera.eye));
-    reach = std::max<double>({reach, away.x, away.y, away.z});
+    const glm::vec3 distance = glm::max(glm::abs(lower - camera.eye), glm::abs(upper - camera.eye));
+    reach = std::max<double>({reach, distance.x, distance.y, distance.z});
   }
   return reach;
 }
@@ -26,25 +27,25 @@ const Camera& Scene::camera(const std::string& name) const {
     if (name.empty() || candidate.name == name) return candidate;
     names.push_back(candidate.name);
   }
-  throw Error(ExitCode::usage, "{}: no camera named '{}'; there are: {}", path, name, fmt::join(names, ", "));
+  throw Error(ExitCode::usage, "{}: no camera named '{}'; allowed: {}", path, name, fmt::join(names, ", "));
 }
 
 std::vector<Light> Scene::lights_for(const Camera& camera) const {
   if (camera.light.empty()) return lights;
-  std::vector<Light> chosen;
+  std::vector<Light> named;
   for (const Light& light : lights) {
-    if (light.name == camera.light) chosen.push_back(light);
+    if (light.name == camera.light) named.push_back(light);
   }
-  return chosen;
+  return named;
 }
 
-void add_part(Fingerprint& print, const Scene& scene, const Part& part) {
-  print.add(std::as_bytes(std::span(scene.vertices).subspan(part.first_vertex, part.vertices)));
-  print.add(std::as_bytes(std::span(scene.triangles).subspan(part.first_triangle, part.triangles)));
+void add_range(Fingerprint& print, const Scene& scene, const MeshRange& range) {
+  print.add(std::as_bytes(std::span(scene.vertices).subspan(range.first_vertex, range.vertices)));
+  print.add(std::as_bytes(std::span(scene.triangles).subspan(range.first_triangle, range.triangles)));
 }
 
 void add_moving(Fingerprint& print, const Scene& scene) {
-  for (const Part& part : scene.moving) add_part(print, scene, part);
+  for (const MeshRange& range : scene.moving) add_range(print, scene, range);
 }
 
 }  // namespace clpv

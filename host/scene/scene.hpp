@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is lit, at one instant: triangles, materials, textures, cameras and lights. Plain data in metres; knows no OpenCL.
+// A scene at one time: triangles, materials, textures, cameras and lights, in metres. Does not depend on OpenCL.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX && sizeof(ClpvTriangle) =
               sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL && sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE &&
               sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
 
-/// RGBA, 8 bits each, row 0 first (v = 0): sRGB-encoded colour, linear alpha.
+/// Texture of RGBA with 8 bits per channel, row 0 (v = 0) first: sRGB-encoded colour, linear alpha.
 struct Texture {
   std::uint32_t width = 0, height = 0;
   std::uint32_t wrap_u = CLPV_WRAP_REPEAT, wrap_v = CLPV_WRAP_REPEAT;
@@ -33,7 +33,7 @@ struct Texture {
   std::string name;
 };
 
-/// Three numbers of the structs that are shared with kernels.
+/// Vector of three floats, as the structs shared with kernels have them.
 inline glm::dvec3 vector(const float v[3]) {
   return {v[0], v[1], v[2]};
 }
@@ -42,10 +42,10 @@ struct Camera {
   std::string name;
   glm::vec3 eye{0};              ///< [m]
   glm::vec3 forward{0, 0, -1};   ///< unit
-  glm::vec3 up{0, 1, 0};         ///< unit, across forward
+  glm::vec3 up{0, 1, 0};         ///< unit, perpendicular to forward
   float vertical_fov = 1.0472f;  ///< [rad], in (0, pi)
   float near_depth = 0.05f;      ///< [m]
-  std::string light;             ///< the only light that shines with this camera; empty: all of them
+  std::string light;             ///< name of the only light for this camera; empty: all lights
 };
 
 struct Light {
@@ -53,47 +53,47 @@ struct Light {
   ClpvLight data{};
 };
 
-/// An axis-aligned box [m].
+/// Axis-aligned box [m].
 struct Bounds {
   glm::vec3 lower{0}, upper{0};
 };
 
-/// A run of a scene's vertices and triangles.
-struct Part {
+/// Range of a scene's vertices and triangles.
+struct MeshRange {
   std::uint32_t first_vertex, vertices, first_triangle, triangles;
 };
 
 struct Scene {
   std::string name;  ///< the file's stem
-  std::string path;  ///< the file it came from
+  std::string path;  ///< the scene's file
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
-  std::vector<Material> materials;  ///< at least one, where there are triangles
+  std::vector<Material> materials;  ///< at least one if there are triangles
   std::vector<Texture> textures;
-  std::vector<Part> moving;     ///< what of its vertices and triangles changes with time
-  std::vector<Camera> cameras;  ///< at least one after loading
+  std::vector<MeshRange> moving;  ///< animated vertices and triangles
+  std::vector<Camera> cameras;    ///< at least one after loading
   std::vector<Light> lights;
-  std::shared_ptr<const Sky> sky;     ///< null: nothing shines from beyond the scene
+  std::shared_ptr<const Sky> sky;     ///< null without a sky
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
-  std::optional<double> start_reach;  ///< reach() at 0 s, of a scene that moves
-  float exposure = 0;                 ///< [EV]: the shown image is radiance x 2^exposure
-  std::optional<float> cascade_size;  ///< the scene file's wish for the finest cascade's edge [m]
-  std::optional<int> cascades;
-  std::vector<std::string>
-      notes;  ///< what the loader decided and a user should be told ("no light: added a sun")
+  std::optional<double> start_reach;  ///< reach() at 0 s, for animated scenes
+  float exposure = 0;                 ///< [EV]: display values are radiance x 2^exposure
+  std::optional<float> cascade_size;  ///< edge of the finest cascade from the scene file [m]
+  std::optional<int> cascades;        ///< number of cascades from the scene file
+  std::vector<std::string> notes;     ///< notes of the loader to the user ("no light: added a sun")
 
-  /// How far the bounding box reaches from the eye of any camera, along any axis [m]; of a scene that moves, at 0 s.
+  /// Largest distance along an axis from a camera's eye to the bounding box's faces [m]; animated scenes: at 0 s.
   double reach() const;
 
-  /// The camera of that name; empty: the first. Throws Error(usage) that lists the names there are.
+  /// The camera with this name, or the first for an empty name. Throws Error(usage) that lists all names.
   const Camera& camera(const std::string& name) const;
 
-  /// The lights that shine when seen through `camera`: the one it names, or all.
+  /// Lights for a camera: the one it names, or all.
   std::vector<Light> lights_for(const Camera& camera) const;
 };
 
-/// Adds what of a scene's triangles changes with time, as it is now; or one part of that.
+/// Adds the animated vertices and triangles to a hash.
 void add_moving(Fingerprint& print, const Scene& scene);
-void add_part(Fingerprint& print, const Scene& scene, const Part& part);
+/// Adds the vertices and triangles of a range to a hash.
+void add_range(Fingerprint& print, const Scene& scene, const MeshRange& range);
 
 }  // namespace clpv

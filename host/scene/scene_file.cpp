@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads and checks scene files.
 #include "scene/scene_file.hpp"
 
 #include <fmt/ranges.h>
@@ -22,10 +23,10 @@ namespace {
 using nlohmann::json;
 
 constexpr double kFar = bounds::kCoordinate;
-constexpr double kTiny = 1e-6;   // stands for "greater than 0"
-constexpr double kBright = 1e9;  // lux or candela; the sun is 1e5
+constexpr double kTiny = 1e-6;   // minimum of positive numbers
+constexpr double kBright = 1e9;  // maximum of lights [lux, candela]; the sun has 1e5 lux
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kOuterCone = 45, kInnerCone = 0;  // [degrees] where not given, as in KHR_lights_punctual
+constexpr double kOuterCone = 45, kInnerCone = 0;  // defaults as in KHR_lights_punctual [degrees]
 
 const KeyedList& keyed_cameras() {
   using namespace rule;
@@ -50,7 +51,7 @@ const KeyedList& keyed_lights() {
   return kList;
 }
 
-/// What cameras and lights are at an instant.
+/// Rules of cameras and lights without keys.
 std::vector<Rule> camera_and_light_rules() {
   using namespace rule;
   std::vector<Rule> rules = {
@@ -72,7 +73,7 @@ std::vector<Rule> camera_and_light_rules() {
   return rules;
 }
 
-/// What the file may say.
+/// Rules of a scene file.
 const std::vector<Rule>& rules() {
   using namespace rule;
   static const std::vector<Rule> kRules = [] {
@@ -124,21 +125,22 @@ Camera read_camera(const json& given, double scale, const std::string& file, con
     reject(file, place + "/target", "the eye itself", "a point away from eye");
   const glm::dvec3 forward = glm::normalize(towards);
   const glm::dvec3 up = given.contains("up") ? direction_in(given, "up", file, place) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 across = up - forward * glm::dot(forward, up);
-  if (glm::length(across) < kTiny) {
+  const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);
+  if (glm::length(perpendicular) < kTiny) {
     reject(file, place + "/up",
-           given.contains("up") ? "a vector along the line of sight" : "nothing, and a vertical view",
-           "a vector across the line of sight");
+           given.contains("up") ? "a vector parallel to the viewing direction"
+                                : "nothing, for a vertical viewing direction",
+           "a vector that is not parallel to the viewing direction");
   }
   made.eye = glm::vec3(eye * scale);
   made.forward = glm::vec3(forward);
-  made.up = glm::vec3(glm::normalize(across));
+  made.up = glm::vec3(glm::normalize(perpendicular));
   made.vertical_fov = static_cast<float>(given.value("vertical_fov_degrees", 60.0) * kRadians);
   if (given.contains("near")) made.near_depth = static_cast<float>(given["near"].get<double>() * scale);
   return made;
 }
 
-/// Keys of a light beyond name, kind and colour: which its kind must have, and which it may have.
+/// JSON keys of a kind of light besides name, kind and colour.
 struct LightKeys {
   std::vector<std::string> required, optional;
 };
@@ -169,7 +171,7 @@ void check_light_keys(const json& given, LightKind light_kind, const std::string
   allowed.insert(keys.optional.begin(), keys.optional.end());
   for (const auto& [key, value] : given.items()) {
     if (!allowed.contains(key)) {
-      reject(file, pointer_to(place, key), "a key that a " + kind + " light has not",
+      reject(file, pointer_to(place, key), "a key that a " + kind + " light does not have",
              fmt::format("{}", fmt::join(allowed, ", ")));
     }
   }
@@ -207,18 +209,19 @@ Light read_light(const json& given, double scale, const std::string& file, const
   return made;
 }
 
-/// Names tell cameras and lights apart, so none may come twice. Nameless lights are fine.
+/// Rejects duplicate names of cameras or lights. Empty names may repeat.
 template <typename Named>
 void check_names(const std::vector<Named>& list, const std::string& file, const char* place) {
-  std::set<std::string> seen;
+  std::set<std::string> names;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (!list[i].name.empty() && !seen.insert(list[i].name).second) {
-      reject(file, fmt::format("{}/{}/name", place, i), "'" + list[i].name + "' again", "names that differ");
+    if (!list[i].name.empty() && !names.insert(list[i].name).second) {
+      reject(file, fmt::format("{}/{}/name", place, i), "duplicate name '" + list[i].name + "'",
+             "unique names");
     }
   }
 }
 
-/// Every entry of a list by `read`, the reader of one.
+/// Reads each entry of a list by `read`.
 template <typename Read>
 auto read_list(const json& list, Read read, double scale, const std::string& file, const char* place) {
   std::vector<decltype(read(list, scale, file, file))> made;
@@ -243,23 +246,22 @@ json entries_at(const std::vector<KeyedEntry>& entries, double seconds) {
   return list;
 }
 
-/// A constant, or a map that lies beside the scene file or below.
-Sky described_sky(const json& given, const std::filesystem::path& path, const std::string& file) {
+/// Reads a sky: a constant, or a map in the scene file's folder or below.
+Sky read_sky_member(const json& given, const std::filesystem::path& path, const std::string& file) {
   if (given.contains("radiance") == given.contains("map")) {
     reject(file, "/sky", given.contains("map") ? "radiance and map" : "neither radiance nor map",
            "one of them");
   }
   if (given.contains("radiance")) {
     for (const char* key : {"scale", "rotation_degrees"}) {
-      if (given.contains(key))
-        reject(file, pointer_to("/sky", key), "a value", "none, where the sky is even");
+      if (given.contains(key)) reject(file, pointer_to("/sky", key), "a value", "none, for a constant sky");
     }
     const glm::vec3 above(vector_in(given, "radiance"));
-    return given.contains("ground") ? parted_sky(above, glm::vec3(vector_in(given, "ground")))
-                                    : even_sky(above);
+    return given.contains("ground") ? sky_with_ground(above, glm::vec3(vector_in(given, "ground")))
+                                    : constant_sky(above);
   }
-  if (given.contains("ground")) reject(file, "/sky/ground", "a value", "none, beside a map");
-  // Absolute first: a bare name has no folder.
+  if (given.contains("ground")) reject(file, "/sky/ground", "a value", "none, for a map");
+  // The absolute path has a folder for bare file names too.
   const auto folder = std::filesystem::canonical(std::filesystem::absolute(path).parent_path());
   return read_sky(resolve_uri(folder, given["map"], file, "/sky/map"), given.value("scale", 1.0),
                   given.value("rotation_degrees", 0.0) * kRadians);
@@ -295,21 +297,22 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
     if (cascades.contains("size_metres")) scene.cascade_size = cascades["size_metres"].get<float>();
   }
   if (parsed.contains("sky"))
-    scene.sky = std::make_shared<const Sky>(described_sky(parsed["sky"], path, scene.file));
+    scene.sky = std::make_shared<const Sky>(read_sky_member(parsed["sky"], path, scene.file));
   scene.cameras = read_entries(parsed, "cameras", keyed_cameras(), scene.file);
   scene.lights = read_entries(parsed, "lights", keyed_lights(), scene.file);
   return scene;
 }
 
-DescribedViews views_at(const SceneDescription& description, double seconds) {
+SceneViews views_at(const SceneDescription& description, double seconds) {
   const bool moves = description.moves();
   const std::string file = moves ? fmt::format("{} at {} s", description.file, seconds) : description.file;
   json posed = json::object();
   if (description.cameras) posed["cameras"] = entries_at(*description.cameras, seconds);
   if (description.lights) posed["lights"] = entries_at(*description.lights, seconds);
-  if (moves) check_rules(posed, camera_and_light_rules(), file);  // a spline may swing beyond its keys
+  if (moves)
+    check_rules(posed, camera_and_light_rules(), file);  // splines may exceed the range of their keys
   const double scale = description.metres_per_unit;
-  DescribedViews made;
+  SceneViews made;
   if (description.cameras) made.cameras = read_list(posed["cameras"], read_camera, scale, file, "/cameras");
   if (description.lights) made.lights = read_list(posed["lights"], read_light, scale, file, "/lights");
   return made;

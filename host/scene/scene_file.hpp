@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Our scene file: which model, in what units, seen and lit how, and when. docs/scenes.md describes the format.
+// Scene files: model, units, cameras, lights, sky and their keys. docs/scenes.md describes the format.
 #pragma once
 
 #include <filesystem>
@@ -13,28 +13,29 @@
 namespace clpv {
 
 struct SceneDescription {
-  std::string file;             ///< as the user named it, for messages
-  std::filesystem::path model;  ///< resolved against the file's folder; empty: not given
+  std::string file;             ///< path from the user, for messages
+  std::filesystem::path model;  ///< resolved against the file's folder; empty if absent
   double metres_per_unit = 1;
   float exposure = 0;
   std::optional<float> cascade_size;  ///< [m]
   std::optional<int> cascades;
-  std::shared_ptr<const Sky> sky;                          ///< null: not given
-  std::optional<std::vector<KeyedEntry>> cameras, lights;  ///< given: they replace the model's
+  std::shared_ptr<const Sky> sky;                          ///< null if absent
+  std::optional<std::vector<KeyedEntry>> cameras, lights;  ///< replace the model's, unless absent
 
+  /// Returns true if a camera or light has keys.
   bool moves() const;
 };
 
-/// The cameras and lights of a scene file at an instant, in metres; none where it does not give them.
-struct DescribedViews {
+/// Cameras and lights of a scene file at a time, in metres; empty if absent in the file.
+struct SceneViews {
   std::optional<std::vector<Camera>> cameras;
   std::optional<std::vector<Light>> lights;
 };
 
-/// Throws Error(bad_input), for unknown keys too.
+/// Reads a scene file. Throws Error(bad_input), also for unknown keys.
 SceneDescription read_scene_file(const std::filesystem::path& path);
 
-/// Throws Error(bad_input) that names the instant where something moves.
-DescribedViews views_at(const SceneDescription& description, double seconds);
+/// Evaluates cameras and lights at a time. Throws Error(bad_input) that names the time.
+SceneViews views_at(const SceneDescription& description, double seconds);
 
 }  // namespace clpv

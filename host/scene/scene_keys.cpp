@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads the keys of cameras and lights, and evaluates them.
 #include "scene/scene_keys.hpp"
 
 #include <fmt/ranges.h>
@@ -15,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kShortestDirection = 1e-6;  // a shorter direction is none
+constexpr double kMinDirection = 1e-6;  // shorter directions are rejected
 
 std::string quantity_of(const Rule& rule) {
   return rule.place.substr(rule.place.rfind('/') + 1);
@@ -37,26 +38,26 @@ void check_key_times(const json& keys, const std::string& file, const std::strin
   }
 }
 
-/// Each key says something, and nothing that stands beside the keys too.
+/// Checks that each key has quantities, and none that the entry has too.
 void check_key_quantities(const json& given, const KeyedList& list, const std::string& file,
                           const std::string& place) {
   const json& keys = given["keys"];
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string here = fmt::format("{}/keys/{}", place, i);
     if (keys[i].size() == 1) {
-      reject(file, here, "a time alone",
-             fmt::format("a time and some of {}", fmt::join(quantities_of(list), ", ")));
+      reject(file, here, "only a time",
+             fmt::format("a time and at least one of {}", fmt::join(quantities_of(list), ", ")));
     }
     for (const auto& [key, value] : keys[i].items()) {
       if (given.contains(key)) {
-        reject(file, pointer_to(here, key), fmt::format("what {} says too", pointer_to(place, key)),
+        reject(file, pointer_to(here, key), fmt::format("a duplicate of {}", pointer_to(place, key)),
                "one of the two");
       }
     }
   }
 }
 
-/// Tangents of the parabola through a key and its neighbours; none at either end, where it stands still beyond.
+/// Values with tangents: those of the parabola through a key and its neighbours, and 0 at the first and last key.
 std::vector<double> with_tangents(const Curve& linear) {
   const std::size_t n = linear.components, keys = linear.times.size();
   std::vector<double> values;
@@ -65,9 +66,9 @@ std::vector<double> with_tangents(const Curve& linear) {
     for (std::size_t i = 0; k > 0 && k + 1 < keys && i < n; ++i) {
       const double before = linear.times[k] - linear.times[k - 1],
                    after = linear.times[k + 1] - linear.times[k];
-      const double arriving = (linear.values[k * n + i] - linear.values[(k - 1) * n + i]) / before,
-                   leaving = (linear.values[(k + 1) * n + i] - linear.values[k * n + i]) / after;
-      tangent[i] = (arriving * after + leaving * before) / (before + after);
+      const double slope_before = (linear.values[k * n + i] - linear.values[(k - 1) * n + i]) / before,
+                   slope_after = (linear.values[(k + 1) * n + i] - linear.values[k * n + i]) / after;
+      tangent[i] = (slope_before * after + slope_after * before) / (before + after);
     }
     values.insert(values.end(), tangent.begin(), tangent.end());
     const auto value = linear.values.begin() + static_cast<std::ptrdiff_t>(k * n);
@@ -77,13 +78,13 @@ std::vector<double> with_tangents(const Curve& linear) {
   return values;
 }
 
-/// Makes the value a unit vector that may follow the one before.
+/// Appends a value as unit vector. Rejects length 0 and the opposite of the previous key.
 void add_direction(Curve& curve, const glm::dvec3& value, const std::string& file, const std::string& place) {
-  if (glm::length(value) < kShortestDirection) reject(file, place, "a vector of no length", "a direction");
+  if (glm::length(value) < kMinDirection) reject(file, place, "a vector of no length", "a direction");
   const glm::dvec3 unit = glm::normalize(value);
   if (!curve.values.empty()) {
     const double* last = &curve.values[curve.values.size() - 3];
-    if (glm::length(glm::dvec3(last[0], last[1], last[2]) + unit) < kShortestDirection) {
+    if (glm::length(glm::dvec3(last[0], last[1], last[2]) + unit) < kMinDirection) {
       reject(file, place, "the opposite of the key before", "a turn by less than half a circle");
     }
   }
@@ -114,11 +115,11 @@ Curve read_curve(const json& keys, const std::string& quantity, bool direction, 
 
 std::vector<Rule> key_rules(const KeyedList& list) {
   const std::string keys = list.place + "/*/keys";
-  std::vector<std::string> words;
-  for (const KeyInterpolation each : list.interpolations) words.emplace_back(name_of(each));
+  std::vector<std::string> names;
+  for (const KeyInterpolation each : list.interpolations) names.emplace_back(name_of(each));
   std::vector<Rule> rules = {rule::list(keys, 1, bounds::kSceneKeys), rule::object(keys + "/*"),
                              rule::number(keys + "/*/time", 0, bounds::kSeconds).must(),
-                             rule::text(list.place + "/*/interpolation", words)};
+                             rule::text(list.place + "/*/interpolation", names)};
   for (Rule quantity : list.quantities) {
     quantity.place = keys + "/*/" + quantity_of(quantity);
     rules.push_back(std::move(quantity));
@@ -128,13 +129,13 @@ std::vector<Rule> key_rules(const KeyedList& list) {
 
 KeyedEntry::KeyedEntry(const json& given, const KeyedList& list, const std::string& file,
                        const std::string& place) {
-  json still = given;
-  still.erase("keys");
-  still.erase("interpolation");
-  still_ = std::make_shared<const json>(std::move(still));
+  json members = given;
+  members.erase("keys");
+  members.erase("interpolation");
+  members_ = std::make_shared<const json>(std::move(members));
   if (!given.contains("keys")) {
     if (given.contains("interpolation"))
-      reject(file, place + "/interpolation", "no keys beside it", "interpolation where there are keys");
+      reject(file, place + "/interpolation", "no keys in the entry", "interpolation with keys");
     return;
   }
   check_key_times(given["keys"], file, place);
@@ -153,7 +154,7 @@ KeyedEntry::KeyedEntry(const json& given, const KeyedList& list, const std::stri
 }
 
 json KeyedEntry::at(double seconds) const {
-  json made = *still_;
+  json made = *members_;
   for (const Track& track : tracks_) {
     std::vector<double> value(track.curve.components);
     evaluate(track.curve, seconds, value);

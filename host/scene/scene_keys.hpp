@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras and lights of a scene file that move: `keys`, each a time and what some quantities are then.
+// Animated cameras and lights of a scene file: `keys`, each with a time and values of some quantities.
 #pragma once
 
 #include <memory>
@@ -13,38 +13,39 @@
 
 namespace clpv {
 
-/// How what moves goes from key to key: an Interpolation, by the scene file's names.
+/// Interpolation between keys, with the scene file's names and the values of Interpolation.
 enum class KeyInterpolation : unsigned {
-  linear,  ///< evenly; directions along the great circle
-  step,    ///< not at all, until the next key
-  smooth,  ///< by cubic splines without a jump of speed, at rest at the first key and at the last
+  linear,  ///< linear; directions along the great circle
+  step,    ///< constant until the next key
+  smooth,  ///< cubic splines with continuous velocity, which is 0 at the first and last key
 };
 
 template <>
 inline constexpr auto kNames<KeyInterpolation> = name_list("linear", "step", "smooth");
 
-/// The quantities that may move, of an entry of that list.
+/// A list of the scene file (cameras or lights) and the quantities of its entries that may have keys.
 struct KeyedList {
-  std::string place;             ///< "/cameras"
-  std::vector<Rule> quantities;  ///< of the entry's own: "/cameras/*/eye" and so on; numbers or vectors
-  std::string direction;         ///< the one of them that is a direction, and keeps to the sphere
+  std::string place;  ///< "/cameras"
+  std::vector<Rule>
+      quantities;         ///< rules of the quantities without keys ("/cameras/*/eye"): numbers or vectors
+  std::string direction;  ///< the quantity that is interpolated as a unit vector; may be empty
   std::vector<KeyInterpolation> interpolations;  ///< allowed
 };
 
-/// What the schema says of `keys` and `interpolation` in such a list.
+/// Rules of `keys` and `interpolation` in a list's entries.
 std::vector<Rule> key_rules(const KeyedList& list);
 
-/// One entry of a list: its members as given, and the curves of those that keys name.
+/// One entry of a list: its members without keys, and a curve per quantity with keys.
 class KeyedEntry {
  public:
-  /// Of a document that obeys the schema. Throws Error(bad_input) for times that do not rise, keys that say nothing,
-  /// quantities that stand both beside the keys and in them, and directions that have no length or turn by half a circle.
+  /// `given` must obey the schema. Throws Error(bad_input) for times that do not rise, keys without quantities, quantities
+  /// both in the entry and in keys, directions of length 0, and opposite directions in adjacent keys.
   KeyedEntry(const nlohmann::json& given, const KeyedList& list, const std::string& file,
              const std::string& place);
 
   bool moves() const { return !tracks_.empty(); }
 
-  /// The entry as it is at an instant: what keys name has its value of then, and there are no keys.
+  /// The entry at a time, without keys: quantities with keys have their values at that time.
   nlohmann::json at(double seconds) const;
 
  private:
@@ -53,7 +54,7 @@ class KeyedEntry {
     bool number, direction;
     Curve curve;
   };
-  std::shared_ptr<const nlohmann::json> still_;  ///< all else
+  std::shared_ptr<const nlohmann::json> members_;  ///< without keys
   std::vector<Track> tracks_;
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Equirectangular sky maps: directions, texels and reading from files.
 #include "scene/sky.hpp"
 
 #include <algorithm>
@@ -17,13 +18,13 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kPartedRows = 512;  // so that the horizon is seen as sharp as it is
+constexpr int kGroundRows = 512;  // rows of a sky with ground, for a sharp horizon
 
-struct MapPlace {
-  double x, y;  ///< [texels], from the left edge and from the top
+struct MapPoint {
+  double x, y;  ///< from the left and top edges [texels]
 };
 
-MapPlace place_of(const Sky& sky, const glm::dvec3& direction) {
+MapPoint point_of(const Sky& sky, const glm::dvec3& direction) {
   const double turn = std::atan2(direction.x, -direction.z) - sky.rotation;  // from -z towards +x
   const double across = turn / (2 * pi) + 0.5, down = std::acos(std::clamp(direction.y, -1.0, 1.0)) / pi;
   return {(across - std::floor(across)) * sky.width, down * sky.height};
@@ -36,16 +37,16 @@ std::size_t index_of(const Sky& sky, int x, int y) {
 }  // namespace
 
 std::size_t Sky::texel_at(const glm::dvec3& direction) const {
-  const MapPlace place = place_of(*this, direction);
-  return index_of(*this, std::clamp(static_cast<int>(place.x), 0, width - 1),
-                  std::clamp(static_cast<int>(place.y), 0, height - 1));
+  const MapPoint point = point_of(*this, direction);
+  return index_of(*this, std::clamp(static_cast<int>(point.x), 0, width - 1),
+                  std::clamp(static_cast<int>(point.y), 0, height - 1));
 }
 
-glm::vec3 Sky::seen(const glm::dvec3& direction) const {
-  const MapPlace place = place_of(*this, direction);
-  const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
-  const auto across = static_cast<float>(place.x - 0.5 - left),
-             down = static_cast<float>(place.y - 0.5 - top);
+glm::vec3 Sky::interpolated(const glm::dvec3& direction) const {
+  const MapPoint point = point_of(*this, direction);
+  const double left = std::floor(point.x - 0.5), top = std::floor(point.y - 0.5);
+  const auto across = static_cast<float>(point.x - 0.5 - left),
+             down = static_cast<float>(point.y - 0.5 - top);
   const auto at = [&](double x, double y) {
     return texels[index_of(*this, (static_cast<int>(x) + width) % width,
                            std::clamp(static_cast<int>(y), 0, height - 1))];
@@ -63,23 +64,23 @@ double Sky::solid_angle(int row) const {
   return 2 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
 }
 
-float Sky::brightest() const {
-  float most = 0;
-  for (const glm::vec3& texel : texels) most = std::max({most, texel.x, texel.y, texel.z});
-  return most;
+float Sky::max_radiance() const {
+  float largest = 0;
+  for (const glm::vec3& texel : texels) largest = std::max({largest, texel.x, texel.y, texel.z});
+  return largest;
 }
 
-Sky even_sky(const glm::vec3& radiance) {
+Sky constant_sky(const glm::vec3& radiance) {
   Sky sky;
   sky.texels = {radiance};
   return sky;
 }
 
-Sky parted_sky(const glm::vec3& above, const glm::vec3& below) {
+Sky sky_with_ground(const glm::vec3& above, const glm::vec3& below) {
   Sky sky;
-  sky.height = kPartedRows;
-  sky.texels.assign(kPartedRows, above);
-  std::fill(sky.texels.begin() + kPartedRows / 2, sky.texels.end(), below);
+  sky.height = kGroundRows;
+  sky.texels.assign(kGroundRows, above);
+  std::fill(sky.texels.begin() + kGroundRows / 2, sky.texels.end(), below);
   return sky;
 }
 
@@ -90,9 +91,10 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
   limits.channels = bounds::kSkyChannels;
   const Image image = read_image(path, limits);
   if (image.encoding != Encoding::linear)
-    throw Error(ExitCode::bad_input, "{}: a sky is linear: an EXR or HDR file", path.string());
+    throw Error(ExitCode::bad_input, "{}: sRGB-encoded sky; allowed: linear EXR and HDR files",
+                path.string());
   if (image.width > bounds::kSkyWidth || image.height > bounds::kSkyHeight) {
-    throw Error(ExitCode::bad_input, "{}: {} x {} pixels; a sky has at most {} x {}", path.string(),
+    throw Error(ExitCode::bad_input, "{}: sky of {} x {} pixels; allowed: up to {} x {}", path.string(),
                 image.width, image.height, bounds::kSkyWidth, bounds::kSkyHeight);
   }
   const std::array<const char*, 3> names = {"R", "G", "B"};

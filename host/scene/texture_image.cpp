@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads and decodes the images of a glTF document.
 #include <OpenImageIO/imageio.h>
 #include <fmt/ranges.h>
 
@@ -18,11 +19,11 @@
 namespace clpv {
 namespace {
 
-/// An encoded image, bounded and of known format, ready to be decoded.
-struct Encoded {
+/// An encoded image whose header is checked.
+struct EncodedImage {
   std::string place, name;
-  Bytes owned;                          ///< of a file
-  std::span<const std::uint8_t> bytes;  ///< owned, or the document's
+  Bytes owned;                          ///< bytes of a file
+  std::span<const std::uint8_t> bytes;  ///< owned, or in the document
   ImageHeader header;
 };
 
@@ -30,7 +31,7 @@ std::string first_bytes(std::span<const std::uint8_t> bytes) {
   return fmt::format("{:02x}", fmt::join(bytes.first(std::min<std::size_t>(bytes.size(), 8)), " "));
 }
 
-void read_encoded(const GltfDocument& document, int index, Encoded& encoded) {
+void read_encoded(const GltfDocument& document, int index, EncodedImage& encoded) {
   const tinygltf::Image& image = entry(document.model.images, index);
   encoded.place = encoded.name = fmt::format("/images/{}", index);
   if (image.bufferView >= 0) {
@@ -45,7 +46,7 @@ void read_encoded(const GltfDocument& document, int index, Encoded& encoded) {
   }
 }
 
-void check_encoded(const GltfDocument& document, Encoded& encoded) {
+void check_encoded(const GltfDocument& document, EncodedImage& encoded) {
   const auto header = read_image_header(encoded.bytes);
   if (!header) {
     reject(document.file, encoded.place,
@@ -56,15 +57,15 @@ void check_encoded(const GltfDocument& document, Encoded& encoded) {
       header->height > bounds::kImageSide) {
     reject(document.file, encoded.place,
            fmt::format("'{}' of {} x {} pixels", encoded.name, header->width, header->height),
-           fmt::format("1 to {} pixels a side", bounds::kImageSide));
+           fmt::format("1 to {} pixels per side", bounds::kImageSide));
   }
   if (!header->complete) {
-    reject(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name), "a whole image");
+    reject(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name), "a complete image");
   }
   encoded.header = *header;
 }
 
-/// 1 or 2 channels are grey (and alpha), 3 or 4 RGB (and alpha).
+/// Converts pixels of 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 channels (RGBA) to RGBA.
 std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& pixels, int channels) {
   const std::size_t count = pixels.size() / static_cast<std::size_t>(channels);
   std::vector<std::uint8_t> rgba(count * 4);
@@ -79,26 +80,26 @@ std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& pixels, int c
   return rgba;
 }
 
-std::vector<std::uint8_t> decode(const GltfDocument& document, const Encoded& encoded) {
-  const auto fail = [&](const std::string& why) {
-    reject(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, why),
+std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImage& encoded) {
+  const auto fail = [&](const std::string& reason) {
+    reject(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, reason),
            "a readable PNG or JPEG image");
   };
   const bool png = encoded.header.format == ImageFormat::png;
-  const Bytes bare = png ? bare_png(encoded.bytes) : Bytes();
-  const std::span<const std::uint8_t> bytes = png ? bare : encoded.bytes;
+  const Bytes stripped = png ? strip_png(encoded.bytes) : Bytes();
+  const std::span<const std::uint8_t> bytes = png ? stripped : encoded.bytes;
   MemoryReader memory(bytes);
   const char* name = png ? "memory.png" : "memory.jpg";
-  OIIO::ImageSpec wishes;
-  wishes["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not times alpha
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // colours are not multiplied by alpha
   OIIO::Filesystem::IOProxy* proxy = &memory;
-  wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(name, &wishes, proxy);
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const auto input = OIIO::ImageInput::open(name, &config, proxy);
   if (!input) fail(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width != static_cast<int>(encoded.header.width) ||
       spec.height != static_cast<int>(encoded.header.height)) {
-    fail(fmt::format("its header says {} x {}, its decoder {} x {}", encoded.header.width,
+    fail(fmt::format("{} x {} pixels in its header, {} x {} in its decoder", encoded.header.width,
                      encoded.header.height, spec.width, spec.height));
   }
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(spec.width) *
@@ -109,7 +110,7 @@ std::vector<std::uint8_t> decode(const GltfDocument& document, const Encoded& en
   return spec.nchannels == 4 ? pixels : to_rgba(pixels, spec.nchannels);
 }
 
-/// Runs `work(i)` for i in 0..count-1 on all cores; the exception of the least i is the one rethrown.
+/// Runs `work(i)` for i in 0..count-1 on all cores. Rethrows the exception of the lowest i.
 template <typename Work>
 void for_all(std::size_t count, const Work& work) {
   std::vector<std::exception_ptr> failures(count);
@@ -137,9 +138,9 @@ void for_all(std::size_t count, const Work& work) {
 
 std::vector<Texture> load_textures(const GltfDocument& document,
                                    const std::vector<TextureRequest>& requests) {
-  std::map<int, std::size_t> slots;  // image -> place in `encoded`
+  std::map<int, std::size_t> slots;  // image -> index in `encoded`
   for (const TextureRequest& request : requests) slots.try_emplace(request.image, 0);
-  std::vector<Encoded> encoded(slots.size());
+  std::vector<EncodedImage> encoded(slots.size());
   std::vector<int> images;
   for (auto& [image, slot] : slots) {
     slot = images.size();
@@ -157,7 +158,7 @@ std::vector<Texture> load_textures(const GltfDocument& document,
   }
   std::uint64_t texel_bytes = 0;
   for (const TextureRequest& request : requests) {
-    const Encoded& image = encoded[slots[request.image]];
+    const EncodedImage& image = encoded[slots[request.image]];
     texel_bytes += 4ull * image.header.width * image.header.height;
     if (texel_bytes > bounds::kTexelBytes) {
       reject(document.file, image.place, fmt::format("{} bytes of texels so far", texel_bytes),

@@ -10,7 +10,7 @@
 namespace clpv {
 
 /// Returns `text` (UTF-8) with control characters (U+0000 to U+001F, U+007F to U+009F) replaced by '?', except newline and
-/// tab: untrusted text must not control a terminal.
+/// tab. Untrusted text must not control a terminal.
 std::string printable(std::string_view text);
 
 /// Returns printable() text, escaped for an XML element or attribute.

@@ -48,7 +48,7 @@ CheckResult check_scene(Session& session, const Scene& scene, const std::string&
   for (std::size_t i = 0; i < found.normal.size(); ++i) {
     const EmittedPoint wanted = i < expected.size() ? expected[i] : EmittedPoint{};
     const glm::dvec3 flux = glm::dvec3(found.colour[i]) / double{kScale};
-    const double off = glm::length(flux - wanted.flux) - 2 * wanted.doubt;
+    const double off = glm::length(flux - wanted.flux) - 2 * wanted.tolerance;
     const double places = glm::length(glm::dvec3(found.position[i]) - wanted.position) / 10 +
                           glm::length(glm::dvec3(found.normal[i]) - wanted.normal);
     const auto where = [&] {

@@ -33,11 +33,11 @@ struct Variant {
   Gathering gather = Gathering::all;
 };
 
-/// A byte for each point between cells of all cascades: each cell hidden from half of them.
-std::vector<std::uint8_t> random_hidden(std::mt19937& random) {
-  std::vector<std::uint8_t> hidden(kCascades * CellVisibility::bytes(kGrid));
-  for (std::uint8_t& bits : hidden) bits = random() % 256;
-  return hidden;
+/// A byte for each point between cells of all cascades: each cell occluded from half of them.
+std::vector<std::uint8_t> random_occlusion(std::mt19937& random) {
+  std::vector<std::uint8_t> occluded(kCascades * CellVisibility::bytes(kGrid));
+  for (std::uint8_t& bits : occluded) bits = random() % 256;
+  return occluded;
 }
 
 std::string_view compared_as(const Variant& variant) {
@@ -59,8 +59,8 @@ CheckResult check_one(Session& session, const Basis& basis, TransportKind transp
                               .format = variant.format,
                               .filtered = variant.filtered};
   const bool visible = variant.gather == Gathering::visible;
-  const std::vector<std::uint8_t> hidden = random_hidden(random);
-  const Buffer hidden_on_device = session.upload(hidden, "check: hidden cells");
+  const std::vector<std::uint8_t> occluded = random_occlusion(random);
+  const Buffer occluded_on_device = session.upload(occluded, "check: occluded cells");
   std::vector<Volume> light;
   std::vector<clpv::Volume> lit;
   for (int c = 0; c < kCascades; ++c) {
@@ -71,12 +71,12 @@ CheckResult check_one(Session& session, const Basis& basis, TransportKind transp
   std::vector<Cascade> cascades;
   for (int c = 0; c < kCascades; ++c) {
     volumes.push_back(&lit[c]);
-    cascades.push_back({grids[c], &light[c], hidden.data() + c * CellVisibility::bytes(kGrid)});
+    cascades.push_back({grids[c], &light[c], occluded.data() + c * CellVisibility::bytes(kGrid)});
   }
   const Surface camera = upload_surface(session, image);
   Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer(session, basis, transport, options)
-      .gather(camera, grids, volumes, irradiance, 1, visible ? &hidden_on_device : nullptr);
+      .gather(camera, grids, volumes, irradiance, 1, visible ? &occluded_on_device : nullptr);
   std::vector<glm::dvec4> expected;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image))
     expected.emplace_back(e, 0.0);

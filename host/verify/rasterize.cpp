@@ -137,19 +137,19 @@ double apart(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>&
 
 /// Holds a device's surface against the CPU reference's, pixel by pixel: values where they are sure, and how many of the others
 /// differ.
-void append(CheckResults& results, const SurfaceImage& device, const Rasterized& expected,
+void append(CheckResults& results, const SurfaceImage& device, const RasterizedImage& expected,
             const std::string& variant) {
   CheckResult values{"rasterize", variant, 0, tolerance("rasterize"), {}};
   const SurfaceImage& image = expected.image;
   const double deepest = std::max(1.0f, std::ranges::max(image.depth));
   std::size_t differing = 0;
-  for (std::size_t at = 0; at < expected.doubtful.size(); ++at) {
+  for (std::size_t at = 0; at < expected.uncertain.size(); ++at) {
     CheckResult pixel{{}, {}, 0, values.allowed, {}};
     const double errors[] = {std::abs(double{device.depth[at]} - image.depth[at]) / deepest,
                              apart(device.normal, image.normal, at), apart(device.colour, image.colour, at),
                              apart(device.emissive, image.emissive, at)};
     for (const double error : errors) {
-      (expected.doubtful[at] ? pixel : values).take(error, [&] {
+      (expected.uncertain[at] ? pixel : values).take(error, [&] {
         return fmt::format(
             "pixel {},{}: depth {:.7g}, expected {:.7g}; errors of depth, normal, colour and emission {:.1e}",
             at % image.view.width, at / image.view.width, device.depth[at], image.depth[at],
@@ -158,11 +158,11 @@ void append(CheckResults& results, const SurfaceImage& device, const Rasterized&
     }
     if (!pixel.passed()) ++differing;
   }
-  const double pixels = expected.doubtful.size();
+  const double pixels = expected.uncertain.size();
   results.push_back(values);
   results.push_back({"rasterize-edges", variant, differing / pixels, tolerance("rasterize-edges"),
-                     fmt::format("{} of {} pixels, {} of them doubtful", differing, pixels,
-                                 std::ranges::count(expected.doubtful, true))});
+                     fmt::format("{} of {} pixels, {} of them uncertain", differing, pixels,
+                                 std::ranges::count(expected.uncertain, true))});
 }
 
 void check_camera(Session& session, const Scene& scene, const std::string& name, CheckResults& results) {
@@ -181,7 +181,7 @@ void check_light(Session& session, const Scene& scene, const ClpvLight& light, c
   Surface surface = make_surface(session, view, RsmFormat::float32, false);
   rasterizer.rasterize_rsm(light, surface);
   const SurfaceImage device = read_surface(session, surface);
-  const Rasterized expected = rasterize_rsm(scene, light, view);
+  const RasterizedImage expected = rasterize_rsm(scene, light, view);
   append(results, device, expected, "rsm/" + name);
   Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
   rasterizer.rasterize_shadow(view, depth);

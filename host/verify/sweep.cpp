@@ -58,7 +58,7 @@ Sky uneven_sky(float scale) {
 /// A third of the sides reflect.
 Volume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
-  Volume volume(n, kReflectingSides);
+  Volume volume(n, kCellFaces);
   for (double& value : volume.values) value = std::max(0.0f, uniform(random));
   return volume;
 }
@@ -78,7 +78,7 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                    .format = c.format,
                    .form = c.form});
   if (c.sky) {
-    sweeper.let_in(uneven_sky(1));
+    sweeper.set_sky(uneven_sky(1));
     sweeper.scale_sky(kSkyScale);
   }
   std::vector<Volume> lights, blockers, reflectors;
@@ -99,8 +99,8 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                        geometry = on_device(session, blockers[i], c.format),
                        sides = on_device(session, reflectors[i], c.format);
     clpv::Volume swept(session, {c.grid, swept_basis()->size(), 3}, "check: swept", c.format);
-    if (c.blocking) sweeper.block(i, geometry);
-    if (c.bounces != Bounces::one) sweeper.reflect(i, sides);
+    if (c.blocking) sweeper.set_blockers(i, geometry);
+    if (c.bounces != Bounces::one) sweeper.set_reflectors(i, sides);
     sweeper.sweep(i, grids, light, swept);
     found[i] = swept.read(session);
   }
@@ -110,7 +110,7 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                                 : sweep_bounced(*basis, transport, cascades, reflecting, c.bounces);
   CheckResult result{stage, c.name(), 0, tolerance(stage, c.format.storage), {}};
   for (int i = 0; i < count; ++i) {
-    const Comparison apart = compare_volumes(found[i], kept_of(expected[i]).values, c.grid);
+    const Comparison apart = compare_volumes(found[i], project_bins(expected[i]).values, c.grid);
     result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
   }
   return result;

@@ -23,7 +23,7 @@ inline constexpr Tolerance kTolerances[] = {
     // Of the field's largest value, away from edges: float32 positions on a triangle, worst where it is seen at a slant,
     // through a texture's steps; measured 2.1e-6.
     {"rasterize", 2e-5},
-    // Share of pixels that differ where a hair's breadth decides (reference/rasterize.hpp): a float32 corner may snap to the
+    // Share of pixels that differ because of rounding (reference/rasterize.hpp): a float32 corner may snap to the
     // next 1/256 pixel; measured 7e-4, one pixel.
     {"rasterize-edges", 5e-3},
     // Of the largest flux and position, apart from what rounding can decide (reference/emit.hpp): float32 places in a

@@ -41,19 +41,19 @@ std::vector<VolumeFormat> formats_of(Session& session, const VolumeShape& shape,
 CheckResults check_blockers(Session& session, const CheckScope& scope) {
   const Scene scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  const Blocked expected = block(scene, kCells);
+  const BlockerBounds expected = voxelize_blockers(scene, kCells);
   const VolumeShape shape{kGrid + 1, 3, 1};
   CheckResults results;
   for (const VolumeFormat& format : formats_of(session, shape, scope)) {
     clpv::Volume geometry(session, shape, "check: blockers", format);
-    BlockerVoxelizer(session, buffers, kGrid, 1, format).block(0, kCells, geometry);
+    BlockerVoxelizer(session, buffers, kGrid, 1, format).voxelize(0, kCells, geometry);
     const std::vector<float> found = geometry.read(session);
     CheckResult result{"blockers", format_name(format), 0, tolerance("blockers", format.storage), {}};
     for (std::size_t at = 0; at < found.size(); ++at) {
-      const double share = found[at], least = expected.least.values[at], most = expected.most.values[at];
-      result.take(std::max(least - share, share - most), [&] {
+      const double share = found[at], lower = expected.lower.values[at], upper = expected.upper.values[at];
+      result.take(std::max(lower - share, share - upper), [&] {
         return fmt::format("corner {} axis {}: {}, expected {} to {}", sample_of(at, shape.n),
-                           at / (found.size() / 3), share, least, most);
+                           at / (found.size() / 3), share, lower, upper);
       });
     }
     results.push_back(result);
@@ -64,19 +64,19 @@ CheckResults check_blockers(Session& session, const CheckScope& scope) {
 CheckResults check_reflectors(Session& session, const CheckScope& scope) {
   const Scene scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  const Reflected expected = reflect(scene, kCells);
+  const ReflectingAreas expected = voxelize_reflectors(scene, kCells);
   CheckResults results;
-  for (const VolumeFormat& format : formats_of(session, {kGrid, kReflectingSides, 3}, scope)) {
+  for (const VolumeFormat& format : formats_of(session, {kGrid, kCellFaces, 3}, scope)) {
     ReflectorVoxelizer reflector(session, buffers, kGrid, 1, format);
-    reflector.reflect(0, kCells);
+    reflector.voxelize(0, kCells);
     const std::vector<float> found = reflector.reflectors(0).read(session);
     CheckResult result{"reflectors", format_name(format), 0, tolerance("reflectors", format.storage), {}};
     for (std::size_t at = 0; at < found.size(); ++at) {
-      const double wanted = expected.areas.values[at], doubt = expected.doubt.values[at];
-      result.take(std::abs(found[at] - wanted) - doubt, [&] {
+      const double wanted = expected.areas.values[at], tolerated = expected.tolerance.values[at];
+      result.take(std::abs(found[at] - wanted) - tolerated, [&] {
         const std::size_t plane = at / (kGrid * kGrid * kGrid);
         return fmt::format("cell {} side {} channel {}: {:.6g}, expected {:.6g}", sample_of(at, kGrid),
-                           plane % kReflectingSides, plane / kReflectingSides, found[at], wanted);
+                           plane % kCellFaces, plane / kCellFaces, found[at], wanted);
       });
     }
     results.push_back(result);
@@ -88,20 +88,20 @@ CheckResults check_visibility(Session& session, const CheckScope&) {
   constexpr std::size_t kCascade = 1;  // not the first
   const Scene scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  const Hidden expected = see(scene, kCells);
+  const Occlusion expected = occlude(scene, kCells);
   CellVisibility sight(session, buffers, kGrid, kCascade + 1);
-  sight.see(0, kCells);
-  sight.see(kCascade, kCells);
+  sight.update(0, kCells);
+  sight.update(kCascade, kCells);
   const std::size_t bytes = CellVisibility::bytes(kGrid);
-  const auto found = session.read<std::uint8_t>(sight.hidden(), bytes * (kCascade + 1));
+  const auto found = session.read<std::uint8_t>(sight.occluded(), bytes * (kCascade + 1));
   CheckResult result{"visibility", "triangles", 0, tolerance("visibility"), {}};
   for (std::size_t point = 0; point < bytes; ++point) {
-    const std::uint8_t bits = found[kCascade * bytes + point], least = expected.least[point],
-                       most = expected.most[point];
-    const unsigned wrong = (least & ~bits) | (bits & ~most);
+    const std::uint8_t bits = found[kCascade * bytes + point], lower = expected.lower[point],
+                       upper = expected.upper[point];
+    const unsigned wrong = (lower & ~bits) | (bits & ~upper);
     result.take(std::popcount(wrong), [&] {
       return fmt::format("cube {} point {}: {:08b}, expected {:08b} to {:08b}", sample_of(point / 64, kGrid),
-                         point % 64, bits, least, most);
+                         point % 64, bits, lower, upper);
     });
   }
   return {result};

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What is known of the triangles in a corner's cell, as kernels/blockers.cl and blocked_areas.cl see it.
+// Sizes of the blocker masks: blockers.cl writes them, blocked_areas.cl reads them.
 #ifndef CLPV_SHARED_BLOCKERS_H
 #define CLPV_SHARED_BLOCKERS_H
 
-// Words of a corner: two of samples covered, across x, y and z.
-#define CLPV_BLOCK_WORDS 6
+// uint32 words of a corner: 64 coverage bits (two words) each across x, y and z.
+#define CLPV_BLOCKER_WORDS 6
 
-// And of a cascade, which has a corner more than cells along each axis.
-#define CLPV_BLOCK_MASKS ((CLPV_GRID + 1) * (CLPV_GRID + 1) * (CLPV_GRID + 1) * CLPV_BLOCK_WORDS)
+// Words of a cascade, which has one corner more than cells along each axis.
+#define CLPV_BLOCKER_MASKS ((CLPV_GRID + 1) * (CLPV_GRID + 1) * (CLPV_GRID + 1) * CLPV_BLOCKER_WORDS)
 
 #endif

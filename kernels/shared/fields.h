@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Every struct that host and kernels share, with the fields whose places both sides must agree on.
-// CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order.
-// Include the structs' own headers beside it: host and kernels name them by different paths.
+// List of the structs that host and kernels share, with the members whose offsets must agree (sizes.cl).
+//
+// CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order. Include the headers of the
+// structs before: host and kernels name them by different paths.
 #ifndef CLPV_SHARED_FIELDS_H
 #define CLPV_SHARED_FIELDS_H
 

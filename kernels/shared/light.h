@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A light, as host and kernels both see it. Photometric quantities are carried 1:1 as radiometric ones.
+// A light, shared by host and kernels. Photometric quantities count 1:1 as radiometric ones.
 #ifndef CLPV_SHARED_LIGHT_H
 #define CLPV_SHARED_LIGHT_H
 
@@ -10,9 +10,9 @@
 typedef struct {
   float position[3];   // [m]; unused for a directional light
   unsigned int kind;   // CLPV_LIGHT_*
-  float direction[3];  // unit, the way its light travels; unused for a point light
-  float range;         // [m]; nothing beyond it; 0: unlimited
-  float intensity[3];  // directional: irradiance on a plane across it [W/m^2]; else radiant intensity [W/sr]
+  float direction[3];  // unit, in which light travels; unused for a point light
+  float range;         // [m]; no light beyond it; 0: unlimited
+  float intensity[3];  // directional: irradiance across the direction [W/m^2]; others: radiant intensity [W/sr]
   float cone_scale;    // spot, glTF: attenuation = clamp(cos(angle) * cone_scale + cone_offset, 0, 1)^2
   float cone_offset;
   float unused[3];
@@ -20,7 +20,7 @@ typedef struct {
 
 #define CLPV_SIZEOF_LIGHT 64
 
-// [m]; a point nearer to a spot or point light is lit as from here, so that nothing is infinite.
+// d_min [m]: a smaller distance from a spot or point light counts as this one, so that irradiance stays finite.
 #define CLPV_LIGHT_LEAST_DISTANCE 1e-3f
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How many times a loop may turn, as host and kernels both see it: Mesa's rusticl (22.3) ends longer ones without a word.
-// Loops whose length a scene decides are split by it.
+// Maximum number of iterations of a loop, shared by host and kernels: Mesa's rusticl (22.3) silently ends longer ones.
+// Loops whose length depends on the scene are split.
 #ifndef CLPV_SHARED_LOOPS_H
 #define CLPV_SHARED_LOOPS_H
 

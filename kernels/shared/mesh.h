@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles and their materials, as host and kernels both see them: world space, metres.
+// Triangles, materials and textures of the scene, shared by host and kernels. World space, metres.
 #ifndef CLPV_SHARED_MESH_H
 #define CLPV_SHARED_MESH_H
 
@@ -10,7 +10,7 @@
 #define CLPV_WRAP_MIRROR 2
 
 #define CLPV_MATERIAL_MASKED 1u        // texels with alpha below alpha_cutoff are holes
-#define CLPV_MATERIAL_DOUBLE_SIDED 2u  // seen from behind too, its normal then turned round
+#define CLPV_MATERIAL_DOUBLE_SIDED 2u  // visible from both sides; the normal is flipped towards the viewer
 
 typedef struct {
   float position[3];  // [m]
@@ -29,24 +29,23 @@ typedef struct {
 #define CLPV_SIZEOF_TRIANGLE 16
 
 typedef struct {
-  float base_colour[4];  // linear albedo and alpha, times the texture's and the vertex's
+  float base_colour[4];  // linear albedo and alpha; multiplied by texture and vertex colour
   float emissive[3];     // radiance [W/m^2/sr] of the front, and of the back where double sided
   float alpha_cutoff;
   unsigned int texture;           // index, or CLPV_NO_TEXTURE
-  unsigned int emissive_texture;  // index, or CLPV_NO_TEXTURE; looked up with the same uv
+  unsigned int emissive_texture;  // index, or CLPV_NO_TEXTURE; same uv
   unsigned int flags;             // CLPV_MATERIAL_*
   unsigned int unused;
 } ClpvMaterial;
 
 #define CLPV_SIZEOF_MATERIAL 48
 
-// Mip levels a texture has in the table, whatever its size: past 1 x 1 that level repeats. Level l of texture
-// t is entry t * CLPV_TEXTURE_LEVELS + l. The largest side is 2^(CLPV_TEXTURE_LEVELS - 1).
+// Mip levels of every texture in the table; the level of 1 x 1 texels repeats. Level l of texture t is entry
+// t * CLPV_TEXTURE_LEVELS + l. The maximum side is 2^(CLPV_TEXTURE_LEVELS - 1).
 #define CLPV_TEXTURE_LEVELS 16
 
 typedef struct {
-  unsigned int
-      offset;  // of texel (0, 0) in the texel buffer: 4 bytes a texel, sRGB-encoded RGB, linear alpha
+  unsigned int offset;  // of texel (0, 0) in the texel buffer: 4 bytes per texel, RGB in sRGB encoding, linear alpha
   unsigned int width, height;
   unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v
 } ClpvTexture;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// What is counted of the triangles that a light cell's sides are made of, as kernels/reflectors.cl and face_albedo.cl see it.
+// Per-face sums of voxelised albedo: reflectors.cl writes them, face_albedo.cl reads them; shared by host and kernels.
 #ifndef CLPV_SHARED_REFLECTORS_H
 #define CLPV_SHARED_REFLECTORS_H
 
-// Links that a surface can face: towards +x, -x, +y, -y, +z, -z.
-#define CLPV_SIDES 6
+// Face directions of a light cell: +x, -x, +y, -y, +z, -z.
+#define CLPV_CELL_FACES 6
 
-// Words of a side: two of samples covered, how often samples were, and what they reflect in red, green and blue.
-#define CLPV_SIDE_WORDS 6
-#define CLPV_SIDE_COUNT 2
-#define CLPV_SIDE_COLOUR 3
+// uint32 words of a face: 64 coverage bits (two words), the number of samples, and the sums of red, green and blue
+// albedo.
+#define CLPV_FACE_WORDS 6
+#define CLPV_FACE_SAMPLES 2
+#define CLPV_FACE_ALBEDO 3
 
-// In the last three, a sample that reflects everything. 2^14 triangles that fill a side one behind another fit.
-#define CLPV_REFLECT_UNIT 4096.0f
+// Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit into 32 bits.
+#define CLPV_ALBEDO_UNIT 4096.0f
 
 #endif

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What the sort by cell (kernels/sort_by_cell.cl) and those who use it agree on, as host and kernels both see it.
+// Constants of the sort by cell (kernels/sort_by_cell.cl), shared by host and kernels.
 #ifndef CLPV_SHARED_SORT_H
 #define CLPV_SHARED_SORT_H
 
-#define CLPV_NO_CELL 0xffffffffu  // key of a texel that belongs to no cell: the sort drops it
+#define CLPV_NO_CELL 0xffffffffu  // key of a texel without a cell; the sort drops it
 
-// Texels of a run at most. Runs end at its multiples, so that no run crosses a chunk. Its length less one is kept in
-// the low bits of a run's entry, above them its first texel.
+// Maximum length of a run [texels]. Runs end at its multiples, so that none crosses a chunk. The low CLPV_RUN_BITS bits
+// of a run's word hold its length minus 1, the bits above its first texel.
 #define CLPV_LONGEST_RUN 16u
 #define CLPV_RUN_BITS 4u
 

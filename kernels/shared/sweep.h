@@ -1,52 +1,55 @@
 // SPDX-License-Identifier: MIT
-// What a sweep knows of its bins and directions (host/basis/sweep.hpp), as host and kernels both see it.
+// Bins, directions and halo of a sweep, and the sizes of its buffers (host/basis/sweep.hpp), shared by host and
+// kernels.
 #ifndef CLPV_SHARED_SWEEP_H
 #define CLPV_SHARED_SWEEP_H
 
 #define CLPV_SWEEP_BINS 24
 
-// Along w light goes from plane to plane; within a plane from row to row, within a row from column to column.
+// A bin of directions. Light travels from plane to plane, within a plane from row to row, and within a row from column
+// to column.
 typedef struct {
-  int plane_sign, row_sign, column_sign;  // 1: light goes upwards
+  int plane_sign, row_sign, column_sign;  // 1: light travels towards larger numbers; -1: towards smaller ones
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
-  int links[4];                            // volumes of the transmittance from the cells 0, u, v, u and v aside
-  int injected;                           // 1: its sources are read where they were injected; 0: from a volume of its own
-  int source, channel, plane, row;        // where the sources of its first cell are; from there to the next channel, plane, row
+  int links[4];  // transmittance volumes of the links from the cells offset by 0, u, v, and u and v
+  int injected;  // 1: sources are in the injected light volume; 0: in volumes of planes (sweep_layout.h)
+  int source, channel, plane, row;  // index of the first cell's source; steps to the next channel, plane and row
 } ClpvSweepBin;
 
 #define CLPV_SIZEOF_SWEEP_BIN 60
 
 typedef struct {
-  float taps[4];       // of those four cells
-  float share;         // solid angle over flux, of the bin's solid angle
-  float from_coarser;  // what 1 of the coarser cascade's light is here
-  int coarser;         // the part of the bin it comes from there
+  float taps[4];       // t of the same four cells; their sum is 1
+  float share;         // Omega_d / (|w_m| Omega_b): solid angles of direction and bin, component across planes
+  float from_coarser;  // D here for 1 of the coarser cascade's D
+  int coarser;         // part of the bin that contains this direction in the coarser cascade
   int unused;
 } ClpvSweepDirection;
 
 #define CLPV_SIZEOF_SWEEP_DIRECTION 32
 
-// The cells of a coarser cascade whose light a finer one's border is made of.
+// Halo: cells of a coarser cascade that the border of the next finer one interpolates.
 typedef struct {
-  int first[3];   // cell of the box that holds them
-  int side;       // cells along each of its edges; 0: there is no finer cascade
-  int layers[6];  // the lower one of two layers along x, y, z: with light going upwards, downwards
+  int first[3];   // lowest cell of the box that holds them
+  int side;       // cells along each edge of the box; 0: no finer cascade
+  int layers[6];  // lower one of two layers across x, y, z, each for light towards larger, smaller numbers
 } ClpvSweepHalo;
 
-#define CLPV_SIZEOF_SWEEP_SHELL 40
+#define CLPV_SIZEOF_SWEEP_HALO 40
 
-// How a sweep's numbers lie in memory (kernels/sweep.h), for a grid of n cells along each axis: numbers of a row, of a plane
-// and a volume of planes; and of a row, a plane and a volume with a border of one cell all round.
-#define CLPV_SWEEP_LINE 32  // between planes, and volumes
-#define CLPV_SWEEP_FIRST 8  // from the start of a row to its first cell: rows of eight lanes stay aligned
+// Sizes in numbers for a grid of n cells along each axis: of a row, a plane and a volume of planes (sweep_layout.h),
+// and of a row (pitch), a plane and a volume with a border of one cell on every side.
+#define CLPV_SWEEP_LINE 32  // padding after each plane and each volume
+#define CLPV_SWEEP_FIRST 8  // from the start of a bordered row to its first cell: aligned for eight lanes
 #define CLPV_SWEEP_ROW_OF(n) (((n) + 7) / 8 * 8)
 #define CLPV_SWEEP_PLANE_OF(n) ((n)*CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_LINE)
 #define CLPV_SWEEP_VOLUME_OF(n) ((n)*CLPV_SWEEP_PLANE_OF(n) + CLPV_SWEEP_LINE)
 #define CLPV_SWEEP_PITCH_OF(n) (CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_LIVE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_BORDERED_OF(n) (((n) + 2) * CLPV_SWEEP_LIVE_OF(n))
+#define CLPV_SWEEP_BORDERED_PLANE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
+#define CLPV_SWEEP_BORDERED_VOLUME_OF(n) (((n) + 2) * CLPV_SWEEP_BORDERED_PLANE_OF(n))
 
-// A halo has faces of two layers of side x side cells; rows are whole eights, with room for one more.
+// Sizes of a halo: cells along an edge; numbers of a row and of a face, which has two layers of side x side cells.
+// Loads of eight may read past the end of a row, hence the padding.
 #define CLPV_SWEEP_HALO_SIDE_OF(n) (((n) + 1) / 2 + 3)
 #define CLPV_SWEEP_HALO_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
 #define CLPV_SWEEP_HALO_FACE_OF(side) (2 * (side)*CLPV_SWEEP_HALO_PITCH_OF(side) + 8)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A viewpoint, as host and kernels both see it: a camera, or a light that looks at what it lights.
+// View of a camera or of a light, shared by host and kernels.
 //
-// A pixel (px, py), its row 0 at the top, looks through
+// Screen coordinates of pixel (px, py), row 0 at the top:
 //   sx = (2 (px + 1/2) / width - 1) half_width,   sy = (1 - 2 (py + 1/2) / height) half_height.
-// Depth is the distance along `forward` [m], 0 where there is no surface. A surface at depth d is at
+// Depth is the distance along `forward` [m], 0 for pixels without a surface. The surface at depth d is at
 //   perspective:   eye + d (forward + sx right + sy up)      half_width, half_height: tangents
 //   orthographic:  eye + d forward + sx right + sy up        half_width, half_height: [m]
 #ifndef CLPV_SHARED_VIEW_H
@@ -17,10 +17,10 @@ typedef struct {
   float up[3];
   float half_height;
   float forward[3];
-  float near_depth;    // [m]; perspective: clipped here. Orthographic: depths before it clamp to it ("pancaking")
+  float near_depth;    // [m] perspective: clipping plane; orthographic: smaller depths clamp to it ("pancaking")
   unsigned int width;  // [pixels]
   unsigned int height;
-  float far_depth;     // [m]; surfaces beyond are dropped
+  float far_depth;     // [m] surfaces beyond are dropped
   float unused;
 } ClpvView;
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Volume layout `aos`: array of structures. The coefficients of a sample lie side by side, samples by channel, z, y, x
-// with a border of one zero sample all round. Part of the template instance.h; buffer.h makes the functions.
+// Volume layout `aos`, array of structures: coefficients of a sample are adjacent; samples are ordered by channel, z,
+// y, x, with a border of one zero sample on every side. Part of the template instance.h; buffer.h defines the
+// functions.
 #define CLPV_ROWS (CLPV_VOLUME_N + 2)
-#define CLPV_PITCH ((CLPV_VOLUME_N + 7) / 8 * 8 + 2)  // of a row: eight lanes never reach into the next one
-#define CLPV_NEXT 1                  // from a coefficient to the next one
-#define CLPV_LANE CLPV_VOLUME_COUNT  // from a cell to its right neighbour
+#define CLPV_PITCH ((CLPV_VOLUME_N + 7) / 8 * 8 + 2)  // samples of a row, padded for eight lanes
+#define CLPV_NEXT 1                  // step to the next coefficient
+#define CLPV_LANE CLPV_VOLUME_COUNT  // step to the next cell along x
 
 CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
   return (((channel * CLPV_ROWS + (z + 1)) * CLPV_ROWS + (y + 1)) * CLPV_PITCH + (x + 1)) * CLPV_VOLUME_COUNT;
 }
 
-// Eight samples are as many vectors of 8 as there are coefficients: loaded as they lie, then dealt out.
-#define CLPV_DEALT(from, i)                                                                         \
+// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed.
+#define CLPV_TRANSPOSED(from, i)                                                                         \
   ((float8)((from)[i], (from)[CLPV_LANE + i], (from)[2 * CLPV_LANE + i], (from)[3 * CLPV_LANE + i], \
             (from)[4 * CLPV_LANE + i], (from)[5 * CLPV_LANE + i], (from)[6 * CLPV_LANE + i],        \
             (from)[7 * CLPV_LANE + i]))
@@ -19,7 +20,7 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
 #define CLPV_BEFORE_LOAD           \
   float8 rows[CLPV_VOLUME_COUNT]; \
   CLPV_VOLUME_EACH(CLPV_LOAD_ROW)
-#define CLPV_LOAD_LANES(i) CLPV_DEALT((const float*)rows, i)
+#define CLPV_LOAD_LANES(i) CLPV_TRANSPOSED((const float*)rows, i)
 
 #define CLPV_STORE_ROW(i) CLPV_WRITE_ROW(volume, at + 8 * i, rows[i]);
 #define CLPV_STORE_LANES(i)                                                              \

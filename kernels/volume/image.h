@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Volume layout `image`: one 3-D image of RGBA texels, four coefficients each. Part of the template instance.h.
+// Volume layout `image`: one 3-D image of RGBA texels with four coefficients each. Part of the template instance.h.
 //
-// One image and not one for every channel and four coefficients: OpenCL 1.2 promises but 8 images a kernel writes. Fours
-// of coefficients are stacked along z and channels along y, a texel of zeros between neighbours; round the image the
-// sampler's border is zero as well. An image is either read or written by a kernel: the host sees to that.
+// A single image holds all: OpenCL 1.2 guarantees 8 writable images per kernel. Groups of four coefficients are stacked
+// along z and channels along y, with a texel of zeros between them; the sampler's border is zero as well. The host sees
+// to it that a kernel either reads or writes an image.
 #ifndef CLPV_VOLUME_IMAGE_ONCE
 #define CLPV_VOLUME_IMAGE_ONCE
 #pragma OPENCL EXTENSION cl_khr_3d_image_writes : enable
@@ -15,7 +15,7 @@ __constant sampler_t clpv_filter = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLA
 #endif
 #endif
 
-#define CLPV_STEP (CLPV_VOLUME_N + 1)                // from a channel, or from four coefficients, to the next
+#define CLPV_STEP (CLPV_VOLUME_N + 1)                // step to the next channel, and to the next four coefficients
 #define CLPV_FOURS ((CLPV_VOLUME_COUNT + 3) / 4)
 
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_IMAGE_IN volume, const int channel, const int x,
@@ -44,8 +44,8 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_IMAGE_OUT volume, const int
 }
 
 #ifdef CLPV_FILTERED
-// Trilinear at a point in units of samples, sample 0 at 0.0; points beyond the outermost samples take their value.
-// CLPV_FILTERED 1: by the device's own filter, one read for each four coefficients; 0: from eight texels.
+// Trilinear sample at a point in units of samples, sample 0 at 0.0; points are clamped to the outermost samples.
+// CLPV_FILTERED 1: by the device's filter, one read per four coefficients; 0: from eight texels.
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volume, const int channel, const float x,
                                                              const float y, const float z) {
   const float top = (float)(CLPV_VOLUME_N - 1);
@@ -62,7 +62,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volum
   const int ix = (int)fx, iy = (int)fy + channel * CLPV_STEP;
   for (int four = 0; four < CLPV_FOURS; ++four) {
     const int iz = (int)fz + four * CLPV_STEP;
-    // At the last sample the neighbour beyond is zero, with weight 0.
+    // At the last sample the neighbour beyond is zero and has weight 0.
 #define CLPV_AT(dx, dy, dz) read_imagef(volume, clpv_texels, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
 #define CLPV_ROW(dy, dz) mix(CLPV_AT(0, dy, dz), CLPV_AT(1, dy, dz), tx)
     texels[four] = mix(mix(CLPV_ROW(0, 0), CLPV_ROW(1, 0), ty), mix(CLPV_ROW(0, 1), CLPV_ROW(1, 1), ty), tz);

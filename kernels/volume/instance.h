@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// A volume in the layout and storage the host chose: the one place where kernels learn of either.
+// Template of the volume types: load and store in the layout and storage that the host chooses.
 //
-// Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, computed with in single
-// precision all the same; CLPV_LANES (lanes.h): cells side by side along x that a load or store serves, 1 or 8.
+// Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, with arithmetic in
+// single precision; CLPV_LANES: cells along x of a load or store, 1 or 8.
 //
-// A template: before each inclusion define, and it is undefined after,
-//   CLPV_VOLUME         the name the functions below start with (light, geometry, ...)
+// Parameters: define before each inclusion, which undefines them
+//   CLPV_VOLUME         prefix of the functions below (light, geometry, ...)
 //   CLPV_VOLUME_N       samples along each axis, a literal
-//   CLPV_VOLUME_CELL    the struct of named CLPV_REALs c0, c1, ... a sample and channel holds
-//   CLPV_VOLUME_EACH    CLPV_VOLUME_EACH(DO) writes DO(0) DO(1) ... , one a coefficient
-//   CLPV_VOLUME_COUNT   how many those are
+//   CLPV_VOLUME_CELL    struct of the CLPV_REALs c0, c1, ... of a sample and channel
+//   CLPV_VOLUME_EACH    CLPV_VOLUME_EACH(DO) writes DO(0) DO(1) ... for each coefficient
+//   CLPV_VOLUME_COUNT   number of coefficients
 // It defines
 //   CLPV_VOLUME_IN, CLPV_VOLUME_OUT                    types of kernel parameters that read, write
 //   CELL NAME_load(in, channel, x, y, z)               x, y, z in -1..n; the border is 0
 //   void NAME_store(out, channel, x, y, z, cell)       x, y, z in 0..n-1
-// With 8 lanes, x is a multiple of 8 to store; lanes beyond the border load anything and are not stored.
-// Every layout has a border of zeros all round, so that a neighbour outside the grid reads 0 without a test.
+// With 8 lanes, x is a multiple of 8 in stores; lanes beyond the border load undefined values and are not stored. Every
+// layout has a border of zeros, so that a neighbour outside the grid reads 0 without a test.
 #ifndef CLPV_VOLUME_INSTANCE_ONCE
 #define CLPV_VOLUME_INSTANCE_ONCE
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light volumes: the radiant intensity [W/sr] of every light cell, N coefficients a channel.
-// CLPV_GRID is the number of cells along each axis.
+// Light volumes: radiant intensity [W/sr] of every light cell, N coefficients per channel. CLPV_GRID: cells along each
+// axis.
 #include "coefficients.h"
 #define CLPV_VOLUME light
 #define CLPV_VOLUME_N CLPV_GRID

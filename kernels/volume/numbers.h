@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How buffers hold numbers: float, or half. Half is converted by the functions core OpenCL C 1.2 has for it, eight at a
-// time even where one is wanted: PoCL 3.1 has an instruction for eight, and some 1,900 for one, which are slow to compile too.
+// Storage of numbers in buffers: float or half. Halves are converted by core OpenCL C 1.2, always eight at a time: PoCL
+// 3.1 has one instruction for eight, and 1,900 for a single one.
 #ifndef CLPV_VOLUME_NUMBERS_H
 #define CLPV_VOLUME_NUMBERS_H
 
@@ -19,7 +19,7 @@
 #endif
 
 #if CLPV_STORAGE_HALF
-// Through vectors of one's own: PoCL 3.1 takes 16-byte alignment for granted in vload_half8 and vstore_half8.
+// Conversion through a private vector: PoCL 3.1 assumes 16-byte alignment in vload_half8 and vstore_half8.
 static inline __attribute__((always_inline)) float8 clpv_of_bits(const ushort8 bits) {
   return vload_half8(0, (const half*)&bits);
 }
@@ -28,8 +28,7 @@ static inline __attribute__((always_inline)) ushort8 clpv_to_bits(const float8 v
   vstore_half8(values, 0, (half*)&bits);
   return bits;
 }
-// Rows begin at any half: what is loaded and stored is of a type that may stand there. (Where a converted row was stored by
-// itself, the program crashed.)
+// Rows start at any half, hence a type of alignment 2; storing the converted vector itself crashes.
 typedef struct __attribute__((packed, aligned(2))) {
   ushort8 bits;
 } HalfRow;

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Volume layout `tiled`: blocks of 8 samples along x by all coefficients; in a block, the 8 of a coefficient lie side by
-// side. A row of samples starts with a block of zeros, which ends the row before it as well. Rows of zeros lie all
-// round. Part of the template instance.h; buffer.h makes the functions.
-#define CLPV_BLOCKS ((CLPV_VOLUME_N + 7) / 8 + 1)  // a row
+// Volume layout `tiled`: blocks of 8 samples along x by all coefficients, with the 8 samples of a coefficient adjacent.
+// A row starts with a block of zeros, which also ends the previous row; rows of zeros form the rest of the border. Part
+// of the template instance.h; buffer.h defines the functions.
+#define CLPV_BLOCKS ((CLPV_VOLUME_N + 7) / 8 + 1)  // blocks of a row
 #define CLPV_ROWS (CLPV_VOLUME_N + 2)
 #define CLPV_BLOCK (8 * CLPV_VOLUME_COUNT)
-#define CLPV_NEXT 8  // from a coefficient to the next one
-#define CLPV_LANE 1  // from a cell to its right neighbour, in the same block
+#define CLPV_NEXT 8  // step to the next coefficient
+#define CLPV_LANE 1  // step to the next cell along x in the same block
 
 CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
   const int row = (channel * CLPV_ROWS + (z + 1)) * CLPV_ROWS + (y + 1);
   return (row * CLPV_BLOCKS + 1 + (x >> 3)) * CLPV_BLOCK + (x & 7);
 }
 
-// Most callers' x is a multiple of 8, one less, or one more, which the compiler knows of a literal step from such a multiple.
+// Loads 8 samples from x on. Most callers have x a multiple of 8, or 1 less or more, which compilers derive from
+// literal offsets.
 CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int at, const int x) {
   const int block = at - (x & 7);
   const float8 row = CLPV_READ_ROW(volume, block);
   if ((x & 7) == 0) return row;
   const float8 next = CLPV_READ_ROW(volume, block + CLPV_BLOCK);
-  // Spelt out as in gather_packed.h.
+  // Element by element, as in gather_packed.h.
   if ((x & 7) == 1)
     return (float8)(row.s1, row.s2, row.s3, row.s4, row.s5, row.s6, row.s7, next.s0);
   if ((x & 7) == 7)

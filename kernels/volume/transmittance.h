@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Transmittance volumes: for every light cell the share in [0, 1] of light that each link into it lets through.
-// CLPV_GRID is the number of cells along each axis; the struct Links and CLPV_EACH_LINK come from the host.
+// Transmittance volumes: transmittance in [0, 1] of each link into every light cell. CLPV_GRID: cells along each axis.
+// struct Links and CLPV_EACH_LINK come from the host.
 #define CLPV_VOLUME transmittance
 #define CLPV_VOLUME_N CLPV_GRID
 #define CLPV_VOLUME_CELL Links

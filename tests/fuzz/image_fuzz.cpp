@@ -21,10 +21,10 @@ const char* name_for(std::string_view bytes) {
 }
 
 void hold_against_header(const clpv::Image& image, const char* name, std::span<const unsigned char> bytes) {
-  const clpv::ImageClaim claim = clpv::read_exr_header(name, bytes);
+  const clpv::DeclaredImage declared = clpv::read_exr_header(name, bytes);
   // Channels of one name count once for OpenEXR.
-  if (claim.width != image.width || claim.height != image.height ||
-      claim.channels < static_cast<std::int64_t>(image.channels.size())) {
+  if (declared.width != image.width || declared.height != image.height ||
+      declared.channels < static_cast<std::int64_t>(image.channels.size())) {
     std::abort();
   }
 }

@@ -12,13 +12,13 @@ int main() {
   const Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
   Sweeper sweeper(session, *basis, transport,
                   {.grid = kGrid, .parts = {1, 1}, .blocking = true, .form = SweepForm::planes});
-  sweeper.let_in(even_sky(glm::vec3(1)));
+  sweeper.set_sky(constant_sky(glm::vec3(1)));
   const Volume light(session, {kGrid, kSweepBins, 3}, "light"),
       blockers(session, {kGrid + 1, 3, 1}, "blockers");
   Volume swept(session, {kGrid, swept_basis()->size(), 3}, "swept");
   const std::vector<ClpvGrid> grids = cascade_grids(glm::vec3(0.1f), 2, 1, kGrid);
   for (const std::size_t cascade : {1, 0}) {
-    sweeper.block(cascade, blockers);
+    sweeper.set_blockers(cascade, blockers);
     sweeper.sweep(cascade, grids, light, swept);
   }
   session.queue().finish();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A triangle seen along an axis of a grid, as the stages see it that sample triangles: kernels/blockers.cl, kernels/reflectors.cl.
+// A triangle projected along an axis of a grid and sampled, as in kernels/blockers.cl and kernels/reflectors.cl.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,19 @@
 
 namespace clpv::reference {
 
-/// In cells of the grid; the plane across the axis is sampled kSamples times a cell along u and v, the next two axes.
-class Facing {
+/// A triangle in cells of the grid, projected along `axis`. Samples lie in the plane of the next two axes u and v, kSamples per
+/// cell along each.
+class AxisTriangle {
  public:
   /// `corners` in cells.
-  Facing(int axis, const std::array<glm::dvec3, 3>& corners) : axis_(axis), corners_(corners) {
+  AxisTriangle(int axis, const std::array<glm::dvec3, 3>& corners) : axis_(axis), corners_(corners) {
     for (glm::dvec3& c : corners_) c = {c[(axis + 1) % 3], c[(axis + 2) % 3], c[axis]};
     const glm::dvec3 across = glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
     area_ = across.z;
     if (area_ != 0) normal_ = glm::normalize(across);
   }
 
-  /// Shows the side that faces up the axis, or down it, half a cell off itself: where it is lit.
+  /// Selects the side that faces up or down the axis, and moves the triangle half a cell to that side.
   void lift(bool up) {
     if (up != this->up()) normal_ = -normal_;
     const glm::dvec3 aside = normal_ / 2.0;
@@ -33,18 +34,18 @@ class Facing {
                       aside.z);
   }
 
-  bool seen() const { return area_ != 0; }
+  bool has_area() const { return area_ != 0; }  ///< projected area, not 0
   int axis() const { return axis_; }
   bool up() const { return normal_.z > 0; }
-  /// Area that a sample stands for, in samples: all axes of a triangle together count its area once.
+  /// Weight of a sample: the weights of a triangle's three axes together count its area once.
   double weight() const { return 1 / (std::abs(normal_.x) + std::abs(normal_.y) + std::abs(normal_.z)); }
-  /// Weights of the second and the third corner, where that is not outside.
-  glm::vec2 weights_inside(const glm::dvec2& at) const {
+  /// Barycentric coordinates of the second and third corner, clamped to the triangle.
+  glm::vec2 clamped_weights(const glm::dvec2& at) const {
     const glm::dvec2 w = weights(at);
     const double x = std::clamp(w.x, 0.0, 1.0);
     return {x, std::clamp(w.y, 0.0, 1 - x)};
   }
-  /// No less and no more than the corners'.
+  /// Depth along the axis, clamped to the range of the corners.
   double depth(const glm::dvec2& at) const {
     const glm::dvec2 w = weights(at);
     const auto [nearest, farthest] = depths();
@@ -52,29 +53,30 @@ class Facing {
         corners_[0].z + w.x * (corners_[1].z - corners_[0].z) + w.y * (corners_[2].z - corners_[0].z),
         nearest, farthest);
   }
+  /// Minimum and maximum depth of the corners.
   std::pair<double, double> depths() const {
     return std::minmax({corners_[0].z, corners_[1].z, corners_[2].z});
   }
-  /// How far inside a point is [samples]; the least over the edges, their seams included.
-  double inside(const glm::dvec2& at) const {
-    double least = 1e300;
+  /// Signed distance to the nearest edge [samples], positive inside; seams count as inside.
+  double edge_distance(const glm::dvec2& at) const {
+    double smallest = 1e300;
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::dvec2 a(corners_[i]), edge = glm::dvec2(corners_[(i + 1) % 3]) - a;
       const double across = (area_ < 0 ? -1 : 1) * cross(edge, at - a);
-      least = std::min(least, kSamples * across / (std::abs(edge.x) + std::abs(edge.y)) + kSeam);
+      smallest = std::min(smallest, kSamples * across / (std::abs(edge.x) + std::abs(edge.y)) + kSeam);
     }
-    return least;
+    return smallest;
   }
   /// Change of depth from sample to sample along u and v [cells].
   glm::dvec2 slope() const { return glm::dvec2(normal_.x, normal_.y) / -normal_.z / double{kSamples}; }
-  /// The samples that may be covered along u or v, of those of `n` cells: from first to last.
+  /// First and last sample along u (0) or v (1) that may be covered, within `n` cells.
   std::pair<int, int> range(int along, int n) const {
     const auto [low, high] = std::minmax({corners_[0][along], corners_[1][along], corners_[2][along]});
     const double last = kSamples * n - 1;
     return {static_cast<int>(std::clamp(std::floor(kSamples * low - 1), 0.0, last + 1)),
             static_cast<int>(std::clamp(std::ceil(kSamples * high), -1.0, last))};
   }
-  /// The cell with this number along u, v and the axis.
+  /// Cell with these indices along u, v and the axis.
   glm::ivec3 cell(int u, int v, int along) const {
     glm::ivec3 cell;
     cell[(axis_ + 1) % 3] = u, cell[(axis_ + 2) % 3] = v, cell[axis_] = along;
@@ -90,12 +92,12 @@ class Facing {
 
   int axis_;
   std::array<glm::dvec3, 3> corners_;  ///< along u, v and the axis
-  double area_ = 0;                    ///< twice its projection's
+  double area_ = 0;                    ///< twice the projected area
   glm::dvec3 normal_{0};
 };
 
-/// The middle of a sample [cells].
-inline glm::dvec2 middle_of_sample(double u, double v) {
+/// Centre of a sample [cells].
+inline glm::dvec2 sample_centre(double u, double v) {
   return (glm::dvec2(u, v) + 0.5) / double{kSamples};
 }
 
