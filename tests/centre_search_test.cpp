@@ -233,7 +233,7 @@ TEST_F(CentresFile, RejectsWithThePlace) {
       {R"({"centres": [[0, 0, "1"]]})", "/centres/0/2"},
       {R"({"centres": [[0, 0, 1e999]]})", "invalid JSON"},
       {R"({"centres": [[0, 0, 1], [0, 0, 5]]})", "/centres/1"},
-      {R"({"centres": [[0, 0, 1]], "lambda": 1})", "/lambda is 1; allowed: a number between 0 and 1"},
+      {R"({"centres": [[0, 0, 1]], "lambda": 1})", "/lambda is 1; allowed: a number greater than 0 and less than 1"},
       {R"({"centres": [[0, 0, 1]], "lambda": "wide"})", "/lambda is \"wide\""},
       {R"({"centres": [[0, 0, 1], [1, 0, 0]], "lambda": [0.2, 0]})", "/lambda/1 is 0"},
       {R"({"centres": [[0, 0, 1], [1, 0, 0]], "lambda": [0.2]})",

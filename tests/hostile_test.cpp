@@ -167,7 +167,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {film + "--frames 2 --fps 1 --traced 4", {"--traced", "--stability"}},
                        {quality + "--vary width=8,16", {"--vary", "one size"}},
                        {quality + "--view inside", {"--view", "inside"}},
-                       {quality + "--camera nobody --cache @/c", {"nobody", "there are"}},
+                       {quality + "--camera nobody --cache @/c", {"nobody", "allowed: front"}},
                        {truth + "-o @/out.exr --spp 0", {"--spp"}},
                        {truth + "-o @/out.exr --noise 0", {"--noise"}},
                        {truth + "-o @/out.exr --spp 4 --noise 0.1", {"--spp", "--noise"}},
