@@ -11,12 +11,12 @@
 
 namespace clpv {
 
-/// Fills geometry volumes of areas (Blocking::areas) with the share of each square that triangles cover; overlapping
+/// Computes geometry volumes of areas (Blocking::areas): the share of each square that triangles cover. Overlapping
 /// triangles count once. Deterministic: the order in which bits are set does not matter.
 class BlockerVoxelizer {
  public:
-  /// For `cascades` cascades of `grid` cells along each axis, into volumes of `format`. `scene` must stay as it is,
-  /// but for upload_moving(). Throws Error(run_time) where the device's memory does not suffice.
+  /// Computes volumes of `format` for `cascades` cascades of `grid` cells along each axis. `scene` must not change
+  /// except by upload_moving(). Throws Error(run_time) if device memory does not suffice.
   BlockerVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
                    const VolumeFormat& format);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `emit`: what a scene's emissive triangles send out, as virtual point lights (kernels/emit.cl; docs/method.md, 'Emissive
+// Stage `emit`: converts emissive triangles to virtual point lights (kernels/emit.cl; docs/method.md, 'Emissive
 // surfaces').
 #pragma once
 
@@ -15,16 +15,16 @@
 
 namespace clpv {
 
-/// Puts the points of a plan onto a scene's triangles. Deterministic: a point depends on its place in the plan alone.
+/// Places the points of a plan on a scene's triangles. Deterministic: a point depends only on its index in the plan.
 class Emitter {
  public:
-  /// `scene` must stay as it is.
+  /// `scene` must not change.
   Emitter(Session& session, const SceneBuffers& scene);
 
-  /// Makes the points anew, their fluxes `scale` times what they are.
+  /// Recomputes the points, with their flux multiplied by `scale`.
   void emit(const EmissionPlan& plan, float scale);
 
-  /// Positions, normals and fluxes, for injection.
+  /// Positions, normals and fluxes [W] of the points, for injection.
   const Surface& points() const { return points_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A frame: every stage in its order, for one scene and one set of options (docs/method.md, 'The frame').
+// A frame: runs all pipeline stages in order, for one scene and one set of options (docs/method.md, 'The frame').
 #pragma once
 
 #include <memory>
@@ -23,42 +23,42 @@
 
 namespace clpv {
 
-/// Holds all device memory a frame needs; render() may be called again and again, for one camera or many.
+/// Holds all device memory of a frame. Call render() any number of times, for one or several cameras.
 class Frame {
  public:
-  /// Throws Error(run_time) where the device's memory does not suffice.
+  /// Throws Error(run_time) if device memory does not suffice.
   Frame(Session& session, const Scene& scene, const RenderOptions& options);
-  Frame(const Frame&) = delete;  // its stages refer to its other parts
+  Frame(const Frame&) = delete;  // stages hold references to other members
   Frame& operator=(const Frame&) = delete;
 
-  /// To be called when the scene given may show another instant (MovingScene): the next frame is of that.
+  /// Call when the scene may have changed its time (MovingScene). The next frame shows the new time.
   void scene_moved();
 
-  /// Enqueues the stages whose products are not there yet, marked on the session's timeline, which forgets the frame before;
-  /// shaded views are there once the queue is finished. A frame is the same to the bit, whatever was rendered before it.
-  /// `observer` sees each cascade's volumes (and waits for the device, so leave it out of a timed frame).
+  /// Enqueues the stages whose results are not cached, and records them on the session's timeline, which it clears first.
+  /// Shaded views are complete once the queue has finished. The result is bit-identical whatever was rendered before.
+  /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
   void render(const Camera& camera, const CascadeObserver& observer = {});
 
-  /// For benchmarks: the next frame recomputes all lighting, from shadow maps on; or everything, with what the scene's
-  /// triangles block and hide.
+  /// For benchmarks. After forget_light() the next frame recomputes all lighting, including shadow maps. After
+  /// invalidate() it recomputes everything, including blockers and visibility.
   void forget_light() { lights_.invalidate(); }
   void invalidate();
 
-  /// Empty before the first render.
+  /// Light of the last render; empty before the first one.
   GatheredLight light() const { return cascades_.light(); }
 
-  /// What the camera of the last render sees. None before it.
+  /// G-buffer of the last render's camera. Undefined before the first render.
   const Surface& seen() const { return *camera_surface_; }
 
-  /// Irradiance of the last render's light on surfaces that its camera need not see, as Gatherer gives it.
+  /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of Gatherer.
   std::vector<float> irradiance_on(const SurfaceImage& surfaces);
 
-  /// One view of the last render, as RGBA float, row 0 on top.
+  /// One view of the last render as RGBA float, top row first.
   std::vector<float> read(Show view);
 
   const RenderOptions& options() const { return options_; }
-  const Basis& basis() const { return *basis_; }  ///< of injected light
-  /// Of light on its way to surfaces: that of injected light, or what a sweep leaves.
+  const Basis& basis() const { return *basis_; }  ///< basis of injected light
+  /// Basis of gathered light: the swept basis, or without a sweep that of injected light.
   const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
 
  private:
@@ -77,13 +77,13 @@ class Frame {
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
-  std::vector<Cached> packed_;  ///< accumulated light as the gatherer holds it
-  Buffer irradiance_;           ///< float4 a pixel, as is image_
+  std::vector<Cached> packed_;  ///< accumulated light as packed by the gatherer
+  Buffer irradiance_;           ///< float4 per pixel, like image_
   Buffer image_;
   Show shown_ = Show::full;
 };
 
-/// A view of the last render as a linear image.
+/// Returns a view of the last render as a linear image.
 Image view_image(Frame& frame, Show view);
 
 }  // namespace clpv

@@ -25,44 +25,44 @@
 
 namespace clpv {
 
-/// The volumes of one cascade, just after its propagation. What is accumulated is of Frame::gathered().
+/// Volumes of one cascade after its propagation. Accumulated light uses the basis Frame::gathered().
 struct CascadeVolumes {
   int cascade;
   const ClpvGrid& grid;
   const Volume& injected;
   const Volume* geometry;  ///< null without occlusion
   const Volume& accumulated;
-  float light_scale;  ///< the volumes hold so many times the light
+  float light_scale;  ///< factor by which the volumes scale the light
 };
 using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 
-/// What a render left in its volumes to be gathered, finest cascade first.
+/// Accumulated light of a render, ready to be gathered; finest cascade first.
 struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;
   const Buffer* occluded;  ///< CellVisibility::occluded(); null where all cells light a surface
-  float scale;             ///< they hold so many times the light
+  float scale;             ///< factor by which the volumes scale the light
 };
 
 class FrameCascades {
  public:
-  /// All must stay as long as this does. `swept`: the basis that a sweep leaves; null without one.
+  /// All arguments must outlive this object. `swept`: basis of swept light; null without a sweep.
   FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
                 const RenderOptions& options, const Basis& basis, const Basis* swept,
                 const Transport& transport, FrameLights& lights);
 
-  /// To be called for each frame, once its lights are prepared: where cascades stand, and what the camera sees.
+  /// Sets the cascade grids and the camera's G-buffer. Call for each frame, after preparing its lights.
   void prepare(const std::vector<ClpvGrid>& grids, const Surface& camera);
 
-  /// Brings a cascade's light to date; the coarsest comes first.
+  /// Updates the light of a cascade. Call for the coarsest cascade first.
   void update(int cascade, const CascadeObserver& observer);
 
-  /// Of a cascade's accumulated light.
+  /// Key of a cascade's accumulated light.
   CacheKey key(int cascade) const { return keys_[cascade].accumulated; }
   GatheredLight light() const;
 
  private:
-  /// A volume and what it holds: one a cascade, or one for all in turn.
+  /// A volume and the key of its contents. There is one per cascade, or one that all cascades share in turn.
   struct CachedVolume {
     std::unique_ptr<Volume> volume;
     Cached cached;
@@ -75,7 +75,7 @@ class FrameCascades {
   static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, int cascade);
   Keys keys_of(int cascade) const;
 
-  /// Each brings a cascade's result to date, and what it is computed from before it where it is not.
+  /// Each function updates one result of a cascade, and first the inputs it depends on.
   void inject(int cascade);
   void block(int cascade);
   void let_through(int cascade);
@@ -91,8 +91,8 @@ class FrameCascades {
   const RenderOptions& options_;
   FrameLights& lights_;
   Injector injector_;
-  std::optional<BlockerVoxelizer> blocker_;      ///< none: what is seen blocks
-  std::optional<ReflectorVoxelizer> reflector_;  ///< none: one bounce
+  std::optional<BlockerVoxelizer> blocker_;      ///< none: surfaces in the RSMs and the G-buffer block
+  std::optional<ReflectorVoxelizer> reflector_;  ///< none with one bounce
   std::optional<Propagator> propagator_;         ///< one of the two
   std::optional<Sweeper> sweeper_;
   std::optional<CellVisibility> sight_;  ///< none: all cells light a surface

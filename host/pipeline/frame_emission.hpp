@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Emissive surfaces of a frame: the points they light from, cached while these surfaces, and how fine they are to be, stay as
-// they are.
+// Emissive surfaces of a frame: caches their virtual point lights until the surfaces or the required density change.
 #pragma once
 
 #include <vector>
@@ -13,36 +12,36 @@ namespace clpv {
 
 class FrameEmission {
  public:
-  /// All must stay as long as this does. `scene` has emissive triangles; `buffers` are of it, at the instant it shows.
+  /// All arguments must outlive this object. `scene` has emissive triangles; `buffers` hold it at its current time.
   FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers);
 
-  /// max_emitted_flux() of the scene as it is now.
+  /// Returns max_emitted_flux() of the scene at its current time [W].
   double most(double cell);
 
-  /// Decides where points are, for cascades at `grids`; they have `scale` times their flux. Another `epoch` computes them again.
+  /// Plans the points for cascades at `grids`, with their flux multiplied by `scale`. A new `epoch` recomputes them.
   void prepare(const std::vector<ClpvGrid>& grids, float scale, unsigned epoch);
 
-  /// Brings the points to date.
+  /// Updates the points.
   void emit();
 
-  /// Of the points that emit() leaves.
+  /// Key of the points that emit() computes.
   CacheKey key() const { return key_; }
   const Surface& points() const { return emitter_.points(); }
 
  private:
-  /// The version of the emissive triangles.
+  /// Version of the emissive triangles.
   unsigned instant() const { return moving_ ? buffers_.clusters->instant() : 0; }
 
   Session& session_;
   const Scene& scene_;
   const SceneBuffers& buffers_;
-  std::vector<std::uint32_t> triangles_;  ///< that emit
-  bool moving_ = false;                   ///< some of them do
+  std::vector<std::uint32_t> triangles_;  ///< emissive triangles
+  bool moving_ = false;                   ///< true if some of them move
   Emitter emitter_;
   EmissionPlan plan_;
   Cached measured_, planned_, emitted_;
   double most_ = 0;
-  int coarsened_ = 0;  ///< as said in the log
+  int coarsened_ = 0;  ///< last value logged
   float scale_ = 1;
   CacheKey key_ = 0;
 };

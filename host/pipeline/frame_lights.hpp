@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The lights that shine on a frame, and what is computed for them alone: shadow maps, reflective shadow maps (RSMs) and
-// points on emissive surfaces, each cached while light, view and scene stay as they are.
+// Lights of a frame: caches shadow maps, reflective shadow maps (RSMs) and points on emissive surfaces until light,
+// view or scene change.
 #pragma once
 
 #include <optional>
@@ -25,53 +25,53 @@ namespace clpv {
 
 class FrameLights {
  public:
-  /// All must stay as long as this does. `buffers`: of `scene`, at the instant it shows.
+  /// All arguments must outlive this object. `buffers` hold `scene` at its current time.
   FrameLights(Session& session, const Scene& scene, const SceneBuffers& buffers, Rasterizer& rasterizer,
               const RenderOptions& options);
 
-  /// The lights that shine with `camera`, as the scene has them now, over cascades that stand at `grids`.
+  /// Prepares the lights of `camera` at the scene's current time, for cascades at `grids`.
   void prepare(const Camera& camera, const std::vector<ClpvGrid>& grids);
 
-  /// Bring to date the shadow maps, the RSMs that light a cascade, or these and the points on emissive surfaces.
+  /// Update the shadow maps, the RSMs of a cascade, or its RSMs and the points on emissive surfaces.
   void rasterize_shadows();
   void rasterize_rsms(int cascade);
   void update_sources(int cascade);
 
-  /// Of a cascade's RSMs, as rasterize_rsms() left them, until it is called for another cascade.
+  /// RSMs of a cascade from rasterize_rsms(); valid until its next call for another cascade.
   CacheKey rsms_key(int cascade) const;
   std::vector<const Surface*> rsms(int cascade) const;
 
-  /// Of all that injects light into a cascade: its RSMs, and points on emissive surfaces.
+  /// Key of all light injected into a cascade: RSMs and points on emissive surfaces.
   CacheKey sources_key(int cascade) const;
   std::vector<const Surface*> sources(int cascade) const;
 
-  /// As rasterize_shadows() left them.
+  /// Shadow maps from rasterize_shadows().
   std::vector<ShadowedLight> shadowed() const;
 
-  /// What RSMs and volumes hold in place of 1 W/sr.
+  /// Value that RSMs and volumes store for 1 W/sr.
   float scale() const { return scale_; }
 
-  /// The next frame computes all of it again.
+  /// Makes the next frame recompute all lighting.
   void invalidate() { ++epoch_; }
 
  private:
-  struct Rsms {  ///< a view each: one, or six
+  struct Rsms {  ///< one or six views
     std::vector<Surface> surfaces;
     Cached cached;
   };
-  struct Wanted {  ///< RSMs of a cascade
+  struct Wanted {  ///< RSMs that a cascade needs
     std::vector<ClpvView> views;
     CacheKey key;
   };
-  struct Lit {  ///< a light and what is rasterised for it
+  struct Lit {  ///< a light and its maps
     ClpvLight light;
-    int index;                   ///< in Scene::lights
-    std::vector<Rsms> rsms;      ///< of all cascades, or those of one in turn
-    std::vector<Wanted> wanted;  ///< a cascade
+    int index;                   ///< index in Scene::lights
+    std::vector<Rsms> rsms;      ///< one per cascade, or one shared in turn
+    std::vector<Wanted> wanted;  ///< one per cascade
     ShadowedLight shadow;
     Cached shadow_cached;
   };
-  /// Views that do not follow a cascade are the same for all of them.
+  /// Views that do not follow a cascade are shared by all cascades.
   static std::size_t slot(const Lit& lit, int cascade);
   void find_lights(const Camera& camera);
   void find_scale(const ClpvGrid& coarsest);
@@ -83,22 +83,23 @@ class FrameLights {
   const SceneBuffers& buffers_;
   Rasterizer& rasterizer_;
   const RenderOptions& options_;
-  std::optional<FrameEmission> emission_;  ///< none: no surface emits
+  std::optional<FrameEmission> emission_;  ///< none without emissive surfaces
   float brightest_sky_;                    ///< [W/m^2/sr]
   std::vector<Lit> lights_;
-  std::string lit_by_;  ///< Camera::light that lights_ were prepared for
+  std::string lit_by_;  ///< Camera::light for which lights_ were prepared
   float scale_ = 1;
   unsigned epoch_ = 0;  ///< part of every key
 };
 
-/// A power of two; 1 for floats. Numbers of 16 bits end at 65504, lose digits below 6e-5, and lights may be given in lux:
-/// scaled, a cell of `coarsest_cell` [m] that holds all that the brightest light can send it has some 256 W/sr. Finer
-/// cascades hold a quarter each; what steps add stays below the end, and a million times less still has its digits.
-/// `other`: the most that all else sends through such a cell [W] (max_emitted_flux).
+/// Returns the scale of stored light: a power of two for 16-bit storage, 1 for float32. 16-bit numbers end at 65504
+/// and lose precision below 6e-5, while lights may be given in lux. With this scale, a cell of `coarsest_cell` [m] that
+/// receives all light of the brightest source stores about 256 W/sr. Cells of each finer cascade store a quarter of it.
+/// This leaves room for what propagation adds, and for values a million times smaller.
+/// `other`: upper bound of the flux that all other sources send through such a cell [W] (max_emitted_flux).
 float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
                   double other = 0);
 
-/// The light, so many times as bright.
+/// Returns the light with its intensity multiplied by a factor.
 ClpvLight scaled(ClpvLight light, float scale);
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `--stats` tells of a frame: device, options, stage times, memory and energies.
+// Statistics of a frame for `--stats`: device, options, stage times, memory and energies.
 #pragma once
 
 #include <array>
@@ -11,19 +11,20 @@
 
 namespace clpv {
 
-/// Collects the figures of one `clpv render`; times are wall times unless a stage says "event".
+/// Collects the statistics of one `clpv render`. Times are wall times unless the timer of a stage is "event".
 class FrameStats {
  public:
   void begin_startup() { mark_ = Clock::now(); }
   void end_startup(const Session& session);  ///< device opened, programs built, scene uploaded
-  void end_first_frame(Session& session);    ///< the first launches compile for their work-group sizes
+  void end_first_frame(Session& session);    ///< the first launches compile kernels for their work-group sizes
   void begin_frame() { mark_ = Clock::now(); }
-  /// Adds the timeline's stage times; frames of one camera have the same stages. Medians over all frames are told: the
-  /// first one after a start still waits for memory and caches.
+  /// Adds the stage times of the timeline; frames of one camera have the same stages. The statistics report medians over
+  /// all frames, since the first frame still warms memory and caches.
   void end_frame(Session& session);
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
 
-  /// Schema 1: device, options, frames (timed ones), stages, frame_ms, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
+  /// Returns JSON of schema 1: device, options, frames (number of timed ones), stages, frame_ms, first_launch_ms,
+  /// build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
 
  private:
@@ -38,15 +39,15 @@ class FrameStats {
   };
   Clock::time_point mark_;
   double startup_ms_ = 0, first_frame_ms_ = 0;
-  std::vector<double> frame_ms_;                ///< one a timed frame
-  std::vector<std::vector<StageTime>> stages_;  ///< the same
+  std::vector<double> frame_ms_;                ///< one per timed frame
+  std::vector<std::vector<StageTime>> stages_;  ///< one per timed frame
   std::vector<Energy> energies_;
 };
 
-/// Stage, cascade, light, milliseconds and timer of each.
+/// Lists each stage with its cascade, light, time [ms] and timer.
 nlohmann::json to_json(const std::vector<StageTime>& times);
 
-/// Int f dw summed over all cells of a light volume, a channel [W].
+/// Returns the integral over directions summed over all cells of a light volume, per channel [W].
 std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume);
 
 }  // namespace clpv

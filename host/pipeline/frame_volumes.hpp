@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The volumes of a frame: their shapes, how many there are, and whether device and options allow them.
+// Shapes and number of a frame's volumes, and checks that device and options allow them.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +15,22 @@ namespace clpv {
 VolumeShape light_shape(const RenderOptions& options, const Basis& basis);
 VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis);
 
-/// Of what a sweep leaves; null without one.
+/// Shape of a volume of swept light; null without a sweep.
 std::unique_ptr<Basis> swept_basis(const RenderOptions& options);
 
-/// Whether what the camera sees blocks: a frame of another view then needs the RSMs and the injected light of every
-/// cascade again.
+/// Returns true if surfaces in the camera's G-buffer block light. A new view then recomputes the RSMs and injected
+/// light of every cascade.
 bool blocked_by_view(const RenderOptions& options);
 
-/// Volumes of injected light, and RSMs of a light that follow cascades, a frame keeps: one a cascade where every frame may
-/// need all of them; else one, made for whichever cascade is lit anew.
+/// Number of stored volumes of injected light, and of stored RSMs that follow cascades. It is one per cascade if any
+/// frame may need all of them, else one that is recomputed for the current cascade.
 int injected_volumes(const RenderOptions& options);
 
-/// Geometry volumes that a frame keeps: what the scene blocks, a cascade; else one; none without occlusion.
+/// Number of stored geometry volumes: one per cascade for scene blockers, else one; 0 without occlusion.
 int geometry_volumes(const RenderOptions& options);
 
-/// `options` themselves. Throws Error(usage) for those that contradict each other, Error(device) for volumes that the device
-/// cannot hold at all.
+/// Returns `options` after checking them. Throws Error(usage) for contradictory options, Error(device) for volumes
+/// too large for the device.
 const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis);
 
 }  // namespace clpv
