@@ -7,7 +7,7 @@
 namespace clpv {
 namespace {
 
-constexpr unsigned kMostTriangles = 1u << 20;  // a launch
+constexpr unsigned kMostTriangles = 1u << 20;  // per launch
 
 VoxelMaskShape shape_of(int grid, int cascades) {
   return {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cached results: recomputed when the key of their inputs changes, and at no other time.
+// Cached results: recomputed only when the key of their inputs changes.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace clpv {
 
-/// Identifies the inputs of a result: a Fingerprint of versions and values. Options and a scene's materials are in none, as
-/// they stay with a frame.
+/// Identifies the inputs of a result: a Fingerprint of versions and values. It omits options and materials, which are
+/// constant for a frame.
 using CacheKey = std::uint64_t;
 
-/// The key of a result whose memory holds what was computed last.
+/// Key of a result whose memory stores the last computed value.
 class Cached {
  public:
-  /// Calls `compute` unless the result is that of `key`. A `compute` that throws leaves no result.
+  /// Calls `compute` unless the result has key `key`. If `compute` throws, no result is cached.
   template <typename Compute>
   void update(CacheKey key, const Compute& compute) {
     if (key_ == key) return;

@@ -9,12 +9,12 @@
 namespace clpv {
 namespace {
 
-// Of the coarsest cascade's usual 32 cells a side, the 26 about the eye are in full light, whose next two fade out; 24 leave
-// room for what moves.
+// The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full light, and the next two
+// fade out. 24 cells leave room for camera motion.
 constexpr double kRoom = 32.0 / 24;
-constexpr double kFarTooLarge = 4;  // times the edge that just holds the scene: a quarter of its cells across
+constexpr double kFarTooLarge = 4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
 
-constexpr double kAligned = 1e-2;  // [finer cells]: rounding of origins in float32, some hundred cells away
+constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
 
 }  // namespace
 

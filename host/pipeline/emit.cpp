@@ -6,8 +6,8 @@
 namespace clpv {
 namespace {
 
-constexpr cl_uint kRow = 256;      // points of a row, where injection takes surfaces of rows
-const cl::NDRange kEmitGroup(16);  // work-items are long where there are textures
+constexpr cl_uint kRow = 256;      // points per row, since injection reads surfaces by rows
+const cl::NDRange kEmitGroup(16);  // work-items with textures run long
 
 ProgramSource emit_program(const SceneBuffers& scene) {
   ProgramSource source{"emit.cl", {}, {}};

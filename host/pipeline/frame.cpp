@@ -9,14 +9,14 @@
 namespace clpv {
 namespace {
 
-/// Steps carry no light from beyond the cascades.
+/// Rejects a sky with step propagation, which takes no light at the border of the cascades.
 void require_sweep(const RenderOptions& options, const Scene& scene) {
   if (!scene.sky || options.transport == TransportKind::sweep) return;
   throw Error(ExitCode::usage, "transport: found '{}' with a sky, allowed: sweep (or a scene without a sky)",
               name_of(options.transport));
 }
 
-/// A sky is brighter outside walls than what is behind them by so much that what leaks along diagonal ways is most there.
+/// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most visible with a sky.
 constexpr double kClosedUnderASky = 0.75;
 
 Transport transport_for(const RenderOptions& options, const Basis& basis, const Scene& scene) {
@@ -26,7 +26,7 @@ Transport transport_for(const RenderOptions& options, const Basis& basis, const 
   return transport;
 }
 
-/// Gives pixels of an RGBA image without alpha the radiance of the sky that they look at, and alpha 1.
+/// Sets pixels of an RGBA image without alpha to the sky's radiance in their direction, and their alpha to 1.
 void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) {
   const glm::dvec3 forward = vector(view.forward), right = vector(view.right), up = vector(view.up);
   for (unsigned y = 0; y < view.height; ++y) {
@@ -95,7 +95,7 @@ void Frame::gather(const Surface& surface, Buffer& irradiance) {
 }
 
 void Frame::render(const Camera& camera, const CascadeObserver& observer) {
-  session_.timeline().clear();  // the events of every frame would add up
+  session_.timeline().clear();  // otherwise the events of all frames would accumulate
   const std::vector<ClpvGrid> grids =
       cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
   lights_.prepare(camera, grids);

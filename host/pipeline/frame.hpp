@@ -34,7 +34,7 @@ class Frame {
   /// Call when the scene may have changed its time (MovingScene). The next frame shows the new time.
   void scene_moved();
 
-  /// Enqueues the stages whose results are not cached, and records them on the session's timeline, which it clears first.
+  /// Enqueues the stages whose results are not cached. Clears the session's timeline and records the stages on it.
   /// Shaded views are complete once the queue has finished. The result is bit-identical whatever was rendered before.
   /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
   void render(const Camera& camera, const CascadeObserver& observer = {});

@@ -63,7 +63,7 @@ void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface& c
 
 FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   const ClpvGrid& grid = grids_[cascade];
-  // Where in a cascade the eye is matters to gathering alone.
+  // The eye's position inside a cascade affects only gathering.
   const CacheKey place = Fingerprint().add(grid.origin).add(grid.cell).value();
   Keys keys;
   keys.triangles = Fingerprint().add(place).add(buffers_.clusters->instant()).value();
@@ -72,12 +72,12 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   if (!geometry_.empty() && !blocker_)
     keys.geometry =
         Fingerprint().add(keys.triangles).add(lights_.rsms_key(cascade)).add(camera_->view).value();
-  // All bounces depend on what blocks.
+  // All bounces depend on the blockers.
   keys.reflected = Fingerprint().add(keys.triangles).add(keys.geometry).value();
   Fingerprint accumulated;
   accumulated.add(keys.injected).add(keys.geometry);
   if (reflector_) accumulated.add(keys.reflected);
-  // A sweep takes light at its border from the next coarser cascade, and keeps what the next finer one will take.
+  // A sweep reads border light from the next coarser cascade, and stores the halo of the next finer one.
   if (sweeper_) accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
   if (sweeper_ && cascade + 1 < options_.cascades) accumulated.add(keys_[cascade + 1].accumulated);
   keys.accumulated = accumulated.value();
@@ -155,7 +155,7 @@ void FrameCascades::update(int cascade, const CascadeObserver& observer) {
   propagate(cascade);
   see(cascade);
   if (!observer) return;
-  inject(cascade);  // what cascades share may hold another one's
+  inject(cascade);  // a shared volume may hold another cascade
   block(cascade);
   observer({cascade, grids_[cascade], *of_cascade(injected_, cascade).volume, geometry(cascade),
             *accumulated_[cascade].volume, lights_.scale()});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cascades of a frame: their volumes, and the stages that fill them. Each result is cached with a key over its inputs and
-// recomputed only when the key changes.
+// Cascades of a frame: their volumes, and the stages that compute them. Each result is cached with a key over its
+// inputs and recomputed only when the key changes.
 #pragma once
 
 #include <functional>

@@ -10,7 +10,7 @@
 namespace clpv {
 namespace {
 
-/// Whether a triangle is of a part that moves.
+/// Returns true if a triangle belongs to a moving part.
 bool moves(const Scene& scene, std::uint32_t triangle) {
   return std::ranges::any_of(scene.moving, [&](const MeshRange& part) {
     return triangle >= part.first_triangle && triangle - part.first_triangle < part.triangles;

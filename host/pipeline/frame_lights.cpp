@@ -12,10 +12,10 @@
 namespace clpv {
 namespace {
 
-constexpr double kFull = 256;         // [W/sr] of a full cell, stored
-constexpr double kMostDoubling = 60;  // of a light so weak that floats end first
+constexpr double kFull = 256;         // [W/sr] stored in a full cell
+constexpr double kMostDoubling = 60;  // for a light so weak that float32 would overflow
 
-/// The most that a light sends through a cell [W].
+/// Returns the upper bound of the flux that a light sends through a cell [W].
 double most_flux(const ClpvLight& light, double cell) {
   const double brightest = *std::max_element(light.intensity, light.intensity + 3);
   return brightest * (rsm_follows_cascade(light) ? cell * cell : 4 * std::numbers::pi);
@@ -51,7 +51,7 @@ void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& gri
   if (emission_) emission_->prepare(grids, scale_, epoch_);
 }
 
-/// Buffers are kept as long as the same lights shine.
+/// Keeps the buffers while the set of lights is unchanged.
 void FrameLights::find_lights(const Camera& camera) {
   const std::vector<Light> shining = scene_.lights_for(camera);
   if (lights_.size() != shining.size() || lit_by_ != camera.light) lights_.clear();
@@ -80,7 +80,7 @@ CacheKey FrameLights::key_of(const ClpvLight& light, const std::vector<ClpvView>
 void FrameLights::rasterize_shadows() {
   const std::size_t texels = std::size_t(options_.shadow_size) * options_.shadow_size;
   for (Lit& lit : lights_) {
-    // Shadows are of the views alone, however bright the light is.
+    // Shadow maps depend only on the views, not on intensity.
     lit.shadow_cached.update(key_of({}, lit.shadow.views), [&] {
       const StageScope scope(session_, {Pass::rasterize_shadow, {}, lit.index});
       lit.shadow.depths.resize(lit.shadow.views.size());

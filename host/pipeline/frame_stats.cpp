@@ -10,7 +10,7 @@
 namespace clpv {
 namespace {
 
-/// The stages of one frame, each with the median of its times over all of them.
+/// Returns the stages of one frame, each with the median of its times over all frames.
 std::vector<StageTime> median_times(const std::vector<std::vector<StageTime>>& frames) {
   if (frames.empty()) return {};
   std::vector<StageTime> result = frames.front();
@@ -73,7 +73,7 @@ void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeV
     for (double& watts : stored) watts /= volumes.light_scale;
     return stored;
   };
-  // Finest first, in whatever order they are lit.
+  // Sort finest first, independent of the order of computation.
   energies_.insert(energies_.begin(), {volumes.cascade, energy(volumes.injected, frame.basis()),
                                        energy(volumes.accumulated, frame.gathered())});
 }

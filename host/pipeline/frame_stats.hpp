@@ -18,7 +18,7 @@ class FrameStats {
   void end_startup(const Session& session);  ///< device opened, programs built, scene uploaded
   void end_first_frame(Session& session);    ///< the first launches compile kernels for their work-group sizes
   void begin_frame() { mark_ = Clock::now(); }
-  /// Adds the stage times of the timeline; frames of one camera have the same stages. The statistics report medians over
+  /// Adds the stage times of the timeline; frames of one camera have equal stages. The statistics report medians over
   /// all frames, since the first frame still warms memory and caches.
   void end_frame(Session& session);
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);

@@ -11,7 +11,7 @@ bool sweeps(const RenderOptions& options) {
   return options.transport == TransportKind::sweep;
 }
 
-/// Rejects what needs a transport by faces.
+/// Rejects options that require a transport with faces.
 void require_faces(const RenderOptions& options) {
   if (has_faces(options.transport)) return;
   if (options.state != State::coefficients) {
@@ -25,7 +25,7 @@ void require_faces(const RenderOptions& options) {
   }
 }
 
-/// Rejects what a transport cannot do, and what the scene's triangles cannot.
+/// Rejects options that the transport or scene blockers do not support.
 void require_compatible(const RenderOptions& options) {
   if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
     throw Error(ExitCode::usage,

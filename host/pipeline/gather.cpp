@@ -8,7 +8,7 @@
 namespace clpv {
 namespace {
 
-/// Gathering by the cosine evaluates no basis function.
+/// Cosine gathering evaluates no basis function.
 LobeOptions looked_up(TransportKind transport, const GatherOptions& options) {
   LobeOptions lobes = options.lobes;
   lobes.table_functions = lobes.table_functions && has_faces(transport);

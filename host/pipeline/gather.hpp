@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `gather`: volumes and the camera's G-buffer in, irradiance of every pixel out (kernels/gather.cl).
+// Stage `gather`: computes the irradiance of every pixel from volumes and the camera's G-buffer (kernels/gather.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -20,30 +20,30 @@
 
 namespace clpv {
 
-/// The gathering of one basis and transport. E(n) = g(n) . c / s^2 (has_faces), c the volume
-/// sampled trilinearly `gather_offset` cells off the surface, negative E clamped at 0.
+/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces). c is the volume, sampled trilinearly
+/// `gather_offset` cells off the surface. Negative E is clamped to 0.
 ///
-/// Which cascade lights a surface depends on the surface point alone: cascade i has the share
-/// m_i = min(1, cells to its boundary / blend_cells) of what finer ones left; the boundary is that of a cube about the eye
-/// (ClpvGrid::middle). So light is continuous across cascades and as the eye moves on, fades out towards the coarsest one's
-/// boundary, and is 0 outside.
+/// The cascade weights depend only on the surface point. Cascade i takes the share
+/// m_i = min(1, cells to its boundary / blend_cells) of the weight left by finer ones. The boundary is that of a cube
+/// around the eye (ClpvGrid::middle). Light is therefore continuous across cascades and under camera motion. It fades
+/// out towards the boundary of the coarsest cascade and is 0 outside.
 class Gatherer {
  public:
   Gatherer(Session& session, const Basis& basis, TransportKind transport, const GatherOptions& options);
 
-  /// Finest cascade first; `accumulated` a volume a grid.
-  /// `camera` in format float32. `irradiance`: float4 a pixel, E of red, green, blue [W/m^2] and 0; 0 where
-  /// there is no surface. `scale`: the volumes hold so many times the light (light_scale.hpp). Throws Error(run_time) where counts or shapes do not fit, or the device's memory
-  /// does not suffice.
-  /// `occluded`: CellVisibility::occluded() of these grids, where GatherOptions::gather is `visible`.
-  /// `changed`: which volumes are not as they were in the last call; none told: all.
+  /// Finest cascade first; `accumulated` has one volume per grid. `camera` has format float32.
+  /// `irradiance`: float4 per pixel, E of red, green, blue [W/m^2] and 0; all 0 without a surface.
+  /// `scale`: factor by which the volumes scale the light (light_scale.hpp).
+  /// `occluded`: CellVisibility::occluded() of these grids, if GatherOptions::gather is `visible`.
+  /// `changed`: volumes that changed since the last call; empty: all.
+  /// Throws Error(run_time) if counts or shapes do not match, or device memory does not suffice.
   void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
               const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1,
               const Buffer* occluded = nullptr, const std::vector<bool>& changed = {});
 
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
-  /// Images are sampled as they are, unless cells are chosen one by one.
+  /// Images are sampled directly, unless gathering selects single cells.
   bool packs() const { return options_.format.layout != Layout::image || sees(); }
   Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
@@ -56,10 +56,10 @@ class Gatherer {
   int coefficients_, pairs_;
   LookupTable table_;
   ProgramSource source_;
-  Stencil stencil_;  ///< of packing
+  Stencil stencil_;  ///< stencil of the packing kernel
   std::optional<Kernel> pack_;
   std::map<std::size_t, Kernel>
-      gather_;  ///< by number of cascades, of which only volumes not packed take note
+      gather_;  ///< by number of cascades; only unpacked volumes depend on it
   Buffer packed_, grids_;
 };
 

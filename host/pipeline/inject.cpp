@@ -9,11 +9,11 @@
 namespace clpv {
 namespace {
 
-// Segments are short enough that a wall seen by a whole view still makes many work-items, and few enough that
-// one work-item joins those of a single cell.
+// Short segments give many work-items even if one wall fills the view. There are still few enough for one work-item to
+// join the segments of a cell.
 constexpr std::size_t kLeastSegment = 32, kMostBlocks = 16384;
-constexpr std::size_t kCpuStrip = 32;  // texels a work-item finds the cells of: a CPU vectorises over them
-const cl::NDRange kSegments(16);  // long and few work-items: small groups let all compute units have some
+constexpr std::size_t kCpuStrip = 32;  // texels that a work-item assigns to cells; a CPU vectorises over them
+const cl::NDRange kSegments(16);  // few, long work-items: small groups spread them over all compute units
 
 std::size_t segment_length(std::size_t texels) {
   std::size_t length = kLeastSegment;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Injection: what views see becomes light and blocking in the cells of volumes (docs/method.md, 'Injection').
+// Injection: converts surfaces to light and blockers in the cells of volumes (docs/method.md, 'Injection').
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -20,20 +20,20 @@
 
 namespace clpv {
 
-/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell adds up its own
-/// texels in their order in the surface. Keeps scratch memory for the largest surface injected.
+/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell sums its texels in surface
+/// order. Scratch memory grows to the largest surface injected.
 class Injector {
  public:
   Injector(Session& session, const Basis& basis, const InjectOptions& options);
 
-  /// Adds the virtual point lights of an RSM, or of an Emitter, to `light` [W/sr]: `grid` cells, 3 channels.
+  /// Adds the virtual point lights of an RSM or an Emitter to `light` [W/sr]: `grid` cells, 3 channels.
   /// Texels that are empty, dark, not finite or outside the grid add nothing.
   void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light);
 
-  /// Merges what `surface`, an RSM or a G-buffer, sees into `geometry`: grid + 1 samples a side, 1 channel, numbers as
-  /// `blocking` says. Surfaces see the same walls: a sample becomes the surface's blocking share where that has the
-  /// larger mean; of areas it keeps the larger one of each.
-  /// `stride`: of the surface's pixels every so many each way are taken, each for those round it; 1 or more.
+  /// Merges `surface`, an RSM or a G-buffer, into `geometry`: grid + 1 samples along each axis, 1 channel, in the
+  /// representation of `blocking`. Surfaces may share walls, so a sample keeps the blocking share of larger mean.
+  /// For areas it keeps the larger value of each number.
+  /// `stride`: subsampling of the pixels along each axis, at least 1. Each sampled pixel represents its neighbours.
   void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride = 1);
 
  private:
@@ -44,12 +44,12 @@ class Injector {
   struct Variant {
     Kind kind;
     RsmFormat format;
-    bool points;  ///< that no view sees
+    bool points;  ///< points that no view contains
     auto operator<=>(const Variant&) const = default;
   };
   Kernels make_kernels(const Variant& variant) const;
   Kernels& kernels(const Variant& variant);
-  bool looks_up(Kind kind) const;  ///< in the table, where there is one
+  bool looks_up(Kind kind) const;  ///< true if the kernel uses a look-up table
   void reserve(std::size_t texels);
   void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
   void inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
@@ -60,7 +60,7 @@ class Injector {
   InjectOptions options_;
   LookupTable table_;
   CellSorter sorter_;
-  std::size_t strip_;  ///< texels of a row that one work-item finds the cells of
+  std::size_t strip_;  ///< texels of a row that one work-item assigns to cells
   std::map<Variant, Kernels> kernels_;
   Accumulator accumulator_;
   Buffer shares_, partials_, firsts_;

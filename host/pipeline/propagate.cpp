@@ -12,12 +12,12 @@
 namespace clpv {
 namespace {
 
-// Operations of a step up to which a work-item serves all three channels, to read a cell's transmittance once. Beyond,
-// it is the code that counts: compilers take long over it, and registers run out.
+// Maximum operations per step for which a work-item processes all three channels and so reads transmittance once.
+// Larger kernels compile slowly and spill registers.
 constexpr int kLargestShared = 400;
 
-/// Whether it does so at all. Coefficients in planes of halves are the exception: sh2 takes .83 of the time with an item
-/// a channel, srbf8v2 the same time, while in floats sh2 would take 1.15 times as long.
+/// Returns true if channels share a work-item, except for coefficients in float16 planes. With one work-item per
+/// channel, sh2 then takes 0.83x the time and srbf8v2 1x; with float32, sh2 would take 1.15x.
 bool worth_sharing(const PropagateOptions& options) {
   return options.format.layout != Layout::soa || options.format.storage == Storage::float32 ||
          options.state == State::fluxes;
@@ -57,7 +57,7 @@ Propagator::Form Propagator::make_form(bool first, bool blocking) {
                        {from, options_.state, blocking, lobes_.has_value(), lobes_ && lobes_->evaluates()});
   const bool large = source.arrive.flops() > kLargestShared;
   const int channels = lobes_ || (blocking && !large && worth_sharing(options_)) ? 3 : 1;
-  // A second large kernel for the first step alone takes the compiler seconds, and saves next to nothing.
+  // A separate large kernel for the first step takes seconds to compile and saves almost no time.
   const bool first_too = blocking && large && !lobes_ && options_.state == State::coefficients;
   ProgramSource program{"propagate.cl", stencil_.literals(), source.text};
   if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
@@ -75,7 +75,7 @@ Propagator::Form Propagator::make_form(bool first, bool blocking) {
 }
 
 Propagator::Form& Propagator::form(bool first, bool blocking) {
-  // With coefficients travelling, the first step is like any other.
+  // For coefficients, the first step equals the other steps.
   std::optional<Form>& slot = forms_[first && options_.state == State::fluxes ? 1 : 0][blocking ? 1 : 0];
   if (!slot) slot.emplace(make_form(first, blocking));
   return *slot;
@@ -111,7 +111,7 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
     const auto run = [&](const Volume& so_far, const Volume& next) {
       run_step(*last, step == 1, *source, target, so_far, next);
     };
-    // Coefficients add up from the injected field on; fluxes, which it has none of, from zero.
+    // Coefficients accumulate onto the injected field; fluxes start at zero.
     if (step == 1 && options_.state == State::coefficients) {
       run(volumes.injected, sum);
     } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Propagation: the injected light, n steps on through a cascade's cells (docs/method.md, 'Propagation'; Kaplanyan
+// Propagation: moves injected light through the cells of a cascade in n steps (docs/method.md, 'Propagation'; Kaplanyan
 // & Dachsbacher 2010).
 #pragma once
 
@@ -20,40 +20,39 @@
 
 namespace clpv {
 
-/// What a propagation reads and writes. The caller owns the volumes; all have `grid` cells, geometry one more
-/// a side.
+/// Volumes that a propagation reads and writes. The caller owns them. All have `grid` cells along each axis, and the
+/// geometry volume grid + 1 samples.
 struct PropagateVolumes {
   const Volume& injected;            ///< [W/sr], step 0
   const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
-  Volume& accumulated;               ///< out: injected field plus every step's output [W/sr]
+  Volume& accumulated;               ///< output: injected field plus the output of every step [W/sr]
 };
 
-/// Runs the steps of one basis and transport over volumes of one grid size.
+/// Runs the propagation steps of one basis and transport, for volumes of one grid size.
 class Propagator {
  public:
   Propagator(Session& session, const Basis& basis, const Transport& transport,
              const PropagateOptions& options);
 
-  /// Called after each step with its number, from 1, and what travels then: N coefficients a cell, or six
-  /// fluxes.
+  /// Called after each step with its number, from 1, and the propagated light: N coefficients per cell, or six fluxes.
   using Observer = std::function<void(int step, const Volume& travelling)>;
 
-  /// Light does not block in the first step, in which it leaves the surfaces it was injected at.
+  /// The first step does not block light, since light starts on the surfaces that it was injected at.
   void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
 
-  /// What a later step's kernel executes.
+  /// Kernel of the later steps.
   const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
-  /// Whether a step of something that has blocked reads what the links let through: the first may have to, in vain.
+  /// Returns true if a step reads the transmittance of links. The first step may read it without using it.
   bool reads_transmittance(int step) { return step > 1 || (transmitter_ && form(false, true).first_too); }
-  /// Null until something has blocked.
+  /// Transmittance; null until something has blocked.
   const LinkTransmittance* transmitter() const { return transmitter_.get(); }
 
  private:
   struct Form {
     TransportSource source;
     bool blocking;
-    int channels;    ///< a work-item of `step` serves
-    bool first_too;  ///< serves the first step as well, told not to block
+    int channels;    ///< channels per work-item of `step`
+    bool first_too;  ///< `step` also runs the first step, with blocking off
     Kernel step, expand;
   };
   Form make_form(bool first, bool blocking);
@@ -67,11 +66,11 @@ class Propagator {
   const Transport& transport_;
   PropagateOptions options_;
   Stencil stencil_;
-  std::optional<RunTimeLobes> lobes_;      ///< none: they are constants
+  std::optional<RunTimeLobes> lobes_;      ///< none: lobes are constants
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<LinkTransmittance> transmitter_;
-  std::unique_ptr<Volume> sum_;  ///< of the six fluxes, that light will come from; none: coefficients travel
+  std::unique_ptr<Volume> sum_;  ///< sum of the six fluxes, source of the light; none if coefficients propagate
   Accumulator accumulator_;
 };
 

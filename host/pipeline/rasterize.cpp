@@ -14,9 +14,9 @@ namespace {
 static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
 constexpr std::size_t kRasterGroup = 64;
-constexpr std::size_t kItemsARun = CLPV_CLUSTER / 8;  // a work-item sets eight triangles up
-constexpr std::size_t kClippers = 1024;  // work-items that share what is to be clipped, mostly nothing
-constexpr std::size_t kSpare = 4;        // lists are made longer by a quarter than they need be: cameras move
+constexpr std::size_t kItemsARun = CLPV_CLUSTER / 8;  // a work-item sets up eight triangles
+constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
+constexpr std::size_t kSpare = 4;        // lists grow by an extra 1/4, since cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
 const ProgramSource kBin{"bin_tiles.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
 
@@ -30,8 +30,7 @@ unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
 }
 
-/// The largest flux a texel of `view` can have [W]: albedo 1, at the middle of the view, where texels see
-/// most.
+/// Returns the largest possible flux of a texel of `view` [W]: albedo 1, at the centre, where texels subtend most.
 float largest_flux(const ClpvLight& light, const ClpvView& view) {
   const double texel =
       4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
@@ -112,7 +111,7 @@ void Rasterizer::find_visible(const Pass& pass) {
   draw(pass, 0, list_runs(pass.view), true);
 }
 
-/// Runs of triangles that may be in sight; how many these are.
+/// Lists the triangle clusters that may be visible and returns their number.
 unsigned Rasterizer::list_runs(const ClpvView& view) {
   const std::vector<cl_uint> in_sight =
       scene_.clusters->which([&](const Bounds& run) { return may_be_in_sight(view, run); });
@@ -120,7 +119,7 @@ unsigned Rasterizer::list_runs(const ClpvView& view) {
   return in_sight.size();
 }
 
-/// Lists the triangles of a range of clusters that may cover a pixel, and enters them for the tiles they are over.
+/// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
   SetUp& kernels = set_up_kernels(pass.view);
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
@@ -137,7 +136,7 @@ void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
       .launch(kClippers, kRasterGroup);
 }
 
-/// Sorts what set_up() entered by tile.
+/// Sorts the entries of set_up() by tile.
 void Rasterizer::bin(const ClpvView& view) {
   const unsigned slices = slice_count(view);
   const std::size_t chunks = (slices + CLPV_SLICE_CHUNK - 1) / CLPV_SLICE_CHUNK;
@@ -148,8 +147,8 @@ void Rasterizer::bin(const ClpvView& view) {
       .launch(groups * kRasterGroup, kRasterGroup);
 }
 
-/// Lists the triangles of a range of clusters by tile, growing the lists where they are too short; false where they would
-/// grow too long.
+/// Lists the triangles of a range of clusters by tile, and grows lists that are too short. Returns false if a list
+/// would exceed its limit.
 bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
   for (;;) {
     set_up(pass, first, count);
@@ -163,8 +162,8 @@ bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
   }
 }
 
-/// Draws a range of clusters; `fresh`: onto nothing, else onto what is there. Halves the range where the tiles'
-/// lists would grow too long.
+/// Draws a range of clusters. `fresh`: starts from an empty surface, else adds to it. Halves the range if the tile
+/// lists would exceed their limit.
 void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
   if (list(pass, first, count)) return draw_tiles(pass.view, fresh);
   draw(pass, first, count / 2, fresh);

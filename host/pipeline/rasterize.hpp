@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Rasterises a scene into what a view sees: reflective shadow maps, the camera's G-buffer, shadow maps.
+// Rasterises a scene into reflective shadow maps, the camera's G-buffer and shadow maps.
 //
-// Vertices snap to 1/256 pixel; edges are then exact in integers and follow the top-left rule, so that
-// triangles which share an edge leave no pixel out and draw none twice. Of two surfaces at the same depth the
-// triangle that comes first in the scene is seen: two clusters give the same bytes.
+// Vertices snap to 1/256 pixel, so edges are exact in integers and follow the top-left rule. Triangles that share an
+// edge therefore neither skip a pixel nor draw one twice. At equal depth the triangle that comes first in the scene
+// wins. Results are deterministic to the byte.
 #pragma once
 
 #include <compare>
@@ -18,26 +18,23 @@ namespace clpv {
 
 class Rasterizer {
  public:
-  /// Entries of all tiles' lists of triangles held at a time, 4 bytes each. A scene that needs more (hundreds of
-  /// screen-filling layers) is drawn in several goes, of a run of triangles at least; the result is the same.
+  /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of screen-filling
+  /// layers) are drawn in several passes of at least one triangle cluster each; the result is the same.
   static constexpr std::size_t kMostListed = std::size_t{1} << 25;
 
-  /// `scene` must stay as it is while the rasteriser lives (its handles are copied, not its contents).
+  /// `scene` must not change while the rasteriser exists. Its handles are copied, not its contents.
   Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed = kMostListed);
 
-  /// The camera's G-buffer, as `surface.view` sees the scene: depth, normal, albedo and, where the surface
-  /// has it, emission. Back faces are culled unless their material is double-sided. Textures are filtered
-  /// trilinearly.
+  /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface has it, emission.
+  /// Culls back faces unless their material is double-sided. Filters textures trilinearly.
   void rasterize_camera(Surface& surface);
 
-  /// A reflective shadow map of `light`, as `surface.view` sees the scene: depth, normal, and as colour the
-  /// flux [W] of each texel's virtual point light, albedo x irradiance x footprint (kernels/lighting.h). Both
-  /// sides of every triangle are lit. In format paper it sets Surface::colour_scale to the largest flux a
-  /// texel can have.
+  /// Renders a reflective shadow map of `light` from `surface.view`: depth, normal, colour. Colour is the flux [W] of
+  /// the virtual point light of each texel: albedo x irradiance x footprint (kernels/lighting.h). Both sides of every
+  /// triangle are lit. In format paper it sets Surface::colour_scale to the largest possible flux of a texel.
   void rasterize_rsm(const ClpvLight& light, Surface& surface);
 
-  /// Depth alone [m], 0 where there is no surface, into view.width x view.height floats. Both sides cast
-  /// shadows.
+  /// Renders only depth [m], 0 without a surface, into view.width x view.height floats. Both sides cast shadows.
   void rasterize_shadow(const ClpvView& view, Buffer& depth);
 
  private:
@@ -46,12 +43,12 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
-  /// Of one projection, which is in the code: chosen as it clusters, it would take RSMs a twelfth longer.
+  /// Kernels for one projection. A projection chosen at run time would take 8 % longer per RSM.
   struct SetUp {
     Kernel triangles, clipped;
   };
   SetUp& set_up_kernels(const ClpvView& view);
-  /// What the code that resolves a surface is made for.
+  /// Variant of the resolve kernel.
   struct Resolving {
     bool orthographic, from_light, paper, emissive;
     auto operator<=>(const Resolving&) const = default;
@@ -60,8 +57,8 @@ class Rasterizer {
 
   void reserve_list(std::size_t count);
   void reserve_entries(std::size_t count);
-  cl_uint list_room() const;   ///< triangles there is room for
-  cl_uint entry_room() const;  ///< and entries
+  cl_uint list_room() const;   ///< capacity in triangles
+  cl_uint entry_room() const;  ///< capacity in entries
   void clear(Surface& surface);
   void find_visible(const Pass& pass);
   unsigned list_runs(const ClpvView& view);

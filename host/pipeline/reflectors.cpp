@@ -10,7 +10,7 @@ namespace {
 
 static_assert(kCellFaces == CLPV_CELL_FACES);
 
-constexpr unsigned kMostReflectors = 1u << 18;  // a launch
+constexpr unsigned kMostReflectors = 1u << 18;  // per launch
 
 VoxelMaskShape shape_of(int grid) {
   return {grid, grid, CLPV_CELL_FACES * CLPV_FACE_WORDS, 1};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `reflectors`: voxelises the albedo of triangles per face direction (kernels/reflectors.cl; docs/method.md, 'More
-// bounces').
+// Stage `reflectors`: voxelises the albedo of triangles per face direction (kernels/reflectors.cl; docs/method.md,
+// 'More bounces').
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,12 @@
 
 namespace clpv {
 
-/// Reflectance of the faces of light cells: six numbers in [0, 1] per channel, for +x, -x, +y, -y, +z, -z: covered share
-/// of the face times mean albedo. Deterministic: sums are integers, and their order does not matter.
+/// Reflectance of the faces of light cells: six numbers in [0, 1] per channel, for +x, -x, +y, -y, +z, -z. Each is the
+/// covered share of the face times mean albedo. Deterministic: sums are integers, and their order does not matter.
 class ReflectorVoxelizer {
  public:
-  /// For `cascades` cascades of `grid` cells along each axis, in volumes of `format`. `scene` must stay as it is,
-  /// but for upload_moving().
-  /// Throws Error(run_time) where the device's memory does not suffice.
+  /// Computes volumes of `format` for `cascades` cascades of `grid` cells along each axis. `scene` must not change
+  /// except by upload_moving(). Throws Error(run_time) if device memory does not suffice.
   ReflectorVoxelizer(Session& session, const SceneBuffers& scene, int grid, int cascades,
                      const VolumeFormat& format);
 

@@ -23,7 +23,7 @@ cl_float4 packed(const glm::dvec3& v, double w) {
   return {{narrow.x, narrow.y, narrow.z, narrow.w}};
 }
 
-/// `clpv_functions_of(link)`: the basis functions along a way, times its solid angle.
+/// `clpv_functions_of(link)`: the basis functions along a link, times its solid angle.
 std::string functions_source(const Basis& basis, const LobeOptions& lobes) {
   const bool looked_up = lobes.table_functions && !basis.centres().empty();
   std::string text = looked_up ? table_basis_source(basis, lobes.table_size, kFunctionsTable) : "";

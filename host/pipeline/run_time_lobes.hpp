@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lobes that propagation makes in its kernel, thirty a cell and step, as the paper does (LobeTime::kernel): slow, and
-// the same light as lobes that are constants.
+// Propagation lobes computed in the kernel, 30 per cell and step, as in the paper (LobeTime::kernel). Slow, with the
+// same result as constant lobes.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -14,22 +14,22 @@
 
 namespace clpv {
 
-/// What kernels/run_time_lobes.h needs.
+/// Arguments and literals for kernels/run_time_lobes.h.
 class RunTimeLobes {
  public:
-  /// Throws Error(usage) for a transport without lobes, and for fluxes that travel, which leave none to the steps; and as
-  /// LookupTable does.
+  /// Throws Error(usage) for a transport without lobes, or one that propagates fluxes. Otherwise throws as LookupTable
+  /// does.
   RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, State state,
                TableStorage storage);
 
-  /// Before and after the text of the transport.
+  /// Source text before and after that of the transport.
   std::string macros() const { return table_.macros() + functions_.macros(kFunctionsTable); }
   const std::string& text() const { return text_; }
   void add_literals(Literals& literals) const;
-  /// Whether basis functions are evaluated in the kernel as well: where light is sampled in the faces' centres. Integrals
-  /// over faces stay constants.
+  /// Returns true if the kernel also evaluates basis functions, when light is sampled at face centres. Integrals over
+  /// faces remain constants.
   bool evaluates() const { return evaluates_; }
-  /// The last arguments of a step, after the others.
+  /// Sets the last arguments of a step.
   void add_to(Kernel& step) const;
 
  private:
@@ -38,7 +38,7 @@ class RunTimeLobes {
   std::size_t faces_ = 0;
   bool unit_flux_, evaluates_;
   Buffer normals_;
-  Buffer links_;  ///< where light goes through each face, and the face's solid angle
+  Buffer links_;  ///< direction of the link through each face, and the face's solid angle
 };
 
 }  // namespace clpv

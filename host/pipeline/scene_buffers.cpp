@@ -16,7 +16,7 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw Error(ExitCode::bad_input, message);
 }
 
-/// Kernels trust every index: what does not fit is rejected here, whoever made the scene.
+/// Kernels do not check indices, so this rejects invalid ones of any scene.
 void check_indices(const Scene& scene) {
   require(scene.triangles.size() <= CLPV_TRIANGLE_INDEX && scene.vertices.size() <= CLPV_TRIANGLE_INDEX,
           fmt::format("{}: {} triangles and {} vertices; allowed: below 2^30 each", scene.path,
@@ -82,7 +82,7 @@ TextureTable make_table(const Scene& scene) {
     check_texture(scene, scene.textures[i]);
     append(table, mip_chain(scene.textures[i], holes[i]));
   }
-  Texture white;  // what materials without texture are looked up in
+  Texture white;  // white texture for materials without one
   white.width = white.height = 1;
   white.rgba.assign(4, 255);
   append(table, {white});
@@ -103,7 +103,7 @@ bool is_emissive(const Material& material) {
   return std::any_of(material.emissive, material.emissive + 3, [](float e) { return e != 0; });
 }
 
-/// Materials that lack a texture get the white one: kernels then look up without asking.
+/// Assigns the white texture to materials without one, so that kernels need no test.
 std::vector<Material> with_textures(std::vector<Material> materials, unsigned white) {
   for (Material& material : materials) {
     if (material.texture == CLPV_NO_TEXTURE) material.texture = white;

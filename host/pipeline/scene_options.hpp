@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options as a user gives them, and what they come to for a scene.
+// Options of a user, and the values they resolve to for a scene.
 #pragma once
 
 #include <map>
@@ -10,11 +10,11 @@
 
 namespace clpv {
 
-/// What a user gave, by name.
+/// Options that the user set, by name.
 using OptionValues = std::map<std::string, std::string>;
 
-/// The preset given, else the defaults; then what the scene wishes, then the other options given. A bare model's cascades
-/// hold it unless their size is given. Throws Error(usage) for a bad value.
+/// Resolves options: first the preset or the defaults, then the scene's values, then the user's other options. The
+/// cascades of a bare model enclose it unless their size is set. Throws Error(usage) for an invalid value.
 RenderOptions resolve_options(const OptionValues& given, const Scene& scene);
 
 }  // namespace clpv

@@ -9,7 +9,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kShadeGroup = 64;  // pixels a group shades
+constexpr std::size_t kShadeGroup = 64;  // pixels per work-group
 constexpr unsigned kLeastShadowTexels = CLPV_SHADOW_TAPS;
 
 const ProgramSource kShadeSource{"shade.cl", {}, {}};

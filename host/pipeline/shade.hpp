@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `shade`: light straight from the lights, shadowed, and the images a frame can show
-// (kernels/shade.cl).
+// Stage `shade`: computes shadowed direct light and the images that a frame can show (kernels/shade.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -14,10 +13,10 @@
 
 namespace clpv {
 
-/// A light and the maps its shadows come from: a depth buffer a view (float a texel, row 0 first, [m] along
-/// the view's forward axis, 0: nothing there). Several views share their eye and together see all that is
-/// lit; a surface takes the one that looks most along it. No view: the light casts no shadow. A surface
-/// outside the map is lit.
+/// A light and its shadow maps: a depth buffer per view, one float per texel, row 0 first. Depth is along the view's
+/// forward axis [m]; 0 means no surface. Several views share their eye and together cover all lit directions. A
+/// surface uses the view whose forward axis is nearest to its direction. Without a view the light casts no shadow. A
+/// surface outside the map is lit.
 struct ShadowedLight {
   ClpvLight light{};
   std::vector<ClpvView> views;
@@ -28,13 +27,13 @@ class Shader {
  public:
   explicit Shader(Session& session);
 
-  /// E of all lights on every surface the camera sees; what show() then shows as direct light.
-  /// Throws Error(run_time) for a camera's view in format paper, maps that are not one a view, or smaller
-  /// than the filter's 4 x 4 texels.
+  /// Computes the irradiance E of all lights on every surface in `camera`; show() displays it as direct light.
+  /// Throws Error(run_time) for a camera surface in format paper, a number of maps other than that of the views, or
+  /// maps smaller than the filter's 4 x 4 texels.
   void light(const Surface& camera, const std::vector<ShadowedLight>& lights);
 
-  /// `camera` as given to light() last. `irradiance`: of the volumes (Gatherer). `image`: float4 a pixel,
-  /// RGBA, linear, finite; alpha 1 where there is a surface, else all 0.
+  /// `camera`: that of the last light() call. `irradiance`: from the volumes (Gatherer). `image`: float4 per pixel,
+  /// linear, finite RGBA; alpha is 1 on surfaces. Pixels without a surface are all 0.
   void show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image);
 
  private:
@@ -42,8 +41,8 @@ class Shader {
 
   Session& session_;
   Kernel light_, shade_;
-  Buffer direct_;  // float4 a pixel, E of all lights
-  Buffer views_;   // of the light at hand
+  Buffer direct_;  // float4 per pixel, E of all lights
+  Buffer views_;   // views of the current light
   std::size_t pixels_ = 0;
 };
 

@@ -13,12 +13,12 @@ namespace {
 
 static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
-constexpr std::size_t kMostTexels = std::size_t{1} << (32 - CLPV_RUN_BITS);  // a run's entry has no more bits
-// Chunks are as many as keep a GPU busy and the table of counts small, each long enough to pay for its
-// column. A work-item goes through a chunk in one loop.
+constexpr std::size_t kMostTexels = std::size_t{1} << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
+// Enough chunks to occupy a GPU, with a small table of counts. Each is long enough to amortise its column. A
+// work-item processes a chunk in one loop.
 constexpr std::size_t kMostChunks = 512, kLeastChunk = 256,
                       kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
-// Work-items here are long and few: small groups let all compute units have some.
+// Few, long work-items: small groups spread them over all compute units.
 const cl::NDRange kLocal(16);
 const ProgramSource kSource{"sort_by_cell.cl", {}, {}};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sorts the texels of a surface by the cell each falls into: kernels/sort_by_cell.cl.
+// Sorts the texels of a surface by the cell that contains them (kernels/sort_by_cell.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -10,22 +10,21 @@
 
 namespace clpv {
 
-/// Texels in the order of their cells, those of a cell in their own order. Memory for the largest surface so
-/// far.
+/// Stable sort of texels by cell. Memory grows to the largest surface so far.
 class CellSorter {
  public:
   explicit CellSorter(Session& session);
 
-  /// Makes room for surfaces of up to `texels`. Throws Error(run_time) for more than 2^28 of them.
+  /// Allocates memory for surfaces of up to `texels`. Throws Error(run_time) for more than 2^28 of them.
   void reserve(std::size_t texels);
 
-  /// In: the cell of each texel, CLPV_NO_CELL for none; uint. Written by the caller before sort().
+  /// Input: the cell of each texel, or CLPV_NO_CELL; uint. The caller writes it before sort().
   const Buffer& keys() const { return keys_; }
   /// Sorts the first `texels` keys, each below `cells` or CLPV_NO_CELL.
   void sort(std::size_t texels, std::size_t cells);
-  /// Out: uint2 (cell, texel), the first count() of them.
+  /// Output: uint2 (cell, texel), the first count() of them.
   const Buffer& sorted() const { return sorted_; }
-  /// Out: uint, how many texels have a cell.
+  /// Output: uint, number of texels that have a cell.
   const Buffer& count() const { return count_; }
 
  private:

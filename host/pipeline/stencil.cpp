@@ -6,7 +6,7 @@
 namespace clpv {
 namespace {
 
-// Enough to fill 16-wide vectors; wider groups gain nothing on a CPU.
+// Fills 16-wide vectors; wider groups do not help on a CPU.
 constexpr std::size_t kWidestGroup = 64;
 
 std::size_t items_per_row(int grid, int lanes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Launching kernels that serve every cell of a grid (propagate.cl, transmittance.cl).
+// Launches kernels that process every cell of a grid (propagate.cl, transmittance.cl).
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace clpv {
 
-/// StencilOptions with the device's choices made.
+/// StencilOptions with the device's defaults resolved.
 class Stencil {
  public:
   Stencil(const Device& device, const StencilOptions& options);
 
-  /// CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X and the format's.
+  /// Literals CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X and those of the format.
   Literals literals() const;
-  /// Once through the grid for each of `channels`, which are stacked along z.
+  /// Launches over all cells of the grid for each of `channels`, which are stacked along z.
   void launch(Kernel& kernel, int channels) const;
 
  private:

@@ -19,7 +19,7 @@ std::size_t texel_bytes(RsmFormat format) {
   return format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
 }
 
-cl_uchar to_byte(float value) {  // as convert_uchar_sat_rte
+cl_uchar to_byte(float value) {  // rounds like convert_uchar_sat_rte
   return static_cast<cl_uchar>(std::nearbyint(std::clamp(value * 255.0f, 0.0f, 255.0f)));
 }
 
@@ -95,7 +95,7 @@ SurfaceImage read_surface(Session& session, const Surface& surface) {
     if (image.depth[i] == 0) {
       normal = glm::vec4(0);
     } else if (surface.format == RsmFormat::paper) {
-      normal = glm::vec4(glm::normalize(glm::vec3(normal)), 0);  // 8 bits shorten or lengthen it
+      normal = glm::vec4(glm::normalize(glm::vec3(normal)), 0);  // 8-bit storage changes its length
     }
   }
   return image;

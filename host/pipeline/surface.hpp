@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view sees: an RSM or the camera's G-buffer, on the device and read back; or points that none sees.
+// Surfaces visible in a view (an RSM or the camera's G-buffer), on the device and read back; or points without a view.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -14,28 +14,28 @@
 
 namespace clpv {
 
-/// One value a pixel, row 0 first, on the device. Depth [m] along the view's forward axis, 0: no surface
-/// there. `format` paper: normal and colour hold 4 bytes a pixel; float32: 4 floats (kernels/surface.h).
+/// One value per pixel, row 0 first, on the device. Depth [m] is along the view's forward axis; 0 means no surface.
+/// `format` paper stores normal and colour in 4 bytes per pixel; float32 in 4 floats (kernels/surface.h).
 struct Surface {
   ClpvView view{};
   RsmFormat format = RsmFormat::float32;
-  float colour_scale = 1;  ///< what a stored 1 of `colour` means in format paper
+  float colour_scale = 1;  ///< value of a stored 1 of `colour` in format paper
   Buffer depth;            ///< float
-  Buffer normal;           ///< unit, world space, turned towards the viewer; 0 where there is no surface
+  Buffer normal;           ///< unit length, world space, towards the viewer; 0 without a surface
   Buffer colour;           ///< camera: albedo; light: flux of the virtual point light [W]
   Buffer emissive;         ///< camera only: float4, emitted radiance [W/m^2/sr]
-  /// Points that no view sees (Emitter): float4 [m], in place of depth; of `view` the size alone counts.
+  /// Points without a view (Emitter): float4 [m], instead of depth. Only the size of `view` is used.
   Buffer position;
 };
 
-/// A surface of the view's size for a rasteriser to fill; contents undefined. `with_emissive`: has
+/// Allocates a surface of the view's size for a rasteriser; contents are undefined. `with_emissive`: allocates
 /// Surface::emissive.
 Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive);
 
-/// Paper format decoded; normals are 0 where there is no surface. Without Surface::emissive that field stays
-/// empty.
+/// Reads a surface and decodes paper format. Normals are 0 without a surface. The emissive field is empty without
+/// Surface::emissive.
 SurfaceImage read_surface(Session& session, const Surface& surface);
-/// Fields of `image` that are empty stay undefined on the device; emissive is made where it is not empty.
+/// Uploads `image`. Empty fields stay undefined on the device; emissive is allocated only if not empty.
 Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format = RsmFormat::float32,
                        float colour_scale = 1);
 
@@ -45,7 +45,7 @@ inline unsigned tiles_along(unsigned pixels) {
 inline cl::NDRange rows_of_tiles(const ClpvView& view) {
   return {tiles_along(view.width), view.height};
 }
-/// Rows differ in work: small groups even it out between cores.
+/// Rows differ in work; small work-groups balance it between cores.
 inline const cl::NDRange kTileRow(8, 1);
 
 }  // namespace clpv

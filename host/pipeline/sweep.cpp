@@ -170,7 +170,7 @@ void Sweeper::set_sky(const Sky& sky) {
   }
 }
 
-/// Index of the plane upstream of the grid in the plane buffer. By planes it lies among those of odd number.
+/// Returns the index of the plane upstream of the grid in the plane buffer. A sweep by planes uses the odd planes.
 cl_int Sweeper::upstream_plane(const Pass& pass) const {
   return whole_bins() ? 0 : 3 * directions_of(pass.parts) * plane_numbers(options_.grid);
 }

@@ -8,7 +8,7 @@
 namespace clpv {
 namespace {
 
-/// Where the first cell's source is among a volume's numbers, and how far it is to the next channel, plane and row.
+/// Stores the index of the first cell's source in a volume, and the strides to the next channel, plane and row.
 void put_source(ClpvSweepBin& entry, std::size_t b, const SweepBin& bin, int grid,
                 const VolumeFormat& injected) {
   const VolumeShape shape{grid, kSweepBins, 3};
@@ -56,7 +56,7 @@ std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFo
 
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts) {
   const std::vector<SweepBin> bins = sweep_bins(parts), coarser = sweep_bins(std::max(coarser_parts, 1));
-  constexpr double kArea = 0.25;  // of a finer cell's face, of a coarser one's
+  constexpr double kArea = 0.25;  // area of a finer cell's face, relative to a coarser one's
   std::vector<ClpvSweepDirection> table;
   for (std::size_t b = 0; b < bins.size(); ++b) {
     for (std::size_t part = 0; part < bins[b].directions.size(); ++part) {

@@ -11,10 +11,10 @@
 
 namespace clpv {
 
-/// Returns true if bins across z can be swept from the injected volume: it holds the bins' means (bins24) in layout soa. Bins
-/// across x and y need volumes of planes: their rows or planes are scattered in the injected volume.
+/// Returns true if bins across z can be swept from the injected volume, which requires bins' means (bins24) in layout
+/// soa. Bins across x and y need volumes of planes: the injected volume scatters their rows or planes.
 bool swept_in_place(const Basis& basis, const VolumeFormat& injected);
-/// `injected`: format of the volume that bins across z are swept from; none: all bins are swept from volumes of planes.
+/// `injected`: format of the volume from which bins across z are swept; none: all bins use volumes of planes.
 std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected = {});
 /// `coarser_parts`: parts of the next coarser cascade; 0 for the coarsest.
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);

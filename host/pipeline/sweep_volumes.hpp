@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Allocates volumes of planes and launches the kernels that process them by tiles (kernels/sweep_tiles.h): shared by the stages of a sweep.
+// Allocates volumes of planes and launches their tile kernels (kernels/sweep_tiles.h); shared by the sweep stages.
 #pragma once
 
 #include <string>
@@ -20,7 +20,8 @@ class SweepVolumes {
   /// Launches a kernel over the tiles of all slices and `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// Allocates `count` zeroed volumes, without and with a border. Throws Error(device) "unsupported: ..." for more than kernels can address.
+  /// Allocates `count` zeroed volumes, without and with a border. Throws Error(device) "unsupported: ..." for more
+  /// than kernels can address.
   Buffer make(std::size_t count, const char* what) const;
   Buffer make_bordered(std::size_t count, const char* what) const;
 

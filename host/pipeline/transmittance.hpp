@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What blockers let through: a cascade's geometry volume as the share of light that each link into a cell passes.
+// Transmittance of a cascade's links, computed from its geometry volume.
 #pragma once
 
 #include "basis/basis.hpp"
@@ -11,8 +11,8 @@
 
 namespace clpv {
 
-/// Evaluates 1 - B of every link once, so that each propagation step reads numbers in place of a basis: a step then
-/// costs the same whatever blocks.
+/// Evaluates 1 - B of every link once. Propagation steps then read numbers and evaluate no basis, so their time does
+/// not depend on the blockers.
 class LinkTransmittance {
  public:
   LinkTransmittance(Session& session, const Basis& basis, const Transport& transport,
@@ -20,7 +20,7 @@ class LinkTransmittance {
 
   void transmit(const Volume& geometry);  ///< (grid + 1)^3 corners, one channel
 
-  /// grid^3 cells, one number in [0, 1] a link, one channel.
+  /// grid^3 cells, one number in [0, 1] per link, one channel.
   const Volume& transmittance() const { return transmittance_; }
   const OperationCount& operations() const { return operations_; }
 

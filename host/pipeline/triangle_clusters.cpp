@@ -48,7 +48,7 @@ TriangleClusters::TriangleClusters(const Scene& scene)
     moving_.push_back({part_bounds(scene, part), print_of(scene, part)});
 }
 
-/// Of the clusters that hold triangles of a range.
+/// Updates the bounds of the clusters that contain a range of triangles.
 void TriangleClusters::bound_runs(const Scene& scene, std::size_t first, std::size_t count) {
   if (count == 0) return;
   const std::size_t last_run = (first + count - 1) / CLPV_CLUSTER;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a scene's triangles are, run by run, and where they moved: what lies elsewhere need not be gone through.
+// Bounds of a scene's triangle clusters and of their motion, so that stages skip triangles outside a region.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,28 @@
 
 namespace clpv {
 
-/// Of the vertices that `triangles` use; they must exist. A box of no extent at the origin where there are none.
+/// Returns the bounds of the vertices that `triangles` use, which must exist. An empty box at the origin without any.
 Bounds bounds_of(const std::vector<Vertex>& vertices, std::span<const Triangle> triangles);
 
-/// A run is CLPV_CLUSTER triangles that follow each other in a scene, the last one shorter.
+/// Triangle clusters: CLPV_CLUSTER consecutive triangles of a scene each; the last cluster is shorter.
 class TriangleClusters {
  public:
   TriangleClusters() = default;
   explicit TriangleClusters(const Scene& scene);
 
-  /// To be called when the scene shows another instant. Gives the moving parts that are not as they were.
+  /// Call when the time of the scene changes. Returns the moving parts that changed.
   std::vector<MeshRange> move(const Scene& scene);
 
   const std::vector<Bounds>& bounds() const { return bounds_; }
   unsigned triangles() const { return triangles_; }
 
-  /// How often something has moved, and the boxes in which something did the last time.
+  /// Version of the positions, and the boxes in which triangles moved last.
   unsigned instant() const { return instant_; }
   const std::vector<Bounds>& moved() const { return moved_; }
-  /// As if everything had moved: what follows no single step is computed from all triangles.
+  /// Treats everything as moved: the next update uses all triangles, since it is not one step ahead.
   void invalidate() { instant_ += 2; }
 
-  /// Numbers of the clusters of whose bounds `wanted` is true, in their order.
+  /// Returns the indices of the clusters whose bounds satisfy `wanted`, in order.
   template <typename Wanted>
   std::vector<std::uint32_t> which(const Wanted& wanted) const {
     std::vector<std::uint32_t> clusters;
@@ -49,7 +49,7 @@ class TriangleClusters {
   void bound_runs(const Scene& scene, std::size_t first, std::size_t count);
 
   std::vector<Bounds> bounds_;
-  std::vector<Moving> moving_;  ///< of Scene::moving
+  std::vector<Moving> moving_;  ///< one per entry of Scene::moving
   std::vector<Bounds> moved_;
   unsigned triangles_ = 0, instant_ = 0;
 };

@@ -11,22 +11,22 @@
 namespace clpv {
 namespace {
 
-constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be as close as that
+constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be this close
 constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
-constexpr double kRelativeMargin = 1e-3;  // the same, as a part of the scene's depth
-constexpr double kRounding = 1e-5;        // of distances from the eye, in kernels
+constexpr double kRelativeMargin = 1e-3;  // the same, relative to the scene's depth
+constexpr double kRounding = 1e-5;        // relative rounding of distances from the eye in kernels
 
 struct Axes {
   glm::dvec3 right, up, forward;
 };
 
-/// right x up = -forward, `up` as near to `upwards` as that allows.
+/// Axes with right x up = -forward; `up` is the direction nearest to `upwards`.
 Axes axes(const glm::dvec3& forward, const glm::dvec3& upwards) {
   const glm::dvec3 right = glm::normalize(glm::cross(forward, upwards));
   return {right, glm::cross(right, forward), forward};
 }
 
-/// Axes across a light's direction, with the world axis it is least aligned with as `upwards`.
+/// Axes across a light's direction; `upwards` is the world axis least aligned with it.
 Axes light_axes(const glm::dvec3& direction) {
   const glm::dvec3 size = glm::abs(direction);
   glm::dvec3 upwards(0, 0, 1);
@@ -50,7 +50,7 @@ ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int heigh
   return view;
 }
 
-/// The depths along `forward` that a box spans.
+/// Returns the range of depths of a box along `forward`.
 glm::dvec2 span_along(const Bounds& bounds, const glm::dvec3& axis) {
   const glm::dvec3 centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper));
   const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
@@ -58,7 +58,7 @@ glm::dvec2 span_along(const Bounds& bounds, const glm::dvec3& axis) {
   return {middle - reach, middle + reach};
 }
 
-/// An orthographic view centred at (x, y) of the plane across the light, its depths those of `bounds`.
+/// Returns an orthographic view centred at (x, y) of the plane across the light, with the depths of `bounds`.
 ClpvView orthographic_view(const Axes& axes, double x, double y, double half_width, double half_height,
                            const Bounds& bounds, int size) {
   const glm::dvec2 depths = span_along(bounds, axes.forward);
@@ -89,7 +89,7 @@ ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double
 
 /// Outer half-angle [rad] of a spot light: where cos(angle) * cone_scale + cone_offset is 0.
 double outer_angle(const ClpvLight& light) {
-  if (light.cone_scale <= 0) return 3.14159265358979;  // the cone does not narrow: lit all round
+  if (light.cone_scale <= 0) return 3.14159265358979;  // no cone: lit in all directions
   return std::acos(std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
 }
 
@@ -100,7 +100,7 @@ bool too_wide_for_one_view(const ClpvLight& spot) {
 ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, int size) {
   const Axes frame = light_axes(glm::normalize(vector(light.direction)));
   const glm::dvec2 across = span_along(bounds, frame.right), along = span_along(bounds, frame.up);
-  const double spare = 1 + 2.0 / size;  // a texel round the scene, for filters that look at neighbours
+  const double spare = 1 + 2.0 / size;  // one texel around the scene, for filters that read neighbours
   return orthographic_view(frame, 0.5 * (across.x + across.y), 0.5 * (along.x + along.y),
                            std::max(0.5 * spare * (across.y - across.x), kSmallestMargin),
                            std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size);
@@ -129,9 +129,9 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
   double middle[2], half_extent[2];
   for (int axis = 0; axis < 2; ++axis) {
     const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
-    const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube, along this axis
+    const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube along this axis
     const double texel =
-        2 * reach / (size - 1);  // one texel to spare: snapping moves the window by up to one
+        2 * reach / (size - 1);  // one spare texel: snapping moves the window by up to one
     const double first = std::floor((glm::dot(centre, along) - reach) / texel);
     middle[axis] = (first + 0.5 * size) * texel;
     half_extent[axis] = 0.5 * size * texel;
@@ -164,7 +164,7 @@ bool may_be_in_sight(const ClpvView& view, const Bounds& bounds) {
   const glm::dvec3 lower(bounds.lower), upper(bounds.upper), half = 0.5 * (upper - lower);
   const glm::dvec3 centre = 0.5 * (lower + upper) - vector(view.eye);
   const double margin = kRounding * (glm::length(centre) + glm::length(half));
-  // Whether some of the box may be on the inner side of a border: along . p + offset >= 0, p from the eye.
+  // Tests if part of the box is inside a border: along . p + offset >= 0, with p relative to the eye.
   const auto reaches = [&](const glm::dvec3& along, double offset) {
     return glm::dot(along, centre) + glm::dot(glm::abs(along), half) + offset >= -margin * glm::length(along);
   };

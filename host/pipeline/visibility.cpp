@@ -4,8 +4,8 @@
 namespace clpv {
 namespace {
 
-constexpr unsigned kMostHiders = 1u << 20;  // a launch
-constexpr std::size_t kPoints = 64;         // of a cube between centres, a byte each
+constexpr unsigned kMostHiders = 1u << 20;  // per launch
+constexpr std::size_t kPoints = 64;         // points per cube between cell centres, one byte each
 
 ProgramSource program_of(int grid) {
   ProgramSource source{"visibility.cl", {}, {}};
@@ -13,7 +13,7 @@ ProgramSource program_of(int grid) {
   return source;
 }
 
-/// A cube between centres for each cell but the last ones.
+/// One cube between centres for each cell except the last ones.
 VoxelMaskShape occlusion_shape(int grid, int cascades) {
   return {grid, grid - 1, kPoints / sizeof(cl_uint), static_cast<std::size_t>(cascades)};
 }

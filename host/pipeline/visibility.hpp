@@ -12,22 +12,21 @@
 
 namespace clpv {
 
-/// Occlusion bits of the eight cells about each of 64 points in every cube between cell centres: a byte per point, in the
-/// order of kernels/visibility.cl. Deterministic: the order in which bits are set does not matter.
+/// Occlusion bits of the eight cells around each of 64 points in every cube between cell centres. Each point has one
+/// byte, in the order of kernels/visibility.cl. Deterministic: the order in which bits are set does not matter.
 class CellVisibility {
  public:
-  /// For `cascades` cascades of `grid` cells along each axis. `scene` must stay as it is, but for
-  /// upload_moving().
-  /// Throws Error(run_time) if device memory does not suffice.
+  /// Allocates bits for `cascades` cascades of `grid` cells along each axis. `scene` must not change except by
+  /// upload_moving(). Throws Error(run_time) if device memory does not suffice.
   CellVisibility(Session& session, const SceneBuffers& scene, int grid, int cascades);
 
-  /// Updates the bits of a cascade for the position of `grid` and the present scene.
+  /// Updates the bits of a cascade for the position of `grid` and the current scene.
   void update(std::size_t cascade, const ClpvGrid& grid);
 
-  /// bytes() per cascade, finest first.
+  /// Bits of all cascades, bytes() each, finest first.
   const Buffer& occluded() const { return occluded_.buffer(); }
 
-  /// Bytes of one cascade.
+  /// Size of one cascade's bits [bytes].
   static std::size_t bytes(int grid);
 
  private:

@@ -7,14 +7,14 @@
 namespace clpv {
 namespace {
 
-// Cells by which triangles outside a box of cells may still leave something in it: a surface lights and is lit half a cell
-// off itself, corners' cells and cubes between centres are off by as much; and a margin for rounding.
+// Reach of triangles beyond a box of cells [cells]. Lit points, corner cells and cubes between centres are offset by
+// half a cell; the rest is a margin for rounding.
 constexpr double kReach = 0.51;
-// Bases are as many grids apart, and stay while a cascade moves that far.
+// Bases are this many grids apart; the base is constant while a cascade moves within that distance.
 constexpr int kGridsApart = 4;
 
-/// Where a grid stands. Its first cell is at least two grids from the base along each axis, so that no number of a cell near
-/// it is negative.
+/// Returns the position of a grid. Its first cell is at least two grids from the base along each axis, so that cell
+/// indices nearby are not negative.
 ClpvRegion place_of(const ClpvGrid& grid) {
   ClpvRegion place{};
   place.cell = grid.cell;
@@ -32,7 +32,7 @@ bool same_base(const ClpvRegion& a, const ClpvRegion& b) {
   return a.cell == b.cell && std::equal(a.base, a.base + 3, b.base);
 }
 
-/// What a triangle within `box` and a little more round it lies in [m].
+/// Returns the bounds of `box` extended by the reach of triangles [m].
 Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
   Bounds reach;
   for (int a = 0; a < 3; ++a) {
@@ -44,7 +44,7 @@ Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
   return reach;
 }
 
-/// The part of a box within cells [0, valid) along each axis; none: nothing of it is.
+/// Returns the part of a box within cells [0, valid) along each axis; none if they do not intersect.
 std::optional<ClpvBox> within(ClpvBox box, int valid) {
   for (int a = 0; a < 3; ++a) {
     box.low[a] = std::max(box.low[a], 0);
@@ -85,7 +85,7 @@ VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelM
                                what + ": clusters")),
       move_(session, program(shape), "move_masks"),
       clear_(session, program(shape), "clear_masks") {
-  if (shape.valid == 0) session_.fill_zero(masks_, shape.bytes());  // nothing else ever will
+  if (shape.valid == 0) session_.fill_zero(masks_, shape.bytes());  // no other code writes them
   if (shape.cascades > 1)
     spare_ = session.buffer(shape.words_a_cascade() * sizeof(cl_uint), what + ": moved");
 }
@@ -94,12 +94,12 @@ cl_uint VoxelMasks::slot(std::size_t cascade) const {
   return std::min(cascade, states_.size() - 1);
 }
 
-/// Makes room for what is to be marked: none where all is as it was.
+/// Clears the stale masks and returns their region; none if all masks are current.
 std::optional<ClpvRegion> VoxelMasks::prepare(std::size_t cascade, const ClpvGrid& grid) {
   std::optional<State>& state = states_[slot(cascade)];
   const ClpvRegion place = place_of(grid);
   const ClpvRegion region = state ? stale(*state, place) : whole(place);
-  state.reset();  // should anything below throw
+  state.reset();  // in case the code below throws
   if (region.boxes > 0) {
     clear(cascade, region);
     list_runs(region);
@@ -114,8 +114,8 @@ ClpvRegion VoxelMasks::whole(ClpvRegion place) const {
   return place;
 }
 
-/// What of a cascade is not as it was. All of it, where it has nothing in common with what it was, masks of one cascade alone
-/// are kept, or more than one instant went by.
+/// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if only one
+/// cascade is stored, or if more than one time step passed.
 ClpvRegion VoxelMasks::stale(const State& state, ClpvRegion place) const {
   if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
   for (int a = 0; a < 3; ++a) {
@@ -154,7 +154,7 @@ void VoxelMasks::add_moved(ClpvRegion& region) const {
   }
 }
 
-/// Boxes beyond those there is room for become one with all others.
+/// Adds a box to a region; if there are too many boxes, merges all into one.
 void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
   const std::optional<ClpvBox> inside = within(box, shape_.valid);
   if (!inside) return;
@@ -171,7 +171,7 @@ void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
   }
 }
 
-/// Moves what stays, and clears what is made anew.
+/// Moves the masks that stay valid, and clears those to recompute.
 void VoxelMasks::clear(std::size_t cascade, const ClpvRegion& region) {
   const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
   const std::size_t along = shape_.cells;
@@ -191,7 +191,7 @@ bool VoxelMasks::is_whole(const ClpvRegion& region) const {
                      [&](int high) { return high == shape_.valid - 1; });
 }
 
-/// Of triangles that may lie in the region or beside it.
+/// Lists the clusters of triangles in or near the region.
 void VoxelMasks::list_runs(const ClpvRegion& region) {
   std::vector<Bounds> reaches;
   for (unsigned b = 0; b < region.boxes; ++b) reaches.push_back(reach_of(region, region.box[b]));

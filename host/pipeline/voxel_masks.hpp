@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a scene's triangles leave in the cells of cascades, made anew only in cells that are new to a cascade and where
-// something moved (kernels/voxel_masks.cl).
+// Incremental voxelisation: recomputes voxel masks only in cells that are new to a cascade or where triangles moved
+// (kernels/voxel_masks.cl).
 #pragma once
 
 #include <algorithm>
@@ -20,12 +20,12 @@ inline constexpr std::size_t kMaskGroup = 64;  // work-items per group
 
 static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
 
-/// Masks of a cascade: 32-bit words, so many a cell, cells along x first.
+/// Shape of a cascade's masks: 32-bit words, a fixed number per cell, cells along x first.
 struct VoxelMaskShape {
   int cells;             ///< along each axis
-  int valid;             ///< of these, the first ones, which may hold masks; the others hold zeros
-  std::size_t words;     ///< a cell
-  std::size_t cascades;  ///< 1: of whichever it was last brought to, made anew where it moved
+  int valid;             ///< number of leading cells along each axis that may hold masks; the others hold zeros
+  std::size_t words;     ///< words per cell
+  std::size_t cascades;  ///< number of stored cascades; 1: masks of the last updated cascade only
 
   std::size_t words_a_cascade() const;
   std::size_t bytes() const { return words_a_cascade() * cascades * sizeof(cl_uint); }
@@ -33,14 +33,14 @@ struct VoxelMaskShape {
 
 class VoxelMasks {
  public:
-  /// `scene` must stay as it is, but for upload_moving(). `most`: triangles a launch, of which some device may need seconds
-  /// otherwise. Throws Error(run_time) where the device's memory does not suffice.
+  /// `scene` must not change except by upload_moving(). `most`: maximum number of triangles per launch, since larger
+  /// launches take seconds on some devices. Throws Error(run_time) if device memory does not suffice.
   VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape, unsigned most,
              const std::string& what);
 
-  /// Updates a cascade's masks for the position of `grid` and the present scene. `voxelize`: a kernel that sets masks of the
-  /// region's cells from triangles in any order. Its arguments are the region, the clusters (clpv_triangle_number of
-  /// kernels/region.h), the scene's triangles, and `rest`.
+  /// Updates a cascade's masks for the position of `grid` and the current scene. `voxelize`: kernel that sets masks of
+  /// the region's cells from triangles in any order. Its arguments are the region, the clusters (clpv_triangle_number
+  /// of kernels/region.h), the scene's triangles, and `rest`.
   template <KernelArgument... Rest>
   void update(std::size_t cascade, const ClpvGrid& grid, Kernel& voxelize, const Rest&... rest) {
     const std::optional<ClpvRegion> region = prepare(cascade, grid);
@@ -54,13 +54,13 @@ class VoxelMasks {
     }
   }
 
-  /// Of all cascades, finest first.
+  /// Masks of all stored cascades, finest first.
   const Buffer& buffer() const { return masks_; }
-  /// Which of `VoxelMaskShape::cascades` a cascade's are.
+  /// Returns the index of a cascade's masks among `VoxelMaskShape::cascades`.
   cl_uint slot(std::size_t cascade) const;
 
  private:
-  struct State {  ///< what a cascade's masks are of
+  struct State {  ///< inputs of a cascade's masks
     ClpvRegion place;
     unsigned instant;
   };
@@ -77,7 +77,7 @@ class VoxelMasks {
   Session& session_;
   SceneBuffers scene_;
   VoxelMaskShape shape_;
-  unsigned most_, near_ = 0;  ///< near_: clusters listed
+  unsigned most_, near_ = 0;  ///< near_: number of listed clusters
   std::vector<std::optional<State>> states_;
   Buffer masks_, spare_, clusters_;
   Kernel move_, clear_;

@@ -21,7 +21,7 @@
 namespace clpv::reference {
 namespace {
 
-// To be raised when the tracer's results change, so that kept references are traced anew.
+// Increment when the tracer's results change; this invalidates cached references.
 constexpr int kTracerRevision = 1;
 
 std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
@@ -34,7 +34,7 @@ std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
   return print.hex();
 }
 
-/// A name as a part of a file's: whatever else a scene's author wrote becomes '_'.
+/// Converts a name to a safe part of a file name; replaces other characters by '_'.
 std::string in_file_name(std::string name) {
   for (char& c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
@@ -87,7 +87,7 @@ std::string scene_fingerprint(const Scene& scene) {
 
 namespace {
 
-/// What is kept there, if it can be read.
+/// Returns the cached reference if its file is readable.
 std::optional<Reference> kept_reference(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
@@ -99,7 +99,7 @@ std::optional<Reference> kept_reference(const std::filesystem::path& file) {
 }
 
 void check_place(const std::filesystem::path& file) {
-  std::error_code failure;  // what is wrong with the folder, check_writable tells
+  std::error_code failure;  // check_writable reports any error of the folder
   std::filesystem::create_directories(file.parent_path(), failure);
   check_writable(file);
 }

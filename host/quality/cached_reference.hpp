@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Path-traced references kept on disk: traced once, read ever after.
+// Path-traced references cached on disk.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,25 @@
 
 namespace clpv::reference {
 
-/// The truth of one view: an image with one layer a view of a frame ("indirect", ...; traced_view).
+/// Ground truth of one camera: an image with one layer per view of a frame ("indirect", ...; traced_view).
 struct Reference {
   Image image;
-  std::filesystem::path file;  ///< where it is kept
-  bool traced = false;         ///< just now; false: read
+  std::filesystem::path file;  ///< cache file
+  bool traced = false;         ///< true: traced by this call; false: read from the cache
   std::uint32_t samples = 0;
   double noise = 0;  ///< TracedImage::noise
 };
 
-/// The reference of `camera`, from `folder` if it is there, else traced and put there. Its name tells everything the
-/// result depends on: the scene's content, camera, size, options and this program's version, but not where files lie.
-/// A file that is there but cannot be read is traced anew, with a warning.
-/// By all `ranks`, each of which has it then; rank 0 looks whether it is there, and writes it.
+/// Returns the reference of `camera` from the cache in `folder`; traces and stores it if it is missing.
+/// The file name contains a key over scene content, camera, size, options and program version, but no file paths.
+/// An unreadable file is traced again, with a warning.
+/// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
 /// Throws like trace_paths, and Error(run_time) where the folder cannot be written (before tracing).
 Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
                            int width, int height, const PathTracerOptions& options,
                            const TraceProgress& progress = {}, Ranks& ranks = single_rank());
 
-/// Of everything in the scene that light can tell: geometry, materials, textures.
+/// Hash of all scene content that affects light: geometry, materials, textures.
 std::string scene_fingerprint(const Scene& scene);
 
 }  // namespace clpv::reference

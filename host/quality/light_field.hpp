@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The light that a frame's volumes hold, at points that no camera need see.
+// Light of a frame's volumes at arbitrary points, visible to the camera or not.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace clpv {
 
-/// What the volumes held after a frame's last render, read back; gathered on the host, in double, as the frame gathers for
-/// what its camera sees.
+/// Host copy of the volumes after a frame's last render. Gathers light in double precision, with the method the frame
+/// uses for its camera.
 class LightField {
  public:
-  /// Throws Error(usage) for a frame that has not rendered yet. Refers to the frame's basis, but takes no note of its next
-  /// render. Takes 8 bytes of the host's memory for each number of the volumes.
+  /// Throws Error(usage) for a frame that has not rendered yet. Refers to the frame's basis; later renders do not
+  /// update the copy. Uses 8 bytes of host memory per volume coefficient.
   LightField(Session& session, const Frame& frame);
 
-  /// Indirect irradiance [W/m^2] of red, green, blue on a surface at `position` [m] with unit `normal`; 0 outside all
+  /// Returns indirect irradiance [W/m^2] (red, green, blue) on a surface at `position` [m] with unit `normal`; 0 outside all
   /// cascades.
   glm::dvec3 irradiance(const glm::dvec3& position, const glm::dvec3& normal) const;
 
-  /// Whether `position` lies in the coarsest cascade.
+  /// Returns true if `position` lies in the coarsest cascade.
   bool reaches(const glm::dvec3& position) const;
 
  private:
@@ -32,7 +32,7 @@ class LightField {
   TransportKind transport_;
   GatherOptions options_;
   std::vector<reference::Volume> volumes_;
-  std::vector<std::uint8_t> occluded_;  ///< empty where all cells light a surface
+  std::vector<std::uint8_t> occluded_;  ///< empty if all cells light surfaces
   std::vector<reference::Cascade> cascades_;
 };
 

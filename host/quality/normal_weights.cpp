@@ -16,9 +16,9 @@
 namespace clpv {
 namespace {
 
-constexpr int kSide = 4;  // patches along each edge of a cube's face: a search looks at 96 directions at most
+constexpr int kSide = 4;  // patches per edge of a cube face: a search uses at most 96 directions
 
-/// Of the cube about the origin, by the face that `n` points through and its place there.
+/// Returns the patch index of direction `n` on a cube about the origin.
 std::size_t patch_of(const glm::dvec3& n) {
   int axis = 0;
   for (int other = 1; other < 3; ++other) {
@@ -32,7 +32,7 @@ std::size_t patch_of(const glm::dvec3& n) {
                                   place(n[(axis + 2) % 3]));
 }
 
-/// Sums of flux and of flux times normal, a patch.
+/// Sums of flux and of flux times normal per patch.
 class Patches {
  public:
   void add(const SurfaceImage& rsm) {
@@ -73,7 +73,7 @@ std::vector<WeightedDirection> normal_weights(Session& session, const Scene& sce
   const std::vector<ClpvGrid> grids =
       cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid);
   for (const Light& light : scene.lights_for(camera)) {
-    // Of a light that is no sun all cascades read the same maps.
+    // All cascades share the maps of a light that is not a sun.
     const std::size_t cascades = light.data.kind == CLPV_LIGHT_DIRECTIONAL ? grids.size() : 1;
     for (std::size_t cascade = 0; cascade < cascades; ++cascade) {
       for (const ClpvView& view : rsm_views(light.data, grids[cascade], buffers.bounds, options.rsm_size)) {

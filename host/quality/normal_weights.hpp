@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene's own normals, weighted by the light they send on: what its reflective shadow maps hold.
+// Surface normals of a scene's reflective shadow maps, weighted by reflected flux.
 #pragma once
 
 #include <filesystem>
@@ -12,12 +12,12 @@
 
 namespace clpv {
 
-/// The normals of all texels that injection would read for this camera, of every cascade, gathered into patches of the
-/// sphere: each patch's mean normal, weighted by its share of the flux. Empty where no light falls on anything.
+/// Collects the normals of all texels that injection reads for this camera, over all cascades, in patches of the sphere.
+/// Returns each patch's mean normal, weighted by its share of the flux. Empty if no surface is lit.
 std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const Camera& camera,
                                               const RenderOptions& options);
 
-/// As load_aims reads it.
+/// Writes the format that load_aims reads.
 void write_normal_weights(const std::filesystem::path& path, const std::vector<WeightedDirection>& weights);
 
 }  // namespace clpv

@@ -17,7 +17,7 @@ namespace clpv {
 namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
-constexpr double kShortest = 1e-6;  // a shorter normal is none
+constexpr double kShortest = 1e-6;  // minimum length of a valid normal
 
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The part up to the separator, which is taken off `text` with it.
+/// Returns the part up to the separator; removes both from `text`.
 std::string_view cut(std::string_view& text, char separator) {
   const std::size_t end = std::min(text.find(separator), text.size());
   const std::string_view part = text.substr(0, end);
@@ -34,7 +34,7 @@ std::string_view cut(std::string_view& text, char separator) {
   return part;
 }
 
-/// Six finite numbers between commas, or nothing.
+/// Parses six finite comma-separated numbers; empty if the text differs.
 std::optional<std::array<double, 6>> parse_six(std::string_view line) {
   std::array<double, 6> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -46,7 +46,7 @@ std::optional<std::array<double, 6>> parse_six(std::string_view line) {
   return trimmed(line).empty() ? std::optional(values) : std::nullopt;
 }
 
-/// Whether it names columns: it begins with a letter, as no finite number does.
+/// Returns true for a header line: it begins with a letter, as no finite number does.
 bool is_header(std::string_view line) {
   const char c = line.front();
   return ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) && !line.starts_with("nan") &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points on surfaces, from a file of comma-separated values.
+// Reader of surface points from a CSV file.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,9 @@ struct SurfacePoint {
   glm::dvec3 normal;    ///< unit
 };
 
-/// Lines of x,y,z,nx,ny,nz; the first one may name the columns. Empty lines, and those that begin with #, are left out.
-/// Normals are made unit. Throws Error(bad_input) with the line for what are not six finite numbers, coordinates beyond those
-/// that scenes may have, normals without length, and more points than kMostPoints.
+/// Reads lines of x,y,z,nx,ny,nz with an optional header line. Skips empty lines and lines that begin with #.
+/// Normalises the normals. Throws Error(bad_input) with the line number for invalid numbers, coordinates outside the
+/// range of scenes, normals without length, and more points than kMostPoints.
 std::vector<SurfacePoint> read_points(const std::filesystem::path& file);
 
 inline constexpr std::size_t kMostPoints = std::size_t{1} << 24;

@@ -43,7 +43,7 @@ void fill_errors(QualityCell& cell, const Image& image, const reference::Referen
   }
 }
 
-/// Sums of the stages of one frame.
+/// Total times of one frame per stage.
 std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bool& from_events) {
   std::map<std::string, double> sums;
   for (const StageTime& time : times) {
@@ -106,7 +106,7 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
     frame.forget_light();
     frame.render(camera);
     const Image image = view_image(frame, show);
-    if (i == 0) continue;  // a first launch compiles
+    if (i == 0) continue;  // the first launch compiles kernels
     double total = 0;
     for (const auto& [stage, ms] : stage_sums(session.timeline().times(), cell.from_events)) {
       samples[stage].push_back(ms);
@@ -137,7 +137,7 @@ std::string quality_key(const reference::Reference& truth, const Device& device,
 
 QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code failure;
-  std::filesystem::create_directories(folder_, failure);  // what is wrong with it, check_writable tells
+  std::filesystem::create_directories(folder_, failure);  // check_writable reports any error
   check_writable(file("probe"));
 }
 

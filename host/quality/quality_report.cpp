@@ -33,7 +33,7 @@ std::set<std::string> stage_names(const std::vector<QualityCell>& cells) {
   return names;
 }
 
-/// Lines of equal width: the first column to the left, the others to the right.
+/// Formats lines of equal width: first column left-aligned, others right-aligned.
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows[0].size(), 0);
   for (const auto& row : rows) {
@@ -52,7 +52,7 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f}", 100 * *share) : "-";
 }
 
-/// Stages that a frame is timed in: those that a pass is named after.
+/// Timed stages of a frame: stages with a pass of their name.
 std::vector<std::string_view> timed_stages() {
   std::vector<std::string_view> timed;
   for (const Stage stage : values_of<Stage>()) {
@@ -62,7 +62,7 @@ std::vector<std::string_view> timed_stages() {
   return timed;
 }
 
-/// Milliseconds of the passes of that stage: "rasterize" is rasterize-rsm, rasterize-camera and rasterize-shadow.
+/// Time [ms] of all passes of a stage: "rasterize" is rasterize-rsm, rasterize-camera and rasterize-shadow.
 double kind_ms(const QualitySummary& sum, std::string_view kind) {
   double ms = 0;
   for (const auto& [stage, value] : sum.stage_ms) ms += stage.starts_with(kind) ? value : 0;
@@ -78,7 +78,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst
                                    energy_ratio, perceptual, frame_ms, stage_ms)
 
 nlohmann::json to_json(const QualityCell& cell) {
-  nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects forget the order
+  nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects lose the order
   for (const auto& [name, value] : cell.variant) varied.push_back({name, value});
   json.update({{"options", json_of(cell.variant)},
                {"varied", varied},

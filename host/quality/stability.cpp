@@ -11,11 +11,11 @@
 namespace clpv {
 namespace {
 
-// Normals of one surface, smooth ones included, from pixel to pixel: 8 degrees.
+// Maximum angle between normals of adjacent pixels on one surface, smooth ones included: 8 degrees.
 constexpr double kLeastCosine = 0.99;
-// A point and the nearest pixel's lie in one plane to within so many pixels' edges: curved surfaces leave it by less.
+// Maximum distance of a point from the nearest pixel's plane, in pixel edges; curved surfaces deviate by less.
 constexpr double kOffPlane = 0.1;
-// Along the surface they are at most half a pixel's diagonal apart across the view, and more where it slopes away.
+// Maximum distance along the surface: half a pixel's diagonal across the view, more on slanted surfaces.
 constexpr double kApart = 0.75;
 
 glm::dvec3 normal_of(const SurfaceImage& image, std::size_t pixel) {
@@ -112,7 +112,7 @@ void Stability::add(int number, double seconds, const Scene& scene, const Camera
   before_ = std::move(now);
 }
 
-/// Two path-traced images of the surfaces of the frame before, under the light of now, one against the other.
+/// Compares two path-traced images of the previous frame's surfaces under the current light.
 std::optional<double> Stability::noise(const Scene& scene, const Camera& camera,
                                        const std::vector<bool>& counted) const {
   if (traced_ == 0) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far a result is from its CPU reference's: the one comparison of checks and benchmarks.
+// Error between a result and its CPU reference, for checks and benchmarks.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace clpv::reference {
 
-/// The worst of the errors it was shown. A NaN is worse than any number, and stays.
+/// Largest of the recorded errors. A NaN exceeds any number and stays.
 struct WorstError {
   double value = 0;
-  std::size_t at = 0;  ///< which one it was
+  std::size_t at = 0;  ///< index of the largest error
 
-  /// Whether `error` is the worst so far.
+  /// Returns true if `error` is the largest so far.
   bool take(double error, std::size_t index) {
     if (std::isnan(value) || error <= value) return false;
     value = error, at = index;
@@ -25,7 +25,7 @@ struct WorstError {
   }
 };
 
-/// Of `count` values found(i), wanted(i): the largest difference, over the largest |wanted|.
+/// Returns the largest difference of `count` values found(i) and wanted(i), relative to the largest |wanted|.
 template <typename Found, typename Wanted>
 WorstError worst_difference(std::size_t count, const Found& found, const Wanted& wanted) {
   double largest = 0;
@@ -37,15 +37,16 @@ WorstError worst_difference(std::size_t count, const Found& found, const Wanted&
 }
 
 struct Comparison {
-  double worst = 0;   ///< over the CPU reference's largest value
-  std::string place;  ///< "cell 3,4,5 plane 0: 0.25, CPU reference 0.26"; empty where nothing differs
+  double worst = 0;   ///< relative to the CPU reference's largest value
+  std::string place;  ///< "cell 3,4,5 plane 0: 0.25, CPU reference 0.26"; empty if nothing differs
 };
 
-/// Volumes of n^3 samples in Volume's host order.
+/// Compares volumes of n^3 samples in Volume's host order.
 Comparison compare_volumes(std::span<const float> found, std::span<const double> expected, int n);
 
-/// The functions that volumes hold, in 26 directions: where a Gram matrix is ill-conditioned coefficients differ by which
-/// functions hardly do. `numbers` a sample and channel; `weights`: theirs in a direction. `other` is as right as `CPU reference`.
+/// Compares the functions that volumes represent, in 26 directions. With an ill-conditioned Gram matrix, coefficients
+/// differ while the functions agree. `numbers`: values per sample and channel. `weights`: their weights in a direction.
+/// `other`: a second reference result, as accurate as `expected`.
 Comparison compare_functions(std::span<const float> found, std::span<const double> expected,
                              std::span<const double> other, int n, int numbers,
                              const std::function<std::vector<double>(const glm::dvec3&)>& weights);

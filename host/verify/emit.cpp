@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points of emissive triangles: the kernel against the CPU reference on a soup of triangles, of all sizes, textured and with holes.
+// Points of emissive triangles: kernel against CPU reference on random triangles of all sizes, textured and masked.
 #include "pipeline/emit.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 constexpr unsigned kGrid = 4;
 constexpr float kScale = 0.25f;
 
-/// What the soup glows by: a texture, the same with holes, and a colour on both sides.
+/// Emission of the triangles: a texture, the same texture masked, and a double-sided colour.
 Scene glowing_soup() {
   Scene scene = triangle_soup();
   for (Material& material : scene.materials) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Gathering: kernels against the CPU reference, on random light in three nested cascades seen by surfaces in and round
-// them.
+// Gathering: kernels against CPU reference, on random light in three nested cascades, for surfaces in and around them.
 #include "pipeline/gather.hpp"
 
 #include <fmt/format.h>
@@ -29,11 +28,11 @@ struct Variant {
   LobeOptions lobes = {};
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};
-  bool filtered = true;  ///< images alone
+  bool filtered = true;  ///< images only
   Gathering gather = Gathering::all;
 };
 
-/// A byte for each point between cells of all cascades: each cell occluded from half of them.
+/// One byte per point between cells of all cascades; each cell is occluded from half of them.
 std::vector<std::uint8_t> random_occlusion(std::mt19937& random) {
   std::vector<std::uint8_t> occluded(kCascades * CellVisibility::bytes(kGrid));
   for (std::uint8_t& bits : occluded) bits = random() % 256;
@@ -87,7 +86,7 @@ CheckResult check_one(Session& session, const Basis& basis, TransportKind transp
   return result;
 }
 
-/// Every other way for volumes to lie in memory; images both by the device's filter and from texels.
+/// Tests all other volume formats; images both with the device's filter and from texels.
 void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   constexpr TransportKind transport = TransportKind::sweep;
@@ -125,7 +124,7 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
     results.push_back(
         check_one(session, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image}));
   }
-  const std::unique_ptr<Basis> swept = swept_basis();  // all that a sweep leaves to gather
+  const std::unique_ptr<Basis> swept = swept_basis();  // all bases of swept light
   results.push_back(check_one(session, *swept, TransportKind::sweep, {"plain"}));
   results.push_back(
       check_one(session, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Injection: kernels against the CPU reference on small random surfaces.
+// Injection: kernels against CPU reference on small random surfaces.
 #include "pipeline/inject.hpp"
 
 #include <fmt/format.h>
@@ -21,15 +21,15 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kGrid = 5;                       // odd, small: many texels a cell, several segments in some
-constexpr unsigned kWidth = 37, kHeight = 23;  // no multiple of anything
-// [cells]; points nearer to where the cell changes are left out, since there rounding decides. More than what
-// 8-bit normals can move a point.
+constexpr int kGrid = 5;                       // odd and small: many texels per cell, several segments in some cells
+constexpr unsigned kWidth = 37, kHeight = 23;  // no multiples of a work-group
+// [cells]; excludes points close to a cell boundary, where rounding decides. Exceeds the position error of 8-bit
+// normals.
 constexpr double kMargin = 0.01;
 
 const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
 
-/// A view from above or from a corner that sees the grid and some space beside it.
+/// A view from above or from a corner that shows the grid and some space beside it.
 ClpvView view_of_grid(bool orthographic, float distance) {
   const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kGrid;
   Camera camera;
@@ -48,8 +48,8 @@ bool near_border(const glm::dvec3& point) {
   return std::min({off.x, off.y, off.z}) < kMargin;
 }
 
-/// Random depths, normals towards the viewer and colours; holes and values that are not finite among them. No normal
-/// whose lobe rounding decides.
+/// Random depths, colours and normals towards the viewer, with holes and values that are not finite. Excludes normals
+/// whose lobe depends on rounding.
 SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool orthographic, bool light,
                             RsmFormat format, unsigned seed) {
   std::mt19937 random(seed);
@@ -77,7 +77,7 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
   return surface;
 }
 
-/// The same as points that no view sees.
+/// The same surface as points without a view.
 SurfaceImage as_points(SurfaceImage surface) {
   for (std::size_t i = 0; i < surface.depth.size(); ++i) {
     const glm::dvec3 at = surface_position(surface.view, static_cast<double>(i % kWidth),
@@ -89,7 +89,7 @@ SurfaceImage as_points(SurfaceImage surface) {
   return surface;
 }
 
-/// One comparison: light, or geometry with blockers.
+/// One comparison of injected light, or of geometry with blockers.
 struct InjectCase {
   InjectOptions options = {};
   bool light = true, orthographic = true, points = false;
@@ -112,7 +112,7 @@ struct InjectCase {
   }
 };
 
-/// Blockers are those of two surfaces, so that they are merged.
+/// Blockers come from two surfaces, to test merging.
 CheckResult check_one(Session& session, const Basis& basis, InjectCase c) {
   c.options.grid = kGrid;
   const InjectOptions& options = c.options;
@@ -146,14 +146,14 @@ CheckResult check_one(Session& session, const Basis& basis, InjectCase c) {
   return {"inject", c.name(basis), apart.worst, allowed, apart.place};
 }
 
-/// What is compared of a basis.
+/// Runs the comparisons of one basis.
 std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool thorough) {
   std::vector<InjectCase> cases = {{}, {.light = false}};
-  if (!basis.centres().empty()) {  // of others rotated lobes are the exact ones
+  if (!basis.centres().empty()) {  // rotated lobes of other bases are exact
     const InjectOptions rotated{.lobes = {.kind = LobeKind::rotate}};
     cases.push_back({.options = rotated});
     cases.push_back({.options = rotated, .light = false});
-    if (device.images && (thorough || basis.size() == 4)) {  // reading an image hardly depends on the basis
+    if (device.images && (thorough || basis.size() == 4)) {  // reading an image is nearly independent of the basis
       cases.push_back({.options = rotated, .orthographic = false});
       cases.back().options.table = TableStorage::image;
     }
@@ -162,7 +162,7 @@ std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool 
       cases.back().options.unit_flux_lobes = true;
     }
   }
-  // What hardly depends on the basis, for the small ones: compiling takes most of the time.
+  // Features nearly independent of the basis use the small ones, since compilation dominates the time.
   if (basis.size() > 4) return cases;
   cases.push_back({.options = {.unit_flux_lobes = true}, .orthographic = false});
   cases.push_back({.orthographic = false, .format = RsmFormat::paper});
@@ -179,7 +179,7 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
     for (const InjectCase& c : cases_of(session.device(), *basis, scope.thorough))
       results.push_back(check_one(session, *basis, c));
   }
-  // Whatever the basis: areas, points that no view sees, and every other way for volumes to lie in memory.
+  // Independent of the basis: areas, points without a view, and all other volume formats.
   const InjectOptions areas{.blocking = Blocking::areas};
   std::vector<InjectCase> cases = {{.options = areas, .light = false},
                                    {.orthographic = false, .points = true}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Random inputs that checks share (surfaces, triangles, volumes), and how images and volumes compare.
+// Random inputs for checks (surfaces, triangles, volumes), and comparison of images and volumes.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -21,30 +21,30 @@
 
 namespace clpv::reference {
 
-/// A camera near the origin that sees surfaces at random depths up to 12 m, turned, coloured and glowing at random; a
-/// tenth of the pixels see none.
+/// Returns the G-buffer of a camera near the origin: random depths up to 12 m, normals, colours and emission. 10 % of
+/// the pixels show no surface.
 SurfaceImage random_surfaces(std::mt19937& random);
 
-/// Red, green and blue of every pixel (and alpha, where the CPU reference has it) against the CPU reference's; errors relative to the
-/// CPU reference's largest value, held against the stage's tolerance. `width` of the image, to name the place.
+/// Compares red, green and blue of every pixel (and alpha, if the CPU reference has it) with the CPU reference. Errors
+/// are relative to its largest value and compared with the stage's tolerance. `width`: image width, for places.
 CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& expected,
                            unsigned width, std::string_view stage, const std::string& variant);
 
-/// Whether single precision may read another entry than double: in looking up `direction`, or in turning a lobe there
-/// or to where it points away from. False where no table is used.
+/// Returns true if single and double precision may read different table entries. This concerns looking up `direction`,
+/// and rotating a lobe to it or to its opposite. Returns false without a table.
 bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm::dvec3& direction);
 
-/// Triangles in and round a grid of nine cells of half a metre from (-2.5, 0.5, 1) on: specks, some of some cells, others
-/// far larger than the grid, one without area, some along an axis, and a third of them with holes.
+/// Returns triangles in and around a grid of nine cells of 0.5 m from (-2.5, 0.5, 1). Sizes range from specks to far
+/// larger than the grid. One has no area, some are axis-aligned, and 1 of 3 has holes.
 Scene triangle_soup();
 
-/// Light in a third of the cells, of any sign, as bases with negative lobes leave it.
+/// Returns light in 1 of 3 cells, of either sign, as from bases with negative lobes.
 Volume random_light(const Basis& basis, int n, std::mt19937& random);
 
-/// `numbers` a corner, in [0, 1].
+/// Returns `numbers` values in [0, 1] per corner.
 Volume random_blockers(int numbers, int n, std::mt19937& random);
 
-/// A volume on the device that holds the same numbers.
+/// Returns a volume on the device with the same values.
 clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format);
 
 }  // namespace clpv::reference

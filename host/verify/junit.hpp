@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Comparisons as test cases, in the XML that JUnit began and build servers read.
+// Writes comparisons as test cases in JUnit XML, which build servers read.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace clpv::reference {
 
-/// One <testsuite> a stage in the order they come, one <testcase> a comparison; a failed one says by how much and where.
+/// Writes one <testsuite> per stage, in order, and one <testcase> per comparison; failures report error and place.
 std::string junit(const CheckResults& results, const std::string& device);
 
 }  // namespace clpv::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Propagation: kernels against the CPU reference on a small grid of random light and random blockers.
+// Propagation: kernels against CPU reference on a small grid of random light and random blockers.
 #include "pipeline/propagate.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kGrid = 7;         // no multiple of anything: borders, partial work-groups
-constexpr int kFormatGrid = 17;  // whole blocks of 8 cells and one cell more
+constexpr int kGrid = 7;         // no multiple of a work-group: tests borders and partial work-groups
+constexpr int kFormatGrid = 17;  // whole blocks of 8 cells plus one cell
 constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
 CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
@@ -52,7 +52,7 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
   return {"propagate", variant, apart.worst, allowed, apart.place};
 }
 
-/// `full`: every transport in both states, with and without blockers.
+/// `full`: tests every transport in both states, with and without blockers.
 void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
                      CheckResults& results) {
   for (const TransportKind kind : stepped_transports()) {
@@ -61,15 +61,15 @@ void check_constants(Session& session, const Basis& basis, const LobeOptions& lo
     const auto add = [&](State state, bool blockers) {
       results.push_back(check_one(session, basis, transport, {.grid = kGrid, .state = state}, blockers));
     };
-    // The first step never blocks, so a run with blockers has run both of its kernels. Not so with fluxes, whose first
-    // step is a kernel of its own.
+    // The first step never blocks, so a run with blockers tests both of its kernels. Fluxes differ: their first step is a
+    // separate kernel.
     if (full) add(State::coefficients, true);
     add(State::fluxes, true);
     if (full) add(State::fluxes, false);
   }
 }
 
-/// Lobes made in the kernel: exact and rotated ones, the table as a buffer and as an image.
+/// Lobes computed in the kernel: exact and rotated ones, with the table as a buffer and as an image.
 void check_run_time_lobes(Session& session, const Basis& basis, bool full, CheckResults& results) {
   const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
     if (table == TableStorage::image && !session.device().images) return;
@@ -83,7 +83,7 @@ void check_run_time_lobes(Session& session, const Basis& basis, bool full, Check
   add(TransportKind::exact, LobeKind::rotate, TableStorage::image);
 }
 
-/// Blockers as areas: what the basis is hardly matters, which links there are does.
+/// Blockers as areas: tests the sets of links, since the basis has little effect.
 void check_areas(Session& session, bool thorough, CheckResults& results) {
   for (const char* name : {"sh2", "bins24"}) {
     if (!thorough && std::string(name) != "sh2") continue;
@@ -95,7 +95,7 @@ void check_areas(Session& session, bool thorough, CheckResults& results) {
   }
 }
 
-/// Every other link for volumes to lie in memory: one basis and transport, since these have no part in it.
+/// Tests all other volume formats with one basis and transport, which do not affect them.
 void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
@@ -108,15 +108,15 @@ void check_formats(Session& session, const CheckScope& scope, CheckResults& resu
 }  // namespace
 
 CheckResults check_propagate(Session& session, const CheckScope& scope) {
-  // One orthogonal basis, one of antipodal centres and one of neither kind in full; of the others each basis and
-  // each transport, not each pair: building kernels is what takes the time.
+  // Tests one orthogonal basis, one of antipodal centres and one of neither kind in full. Other bases and transports
+  // are tested singly, not in pairs, since building kernels dominates the time.
   const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
   CheckResults results;
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     const bool full = scope.thorough || in_full.count(name) > 0;
     check_constants(session, *basis, {}, full, results);
-    // In full for the cheapest that has a table; else without and with one, and where it errs most.
+    // In full for the cheapest basis with a table; otherwise without and with a table, and where errors are largest.
     const std::set<std::string> lobes = {"sh2", "srbf4", "srbf8v2", "srbf14"};
     if (scope.thorough || lobes.count(name) > 0)
       check_run_time_lobes(session, *basis, scope.thorough || name == "srbf4", results);

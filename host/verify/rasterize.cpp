@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rasteriser against its CPU reference: random and awkward triangles, every kind of view.
+// Rasteriser against CPU reference: random and degenerate triangles, all kinds of views.
 #include "pipeline/rasterize.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ class SceneMaker {
  public:
   explicit SceneMaker(unsigned seed) : random_(seed) {}
 
-  /// Triangles from specks to some that reach through the eye, of every kind of material.
+  /// Triangles of all materials, from specks to some that extend past the eye.
   Scene soup() {
     Scene scene = with_materials();
     for (int i = 0; i < 120; ++i) {
@@ -36,7 +36,7 @@ class SceneMaker {
     return scene;
   }
 
-  /// A curved sheet of triangles that share all their vertices, and a floor through the eye, under it.
+  /// A curved sheet of triangles with shared vertices, and below it a floor that contains the eye.
   Scene sheet() {
     Scene scene = with_materials();
     constexpr unsigned kCells = 8;
@@ -57,7 +57,7 @@ class SceneMaker {
     return scene;
   }
 
-  /// Corners on pixel centres and borders of an orthographic view of 1/8 m a pixel, surfaces at the same depth, and
+  /// Vertices on pixel centres and borders of an orthographic view of 1/8 m per pixel, surfaces at equal depth, and
   /// triangles without area.
   Scene lattice() {
     Scene scene = with_materials();
@@ -92,7 +92,7 @@ class SceneMaker {
     scene.triangles.push_back(triangle);
   }
 
-  /// Plain, textured, double-sided, masked, emissive; textures of odd sizes and every wrap mode.
+  /// Plain, textured, double-sided, masked and emissive materials; textures of odd sizes and every wrap mode.
   Scene with_materials() {
     Scene scene;
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -128,15 +128,15 @@ double largest(const std::vector<glm::vec4>& field) {
   return most > 0 ? most : 1.0;
 }
 
-/// The largest difference of a pixel's three numbers over the field's largest value; 0 for fields that are not there.
+/// Returns the largest difference of a pixel's three numbers, relative to the field's largest value; 0 without a field.
 double apart(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>& expected, std::size_t at) {
   if (device.empty() || expected.empty()) return 0;
   const glm::dvec3 off = glm::abs(glm::dvec3(device[at]) - glm::dvec3(expected[at]));
   return glm::any(glm::isnan(off)) ? NAN : std::max({off.x, off.y, off.z}) / largest(expected);
 }
 
-/// Holds a device's surface against the CPU reference's, pixel by pixel: values where they are sure, and how many of the others
-/// differ.
+/// Compares a device's surface with the CPU reference pixel by pixel. Checks values where the reference is certain,
+/// and the share of the other pixels that differ.
 void append(CheckResults& results, const SurfaceImage& device, const RasterizedImage& expected,
             const std::string& variant) {
   CheckResult values{"rasterize", variant, 0, tolerance("rasterize"), {}};
@@ -198,7 +198,7 @@ ClpvLight sun() {
   return light;
 }
 
-/// Looks down the z axis, 1/8 m a pixel: the lattice's corners fall on pixel centres and borders.
+/// Views along the z axis, 1/8 m per pixel: the lattice's vertices fall on pixel centres and borders.
 ClpvView lattice_view() {
   ClpvView view = camera_view(Camera{}, 2 * kLightSize - 10, kLightSize - 5);
   view.orthographic = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shading: kernels against the CPU reference, on random surfaces behind random shadow maps of every kind of light.
+// Shading: kernels against CPU reference, on random surfaces and random shadow maps of all kinds of light.
 #include "pipeline/shade.hpp"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace clpv::reference {
 namespace {
 
 constexpr unsigned kMapWidth = 24, kMapHeight = 20;
-constexpr float kMapReach = 20;  // [m]: depths in a map
+constexpr float kMapReach = 20;  // [m]: range of depths in a map
 
-/// Depths without relation from texel to texel, a third of them empty: a tap read from the wrong place shows.
+/// Independent random depths per texel, 1 of 3 empty, so that a wrong filter address causes an error.
 ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-0.5f, 1);
   ShadowMap map{view, {}};
@@ -28,12 +28,12 @@ ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
 }
 
 const ClpvLight kSun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}};
-/// Dark from acos(.7), full from acos(.9).
+/// Cone from full light at acos(0.9) to dark at acos(0.7).
 const ClpvLight kSpot{
     {6, 8, -1}, CLPV_LIGHT_SPOT, {-1 / 9.0f, -8 / 9.0f, 4 / 9.0f}, 14, {100, 150, 200}, 5, -3.5f, {}};
 const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, {}};
 
-/// The sun's map is smaller than what the camera sees: some surfaces lie on and beyond its edge.
+/// The sun's map is smaller than the camera's view: some surfaces lie on and beyond its edge.
 MappedLight mapped(const ClpvLight& light, std::mt19937& random) {
   const Bounds bounds{{-2, -2, -4}, {8, 8, 6}};
   MappedLight mapped{light, {}};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Holds the device's layout of the shared structs against the host's: a difference would garble every stage's
-// input.
+// Compares the device's layout of the shared structs with the host's; a mismatch would corrupt every stage's input.
 #include <fmt/format.h>
 
 #include <cstddef>

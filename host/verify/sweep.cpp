@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sweep and its bounces: kernels against the CPU references, on small cascades of random light, random blockers and random
-// reflectors.
+// Sweep and bounces: kernels against CPU references, on small cascades of random light, blockers and reflectors.
 #include "basis/sweep.hpp"
 
 #include <fmt/format.h>
@@ -21,13 +20,13 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kEdge = 4;  // of the finest grid [m]
+constexpr double kEdge = 4;  // edge of the finest grid [m]
 constexpr float kSkyScale = 0.5f;
 
 struct SweepCase {
   std::string basis;
   int grid;
-  std::vector<int> parts;  ///< a cascade
+  std::vector<int> parts;  ///< one per cascade
   Bounces bounces = Bounces::one;
   bool blocking = true;
   Blocking blocked_by = Blocking::areas;
@@ -46,7 +45,7 @@ struct SweepCase {
   }
 };
 
-/// Dark below, of all colours above.
+/// A sky that is dark below, with random colours above.
 Sky uneven_sky(float scale) {
   Sky sky;
   sky.width = 5, sky.height = 4, sky.rotation = 0.7;
@@ -55,7 +54,7 @@ Sky uneven_sky(float scale) {
   return sky;
 }
 
-/// A third of the sides reflect.
+/// 1 of 3 faces reflects.
 Volume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
   Volume volume(n, kCellFaces);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every tolerance between a kernel and its CPU reference, in one table, each with its reason.
+// Table of the tolerances between kernels and CPU references, each with its reason.
 #pragma once
 
 #include <algorithm>
@@ -13,60 +13,60 @@ namespace clpv::reference {
 struct Tolerance {
   std::string_view stage;
   double
-      allowed;  ///< largest |kernel - CPU reference| over the largest |CPU reference| of the compared field, unless said otherwise
-  double half = 0;  ///< the same where volumes hold numbers of 11 bits (Storage::float16)
+      allowed;  ///< largest |kernel - CPU reference| over the largest |CPU reference| of the field, unless noted
+  double half = 0;  ///< the same for volumes of numbers with 11 bits (Storage::float16)
 };
 
 inline constexpr Tolerance kTolerances[] = {
     // Bytes: host and device read the same buffers.
     {"sizes", 0},
-    // Of the field's largest value, away from edges: float32 positions on a triangle, worst where it is seen at a slant,
-    // through a texture's steps; measured 2.1e-6.
+    // Relative to the field's largest value, away from edges: float32 positions on a triangle. The error is largest at
+    // grazing angles, through texture steps; measured 2.1e-6.
     {"rasterize", 2e-5},
     // Share of pixels that differ because of rounding (reference/rasterize.hpp): a float32 corner may snap to the
     // next 1/256 pixel; measured 7e-4, one pixel.
     {"rasterize-edges", 5e-3},
-    // Of the largest flux and position, apart from what rounding can decide (reference/emit.hpp): float32 places in a
-    // texture, and its mean over 64 looks.
+    // Relative to the largest flux and position, except where rounding can decide (reference/emit.hpp): float32 texture
+    // coordinates, and the texture's mean over 64 samples.
     {"emit", 2e-5},
-    // Of the functions' values in 26 directions: float32 rounding times the square root of the Gram matrix's condition
-    // number; measured 2e-7 (sh2) to 5e-6 (srbf14). Halves are rounded once a surface; measured 5e-4.
+    // Values of the functions in 26 directions: float32 rounding times the square root of the Gram matrix's condition
+    // number; measured 2e-7 (sh2) to 5e-6 (srbf14). float16 rounds once per surface; measured 5e-4.
     {"inject", 2e-5, 4e-3},
-    // As inject; sums of N products with the coefficients of the lobe towards +z, large and of mixed sign where the Gram
-    // matrix is ill-conditioned; measured 3e-7 (srbf4) to 1.7e-5 (srbf14).
+    // As inject. Sums N products with the coefficients of the lobe towards +z, which are large and of mixed sign if the
+    // Gram matrix is ill-conditioned; measured 3e-7 (srbf4) to 1.7e-5 (srbf14).
     {"inject-rotated", 5e-5},
-    // Shares of samples outside what rounding can decide (reference/blockers.hpp); 64ths are exact in any format.
+    // Shares of samples, except where rounding can decide (reference/blockers.hpp); 64ths are exact in any format.
     {"blockers", 0, 0},
-    // Areas in faces, apart from what rounding can decide (reference/reflectors.hpp): colours in 4096ths, and a texture's steps
-    // magnify what float32 moves a sample by.
+    // Areas on faces, except where rounding can decide (reference/reflectors.hpp). Colours are in 4096ths, and texture
+    // steps magnify float32 errors of sample positions.
     {"reflectors", 1e-3, 2e-3},
-    // Hidden cells of a point, apart from those that rounding can decide (reference/visibility.hpp).
+    // Occluded cells of a point, except where rounding can decide (reference/visibility.hpp).
     {"visibility", 0},
-    // float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14). In halves each step rounds what
-    // travels and the sum by up to 2^-12 of themselves; measured 1.4e-3.
+    // float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14). With float16, each step
+    // rounds propagated light and its sum, with relative error up to 2^-12; measured 1.4e-3.
     {"propagate", 2e-5, 4e-3},
-    // Of coefficients, as propagate; lobes made in float32 err in coefficients that hardly change the function where the
-    // Gram matrix is ill-conditioned; measured 1.1e-7 (sh2), 3.8e-6 (srbf8v3), 6.1e-5 (srbf14).
+    // Coefficients, as propagate. With an ill-conditioned Gram matrix, float32 lobes have errors in coefficients that
+    // hardly change the function; measured 1.1e-7 (sh2), 3.8e-6 (srbf8v3), 6.1e-5 (srbf14).
     {"propagate-run-time-lobes", 2e-4},
-    // float32 sums of eight products a cell, over as many cells as light crosses. In halves are injected light,
-    // transmittance, the sums, and what is made of them; light on its way is float32.
+    // float32 sums of eight products per cell, over all cells along the light's path. float16 stores injected light,
+    // transmittance, sums and results; light inside the sweep is float32.
     {"sweep", 5e-6, 4e-3},
-    // As sweep, twice, and as often as light bounces on.
+    // As sweep, for two sweeps and the series of bounces.
     {"bounce", 1e-5, 1e-2},
-    // float32 trilinear weights and N products of mixed sign, srbf14's coefficients ten times the light they add up to; a
-    // position 1e-6 m off at 10 m moves them too; measured 1.1e-5 (srbf14), 4e-6 (others). Halves are rounded once, N of
-    // mixed sign a direction; measured 4e-4.
+    // float32 trilinear weights and N products of mixed sign; srbf14 coefficients are ten times their sum. A position
+    // error of 1e-6 m at 10 m adds to it. Measured 1.1e-5 (srbf14), 4e-6 (others). float16 rounds once, for N values of
+    // mixed sign per direction; measured 4e-4.
     {"gather", 2e-5, 2e-3},
-    // A device's image filter may keep 8 bits of a weight, along each of three axes, between neighbours as far apart as
-    // random ones are; PoCL, which filters in float, measured 1e-6. Halves add a tenth of that.
+    // A device's image filter may use 8-bit weights along each of three axes, and random neighbours differ a lot. PoCL,
+    // which filters in float, measured 1e-6. float16 adds 10 % of that.
     {"gather-filter", 2e-2, 2e-2},
-    // As gather, over the share of weight that is seen, 1/64 at least.
+    // As gather, divided by the share of visible weight, at least 1/64.
     {"gather-visible", 1e-3, 2e-2},
-    // float32 light angles and distances; a shadow filter weighs texels by coordinates good to 1e-6 of its side.
+    // float32 light angles and distances; shadow filter weights use coordinates accurate to 1e-6 of the map's side.
     {"shade", 5e-6},
 };
 
-/// The tolerance of a stage in the table, for volumes of numbers stored as `storage`. Any other stage is allowed nothing.
+/// Returns a stage's tolerance for volumes stored as `storage`; 0 for stages without an entry.
 constexpr double tolerance(std::string_view stage, Storage storage = Storage::float32) {
   const auto* found = std::ranges::find(kTolerances, stage, &Tolerance::stage);
   if (found == std::end(kTolerances)) return 0;

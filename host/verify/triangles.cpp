@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What triangles block, reflect and hide: kernels against the CPU references on a soup of triangles, of all sizes, textured and with
-// holes.
+// Blockers, reflectors and visibility: kernels against CPU references on random triangles of all sizes, textured and
+// masked.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,15 +21,15 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kGrid = 9;  // no multiple of anything
+constexpr int kGrid = 9;  // no multiple of a work-group
 const ClpvGrid kCells = {{-2.5f, 0.5f, 1.0f}, 0.5f, kGrid, {}};
 
-/// "x,y,z" of the sample that a number belongs to, of n samples along each axis.
+/// Returns "x,y,z" of the sample that contains a number, for n samples along each axis.
 std::string sample_of(std::size_t number, std::size_t n) {
   return fmt::format("{},{},{}", number % n, number / n % n, number / n / n % n);
 }
 
-/// The default format and the others that the device has.
+/// The default format and all other formats that the device supports.
 std::vector<VolumeFormat> formats_of(Session& session, const VolumeShape& shape, const CheckScope& scope) {
   std::vector<VolumeFormat> formats = other_formats(session.device(), shape, scope.formats);
   formats.insert(formats.begin(), VolumeFormat{});
