@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv basis: what each basis is, how well it holds a clamped cosine, how it keeps energy.
+// clpv basis: properties of each basis: conditioning, clamped-cosine error and energy conservation.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -69,27 +69,26 @@ void run(const Options& options) {
 void add_basis(CLI::App& app, Shared&) {
   using namespace basis_command;
   CLI::App* command = app.add_subcommand(
-      "basis", "Tell of each basis: conditioning, error of its clamped cosine, energy after 8 and 24 steps");
+      "basis", "Report on each basis: conditioning, clamped-cosine error, energy after 8 and 24 steps");
   auto options = std::make_shared<basis_command::Options>();
-  CLI::Option* name = add(*command, "name", "NAME", options->name, "one basis; all, if not given");
+  CLI::Option* name = add(*command, "name", "NAME", options->name, "name of one basis (default: all)");
   add(*command, "--centres", "FILE", options->centres_file,
-      "an SRBF set of your own: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "
-      "name and lambda (a number, or one for each centre) may be missing")
+      "custom SRBF set: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "
+      "name and lambda (one number, or one per centre) are optional")
       ->excludes(name);
   command
       ->add_option("--lambda", options->lambda,
-                   "bandwidth of the SRBF kernels, between 0 and 1; a file's own replaces it")
+                   "bandwidth of the SRBF kernels, between 0 and 1; a lambda in --centres overrides it")
       ->capture_default_str();
   add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
   add_choice(*command, "--lobe", options->lobes.kind,
-             "clamped cosine: projected exactly, or along +z and rotated through a table");
-  command->add_option("--table-size", options->lobes.table_size, "entries of the table of rotated lobes")
+             "method of the clamped cosine: exact projection, or projection along +z and rotation by a table");
+  command->add_option("--table-size", options->lobes.table_size, "number of entries in the table of rotated lobes")
       ->capture_default_str();
   add_search_options(*command, options->search);
   CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
   add(*command, "--figures", "DIR", options->figures,
-      "draw the paper's figures 2, 3 and 6 into this folder instead: kernels, and lobes as spherical "
-      "plots")
+      "output folder for the paper's figures 2, 3 and 6 instead: spherical plots of kernels and lobes")
       ->excludes(json);
   command->callback([options] { run(*options); });
 }

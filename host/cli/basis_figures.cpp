@@ -26,10 +26,10 @@ constexpr double kFigure2Lambda = 0.4;
 const std::array<glm::dvec3, 7> kAxes{
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {-2, 1, -3}}};  // of any length
 
-/// Functions on the sphere, each by its values on a grid: rows from +z to -z, poles included, columns round z from +x.
+/// Functions on the sphere, sampled on a grid: rows from +z to -z including poles, columns around z from +x.
 class Surfaces {
  public:
-  static constexpr std::size_t kRows = 121, kColumns = 240;  // 1.5 degrees: what is finer is drawn as smooth
+  static constexpr std::size_t kRows = 121, kColumns = 240;  // 1.5 degrees: finer details appear smooth
 
   void add(const std::function<double(const glm::dvec3&)>& f) {
     for (std::size_t i = 0; i < kRows; ++i) {
@@ -53,7 +53,7 @@ nlohmann::json triple(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// The kernel that stands alone, and the eight of srbf8v2.
+/// The single kernel, and the eight kernels of srbf8v2.
 nlohmann::json add_kernels(Surfaces& surfaces, double lambda) {
   nlohmann::json rows = nlohmann::json::array();
   const auto add = [&](const glm::dvec3& centre, double bandwidth) {

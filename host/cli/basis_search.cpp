@@ -26,7 +26,7 @@ std::string name_of(const BasisSearchOptions& options) {
                                 : std::filesystem::path(options.output).stem().string();
 }
 
-/// As load_basis reads it.
+/// Writes the format that load_basis reads.
 nlohmann::json file_of(const Basis& basis) {
   nlohmann::json file{{"name", basis.name()}, {"centres", nlohmann::json::array()}};
   if (basis.lambda() != 0) {
@@ -44,7 +44,7 @@ nlohmann::json described(const Basis& basis, const BasisView& view, const LobeAi
   return description;
 }
 
-/// The found set, and those that it has to stand beside.
+/// The found set, and the named sets for comparison.
 nlohmann::json beside_others(const Basis& found, double lambda, const BasisView& view, const LobeAims& aims) {
   nlohmann::json bases = nlohmann::json::array({described(found, view, aims)});
   for (const char* name : kBeside) bases.push_back(described(*make_basis(name, lambda), view, aims));
@@ -56,34 +56,34 @@ nlohmann::json beside_others(const Basis& found, double lambda, const BasisView&
 void add_search_options(CLI::App& command, BasisSearchOptions& options) {
   CLI::Option* search =
       add(command, "--search", "N", options.centres,
-          "look for N centres that hold clamped cosines best, by a descent from each of many starts; the "
-          "same seed gives the same set")
+          "number of centres to search for: minimises the clamped-cosine error by descent from many "
+          "starts; the same seed gives the same set")
           ->excludes("name")
           ->excludes("--centres");
-  command.add_option("--seed", options.search.seed, "of a search's random starts")
+  command.add_option("--seed", options.search.seed, "seed of the random starts of a search")
       ->needs(search)
       ->capture_default_str();
-  command.add_option("--starts", options.search.starts, "of a search")
+  command.add_option("--starts", options.search.starts, "number of starts of a search")
       ->needs(search)
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   CLI::Option* over =
       add_choice(command, "--over", options.over,
-                 "cosines that a search is for: along all directions alike, or along the six axes");
+                 "directions of the clamped cosines: all directions equally, or the six axes");
   over->needs(search);
   add(command, "--weights", "FILE", options.weights,
-      "or along directions of their own weights, JSON as of clpv render --dump-normals")
+      "directions with weights, as JSON from clpv render --dump-normals")
       ->needs(search)
       ->excludes(over);
   add_choice(command, "--lambdas", options.search.lambdas,
-             "what a search finds of lambda: none, one for all centres, or one for each")
+             "lambdas that a search optimises: none, one for all centres, or one per centre")
       ->needs(search);
   command
       .add_option("--most-condition", options.search.most_condition,
-                  "largest condition number of the Gram matrix that a search may end with")
+                  "maximum condition number of the Gram matrix of a search result")
       ->needs(search)
       ->capture_default_str();
-  add(command, "-o,--output", "FILE.json", options.output, "the set found, for --centres")->needs(search);
+  add(command, "-o,--output", "FILE.json", options.output, "output file of the found set")->needs(search);
 }
 
 void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv bench: how long stages take on this device, in all their variants.
+// clpv bench: stage times on this device, in all variants.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ std::regex parse_filter(const std::string& text) {
   }
 }
 
-/// "sponza, camera curtains": what was timed.
+/// Name of the timed scene and camera: "sponza, camera curtains".
 std::string subject_of(const bench::SuiteOptions& options) {
   const auto scene = bench::scene_of(options);
   return fmt::format("{}, camera {}", scene->name, scene->camera(options.camera).name);
@@ -64,7 +64,7 @@ std::string as_text(const Options& options, const bench::Suite& suite, const Ses
          (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
 }
 
-/// An earlier run's report, read before the work. Null where none is asked for.
+/// Reads the report of an earlier run before the benchmark starts. Null if not requested.
 nlohmann::json earlier_run(const Options& options) {
   if (options.compare.empty()) return nullptr;
   if (options.format != "table" && options.out.empty()) {
@@ -77,7 +77,7 @@ nlohmann::json earlier_run(const Options& options) {
   return report;
 }
 
-/// Finds out before the work whether charts can be drawn. None where none are asked for.
+/// Checks before the benchmark that charts can be drawn. Empty if not requested.
 std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   if (options.plot.empty()) return nullptr;
   auto drawing = std::make_unique<const Drawing>("bench", "--plot");
@@ -86,7 +86,7 @@ std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   return drawing;
 }
 
-/// The scene that is given, or else the suite's own.
+/// Returns the given scene, or the suite's default scene.
 void take_scene(Options& options, const bench::Suite& suite) {
   if (options.scene.empty() && !options.model.empty())
     throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
@@ -102,7 +102,7 @@ void take_scene(Options& options, const bench::Suite& suite) {
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
 }
 
-/// Tells of the rows that failed. Exit code 5 where an output was wrong.
+/// Reports failed rows. Exit code 5 if an output was wrong.
 void judge(const std::vector<bench::Row>& rows) {
   const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
   if (wrong == 0) return;
@@ -128,7 +128,7 @@ void run(Options options, const Shared& shared) {
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   take_scene(options, suite);
-  // Of programs out of a cache no build can be told.
+  // Cached programs have no build time.
   Session session(choose_device(shared.device),
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
@@ -153,35 +153,36 @@ void run(Options options, const Shared& shared) {
 void add_bench(CLI::App& app, Shared& shared) {
   using namespace bench_command;
   CLI::App* command =
-      app.add_subcommand("bench", "Time stages and frames on this device, and check what was timed");
+      app.add_subcommand("bench", "Time stages and frames on this device, and check their outputs");
   auto options = std::make_shared<bench_command::Options>();
   std::string suites = "what to time:";
   for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
   command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
   add(*command, "--scene", "SCENE", options->scene,
-      "scene file or model; default: a hall made on the spot, and for table1 scenes/atrium.json");
-  add(*command, "--model", "PATH", options->model, "replaces the scene file's model");
+      "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
+  add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");
   add(*command, "--camera", "NAME", options->bench.suite.camera,
-      "camera by name; default: the scene's first");
+      "name of the camera (default: the scene's first)");
   add(*command, "--basis", "NAME", options->bench.suite.bases,
-      "bases, between commas; table1 adds them to its own")
+      "comma-separated bases; table1 adds them to its own")
       ->delimiter(',');
   add(*command, "--filter", "REGEX", options->filter,
-      "only rows in whose name this regular expression is found");
-  command->add_option("--repetitions", options->bench.repetitions, "how often each row is timed")
+      "regular expression for the names of rows to run (default: all)");
+  command->add_option("--repetitions", options->bench.repetitions, "number of timed runs per row")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMaxRepetitions));
   command
       ->add_option("--format", options->format,
-                   "table|json|csv, or github-action: name, unit and value of each row, smaller is better")
+                   "format of the output: table|json|csv, or github-action: name, unit and value of each row, smaller "
+                   "is better")
       ->capture_default_str()
       ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
   add(*command, "--log", "FILE.jsonl", options->log,
-      "rows as they begin and end, a line of JSON each: what a crash, or a kernel that hangs, leaves");
-  add(*command, "-o,--out", "FILE", options->out, "file to write in place of stdout");
+      "log of row starts and ends, one JSON line each; shows the row of a crash or a hanging kernel");
+  add(*command, "-o,--out", "FILE", options->out, "output file (default: stdout)");
   add(*command, "--compare", "OLD.json", options->compare,
-      "JSON of an earlier run: prints what changed, and by what spread");
-  add(*command, "--plot", "DIR", options->plot, "charts of the rows as SVG and PNG, by matplotlib");
+      "JSON of an earlier run; prints the changes and their spread");
+  add(*command, "--plot", "DIR", options->plot, "output folder for SVG and PNG charts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

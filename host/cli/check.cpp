@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv check: every stage's kernels against their double-precision CPU references, on a device of the user's choice.
+// clpv check: compares every stage's kernels with double-precision CPU references on the chosen device.
 #include "verify/check.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ auto failures(const reference::CheckResults& results) {
   return std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
 }
 
-/// The result nearest to its tolerance, or beyond it.
+/// Result with the largest error relative to its tolerance.
 const reference::CheckResult& worst_of(const reference::CheckResults& results) {
   const auto share = [](const reference::CheckResult& r) {
     return r.passed() ? r.worst / std::max(r.allowed, 1e-300) : 1e300;
@@ -105,14 +105,14 @@ void run(const Options& options, const Shared& shared) {
 void add_check(CLI::App& app, Shared& shared) {
   using namespace check_command;
   CLI::App* command = app.add_subcommand(
-      "check", "Hold every stage's kernels against double-precision CPU references on this device");
+      "check", "Compare every stage's kernels with double-precision CPU references on this device");
   auto options = std::make_shared<check_command::Options>();
-  add_choices(*command, "--stage", options->only, "only these stages; default: all");
+  add_choices(*command, "--stage", options->only, "stages to check (default: all)");
   command->add_flag("--thorough", options->thorough,
-                    "every basis with every choice of lobes, tables, transport and state; takes minutes");
+                    "all combinations of bases, lobes, tables, transports and states; takes minutes");
   command->add_flag("--json", options->json, "JSON on stdout");
   add(*command, "--junit", "FILE.xml", options->junit,
-      "every comparison as a test case, for what shows test results");
+      "output file in JUnit format, one test case per comparison");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

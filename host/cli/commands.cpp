@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMostEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
 
-/// Rank 0 logs as asked; the others only what goes wrong, unless asked for more.
+/// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.
 void set_log(const Shared& shared) {
   set_log_level(shared.quiet, shared.verbosity);
   const std::optional<LauncherRank> started = launcher_rank();
@@ -33,7 +33,7 @@ void set_log(const Shared& shared) {
   set_progress_style(started->rank == 0 ? ProgressStyle::lines : ProgressStyle::none);
 }
 
-/// Commands that ranks do together; each of them would do all of any other one.
+/// Commands that distribute work over ranks; each rank would repeat all work of any other command.
 void reject_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
   for (CLI::App* command : app.get_subcommands({})) {
     const std::string name = command->get_name();
@@ -48,7 +48,7 @@ void reject_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
   }
 }
 
-/// Levenshtein's distance: letters put in, left out or replaced.
+/// Levenshtein distance: number of inserted, deleted and replaced letters.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -64,7 +64,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// Throws Error(usage) with the nearest command, where there was a word for one that is none.
+/// Throws Error(usage) that suggests the closest command for an unknown one.
 void reject_misspelt_command(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining();
   const auto word = std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
@@ -80,18 +80,18 @@ void reject_misspelt_command(const CLI::App& app) {
   throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));
 }
 
-/// Of a full disk, say.
+/// Reports write errors of stdout, such as a full disk.
 void flush_data() {
   if (std::fflush(stdout) != 0 || !std::cout.flush())
     throw Error(ExitCode::run_time, "stdout: cannot be written: {}", std::strerror(errno));
 }
 
-/// "rank 3 on node7: " where there are others.
+/// Returns a message prefix like "rank 3 on node7: " if there are several ranks.
 std::string who(const Shared& shared) {
   return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
 }
 
-/// Says what failed, and ends the other ranks.
+/// Logs the error and aborts the other ranks.
 int ended(const Shared& shared, ExitCode code, const char* words) {
   std::cerr << "clpv: " << who(shared) << words << std::endl;
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
@@ -123,7 +123,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   add(app, "--device", "DEVICE", shared.device,
       "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)");
   app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
-  app.add_flag("-v,--verbose", shared.verbosity, "tell more; twice: still more");
+  app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more");
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
@@ -132,7 +132,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"
-      "4 no device, or one that lacks what was asked; 5 validation failed. stdout is data, stderr is talk.");
+      "4 no device, or one that lacks what was asked; 5 validation failed. Data goes to stdout, logs to stderr.");
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv compare: how far an image is from its reference.
+// clpv compare: error metrics of an image against its reference.
 #include "image/compare.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ void write_difference(const std::string& output, const Image& difference) {
   if (!is_png(output)) {
     write_exr(output, difference);
   } else if (difference.encoding == Encoding::srgb) {
-    write_png(output, difference);  // of display values: the paper's, byte for byte
+    write_png(output, difference);  // of display values, byte-identical to the paper's method
   } else {
     write_png(output, display_image(difference, 0, ToneMap::none));
   }
@@ -54,16 +54,16 @@ void run(const CompareOptions& options) {
 
 void add_compare(CLI::App& app, Shared&) {
   CLI::App* command =
-      app.add_subcommand("compare", "How far image A is from its reference B: JSON on stdout");
+      app.add_subcommand("compare", "Compare image A with its reference B; metrics as JSON on stdout");
   auto options = std::make_shared<CompareOptions>();
-  command->add_option("A", options->a, "the image: .exr, .png or .hdr")->required();
-  command->add_option("B", options->b, "its reference, of the same size")->required();
+  command->add_option("A", options->a, "image: .exr, .png or .hdr")->required();
+  command->add_option("B", options->b, "reference image of the same size")->required();
   add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
   add(*command, "--layer", "NAME", options->layer,
-      "compare this layer of both EXR files (default: the unnamed one)");
+      "layer to compare in both EXR files (default: the unnamed one)");
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
       "linear in EXR\n"

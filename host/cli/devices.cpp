@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv devices: every OpenCL device, and what it can do.
+// clpv devices: lists all OpenCL devices and their capabilities.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -44,7 +44,7 @@ void print(const DeviceList& list) {
 
 void add_devices(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
-      "devices", "List every OpenCL device and what it can do; with --device, the one it chooses");
+      "devices", "List all OpenCL devices and their capabilities; with --device, the selected one");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "JSON on stdout");
   command->callback([json, &shared] {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of the package clpv_draw: beside the installed program, or where it was built.
+/// Folder of the package clpv_draw: next to the installed program, or in the source tree.
 fs::path package_folder() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
@@ -49,7 +49,7 @@ void Drawing::draw(const fs::path& output) const {
   run({folder_.string(), output.string()});
 }
 
-/// `python3 -m clpv_draw KIND arguments...`. -B: nothing is written beside the package.
+/// `python3 -m clpv_draw KIND arguments...`. -B: no bytecode is written to the package.
 void Drawing::run(const std::vector<std::string>& arguments) const {
   const char* path = std::getenv("PYTHONPATH");
   std::vector<std::string> words{

@@ -18,7 +18,7 @@
 namespace clpv {
 namespace {
 
-/// Nothing where the text is not three numbers between commas.
+/// Empty if the text is not three comma-separated numbers.
 template <typename T>
 std::optional<glm::vec<3, T>> parse_three(std::string_view text) {
   glm::vec<3, T> values;
@@ -107,7 +107,7 @@ void add_frame_options(CLI::App& command, OptionValues& given) {
     if (command.get_option_no_throw("--" + info.name) != nullptr) continue;
     const auto take = [&given, name = info.name](const std::string& text) {
       RenderOptions probe;
-      set_given(probe, name, text);  // a bad value is told before any scene is read
+      set_given(probe, name, text);  // rejects bad values before any scene is read
       given[name] = text;
     };
     add_text(command, info, take)->group("Frame");
@@ -155,23 +155,23 @@ reference::PathTracerOptions TracingOptions::resolved() const {
 void add_tracing_options(CLI::App& command, TracingOptions& options) {
   constexpr const char* kGroup = "Path tracing";
   add(command, "--bounces", "N|all", options.bounces,
-      "surfaces between a light and the surface seen: 1, 2 and so on, or all")
+      "maximum number of reflections between light and visible surface: 1, 2, ... or all")
       ->group(kGroup);
-  auto* samples = add(command, "--spp", "N", options.values.samples, "paths a pixel")
+  auto* samples = add(command, "--spp", "N", options.values.samples, "paths per pixel")
                       ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples))
                       ->group(kGroup);
   command
       .add_option(
           "--noise", options.values.noise,
-          "stops once the standard error of the indirect light is this share of it (root mean square)")
+          "relative standard error of the indirect light at which tracing stops (root mean square)")
       ->check(CLI::PositiveNumber)
       ->excludes(samples)
       ->capture_default_str()
       ->group(kGroup);
-  command.add_option("--seed", options.values.seed, "the same seed gives the same bytes")
+  command.add_option("--seed", options.values.seed, "random seed; the same seed gives identical files")
       ->capture_default_str()
       ->group(kGroup);
-  add(command, "--threads", "N", options.values.threads, "that trace (default: one a processor)")
+  add(command, "--threads", "N", options.values.threads, "number of tracing threads (default: one per processor)")
       ->check(CLI::Range(1, 1024))
       ->group(kGroup);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv pathtrace: the path-traced truth that `render`'s images are held against.
+// clpv pathtrace: path-traced ground truth for images of `render`.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -31,7 +31,7 @@ struct Options {
   TracingOptions tracing;
 };
 
-/// Everything that is wrong with the outputs, before any time is spent on them.
+/// Checks the output options before any tracing.
 void check_outputs(const Options& options) {
   require_extension("--output", options.output, {".exr"});
   check_writable(options.output);
@@ -109,20 +109,20 @@ void run(const Options& options, Shared& shared) {
 
 void add_options(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scene, "scene file (.json), or a bare .gltf or .glb")->required();
-  add(command, "-o,--output", "FILE.exr", options.output, "linear EXR; several views become its layers")
+  add(command, "-o,--output", "FILE.exr", options.output, "linear EXR; one layer per view if several")
       ->required();
-  add(command, "--model", "PATH", options.model, "replaces the scene file's model");
-  add(command, "--camera", "NAME", options.camera, "by name (default: the scene's first)");
-  add_seconds(command, "--time", options.time, "the instant shown of a scene that moves [s]");
-  add_choices(command, "--view", options.views, "what to write; several: layers")->default_str("full");
-  command.add_option("--width", options.width, "[pixels]")
+  add(command, "--model", "PATH", options.model, "model file instead of the scene file's");
+  add(command, "--camera", "NAME", options.camera, "name of the camera (default: the scene's first)");
+  add_seconds(command, "--time", options.time, "time of the frame [s]");
+  add_choices(command, "--view", options.views, "views to write; several become layers")->default_str("full");
+  command.add_option("--width", options.width, "image width [pixels]")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
-  command.add_option("--height", options.height, "[pixels]")
+  command.add_option("--height", options.height, "image height [pixels]")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
-  add(command, "--stats", "FILE.json", options.stats, "paths, noise, rays and seconds as JSON");
+  add(command, "--stats", "FILE.json", options.stats, "output file for paths, noise, rays and time [s], as JSON");
 }
 
 }  // namespace pathtrace_command
@@ -133,13 +133,11 @@ void add_pathtrace(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<pathtrace_command::Options>();
   add_options(*command, *options);
   command->footer(
-      "Diffuse surfaces, hard shadows, one ray a pixel through its centre: `clpv compare` holds a rendered "
-      "image\n"
-      "against it pixel by pixel. Emissive surfaces light what they face. A background pixel is 0 with "
+      "Diffuse surfaces, hard shadows, one ray per pixel through its centre. `clpv compare` compares a rendered\n"
+      "image with the result pixel by pixel. Emissive surfaces are light sources. Background pixels are 0 with "
       "alpha 0.\n"
-      "Time grows with the number of pixels: 240 x 135 pixels serve to measure, more to look "
-      "at.\n"
-      "mpirun -n N clpv pathtrace ... traces by N ranks, with the same bytes (docs/scale.md).");
+      "Time is proportional to the number of pixels: 240 x 135 pixels suffice for measurements.\n"
+      "mpirun -n N clpv pathtrace ... traces with N ranks; the files are identical (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

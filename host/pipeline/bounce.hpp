@@ -24,11 +24,11 @@ class Bouncer {
   /// incident flux.
   Bouncer(Session& session, const SweepOptions& options);
 
-  /// Sets the reflectors of a cascade (ReflectorVoxelizer::reflectors), which must outlive this object. In the
-  /// coarsest cascade the series starts again: S = R.
+  /// Sets the reflectors of a cascade (ReflectorVoxelizer::reflectors), which must outlive this object. For the
+  /// coarsest cascade it also restarts the series: S = R.
   void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
-  /// Adds S to `sources`, which holds zeros: in the coarsest cascade each face emits what it returns of 1 W.
+  /// Adds S to `sources`, which holds zeros. In the coarsest cascade each face emits the light it reflects of 1 W.
   void inject_unit(const Buffer& sources);
   /// Adds a term to the series, S = R (1 + E). `swept`: a sweep of the sources of inject_unit().
   void extend_series(const Buffer& swept);
@@ -38,8 +38,8 @@ class Bouncer {
   /// Adds R D_1 + S D_2 to `sources` in the coarsest cascade.
   void inject_series(const Buffer& first_swept, const Buffer& second_swept, const Buffer& sources);
 
-  /// Incident flux on the faces of a cascade with all bounces in it, which sweep_collect.cl writes; null for the
-  /// finest cascade.
+  /// Incident flux on the faces of a cascade with all bounces, written by sweep_collect.cl; null for the finest
+  /// cascade.
   const Buffer* incident(std::size_t cascade) const {
     return cascade == 0 ? nullptr : &incident_[cascade - 1];
   }
@@ -53,7 +53,7 @@ class Bouncer {
   const Volume* series_ = nullptr;         ///< S so far: R of the coarsest cascade, or series_volume_
   std::unique_ptr<Volume> series_volume_;  ///< null with two bounces
   std::vector<Buffer>
-      incident_;  ///< flux on each face, of all cascades but the finest; empty with two bounces
+      incident_;  ///< flux on each face of all cascades except the finest; empty with two bounces
   Kernel inject_reflected_;
   std::optional<Kernel> inject_unit_, extend_series_, inject_series_, inject_interpolated_;
 };

@@ -10,7 +10,7 @@ namespace clpv {
 namespace {
 
 // The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full light, and the next two
-// fade out. 24 cells leave room for camera motion.
+// fade out. 24 cells leave room for moving parts.
 constexpr double kRoom = 32.0 / 24;
 constexpr double kFarTooLarge = 4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
 

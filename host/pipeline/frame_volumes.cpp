@@ -11,7 +11,7 @@ bool sweeps(const RenderOptions& options) {
   return options.transport == TransportKind::sweep;
 }
 
-/// Rejects options that require a transport with faces.
+/// Rejects options that a transport without faces does not support.
 void require_faces(const RenderOptions& options) {
   if (has_faces(options.transport)) return;
   if (options.state != State::coefficients) {

@@ -15,7 +15,7 @@
 
 namespace clpv {
 
-/// Names of the look-up table that a kernel uses, if any.
+/// Contents of a look-up table: lobes or basis functions.
 enum class TableUse { lobes, functions };
 
 /// An optional table that is a kernel's last argument, or the second to last of two. Kernels access it by the macros

@@ -26,7 +26,7 @@ class RunTimeLobes {
   std::string macros() const { return table_.macros() + functions_.macros(kFunctionsTable); }
   const std::string& text() const { return text_; }
   void add_literals(Literals& literals) const;
-  /// Returns true if the kernel also evaluates basis functions, when light is sampled at face centres. Integrals over
+  /// Returns true if the kernel also evaluates basis functions, to sample light at face centres. Integrals over
   /// faces remain constants.
   bool evaluates() const { return evaluates_; }
   /// Sets the last arguments of a step.

@@ -114,8 +114,8 @@ ClpvRegion VoxelMasks::whole(ClpvRegion place) const {
   return place;
 }
 
-/// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if only one
-/// cascade is stored, or if more than one time step passed.
+/// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if a grid moved
+/// and only one cascade is stored, or if more than one time step passed.
 ClpvRegion VoxelMasks::stale(const State& state, ClpvRegion place) const {
   if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
   for (int a = 0; a < 3; ++a) {

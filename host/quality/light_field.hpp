@@ -20,7 +20,7 @@ class LightField {
   /// update the copy. Uses 8 bytes of host memory per volume coefficient.
   LightField(Session& session, const Frame& frame);
 
-  /// Returns indirect irradiance [W/m^2] (red, green, blue) on a surface at `position` [m] with unit `normal`; 0 outside all
+  /// Indirect irradiance [W/m^2] (red, green, blue) on a surface at `position` [m] with unit `normal`; 0 outside all
   /// cascades.
   glm::dvec3 irradiance(const glm::dvec3& position, const glm::dvec3& normal) const;
 

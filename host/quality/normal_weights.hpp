@@ -12,7 +12,7 @@
 
 namespace clpv {
 
-/// Collects the normals of all texels that injection reads for this camera, over all cascades, in patches of the sphere.
+/// Groups the normals of all texels that injection reads for this camera, in all cascades, by patches of the sphere.
 /// Returns each patch's mean normal, weighted by its share of the flux. Empty if no surface is lit.
 std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const Camera& camera,
                                               const RenderOptions& options);

@@ -14,8 +14,8 @@
 namespace clpv {
 
 /// Returns, for each pixel of `earlier`, whether `later` sees the same surface at the same position.
-/// Its point is projected to a pixel of `later`, which must show a similar normal, the same plane and a point within the
-/// pixel spacing. Moved, hidden and out-of-view points and edges do not match.
+/// Its point is projected to a pixel of `later`, which must show a similar normal, the same plane and a point
+/// within the pixel spacing. Moved, hidden and out-of-view points and edges do not match.
 std::vector<bool> still_seen(const SurfaceImage& earlier, const SurfaceImage& later);
 
 /// Change of light at points.
@@ -43,8 +43,8 @@ struct StabilityStep {
   std::optional<double> noise;  ///< mean change between two path-traced images, if requested
 };
 
-/// Measures consecutive frames. Gathers the light of each frame at the points visible in the previous frame, which avoids
-/// interpolation between pixels.
+/// Measures consecutive frames. Gathers the light of each frame at the points visible in the previous frame, which
+/// avoids interpolation between pixels.
 class Stability {
  public:
   /// `traced`: paths per pixel of the path-traced images; 0: none.

@@ -61,8 +61,8 @@ void check_constants(Session& session, const Basis& basis, const LobeOptions& lo
     const auto add = [&](State state, bool blockers) {
       results.push_back(check_one(session, basis, transport, {.grid = kGrid, .state = state}, blockers));
     };
-    // The first step never blocks, so a run with blockers tests both of its kernels. Fluxes differ: their first step is a
-    // separate kernel.
+    // The first step never blocks, so a run with blockers tests both of its kernels. Fluxes differ: their first step is
+    // a separate kernel.
     if (full) add(State::coefficients, true);
     add(State::fluxes, true);
     if (full) add(State::fluxes, false);

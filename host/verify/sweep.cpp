@@ -45,7 +45,7 @@ struct SweepCase {
   }
 };
 
-/// A sky that is dark below, with random colours above.
+/// A sky that is dark below, with varied colours above.
 Sky uneven_sky(float scale) {
   Sky sky;
   sky.width = 5, sky.height = 4, sky.rotation = 0.7;
