@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv propagate: the method without a scene. Sources and blockers in an empty grid, energy step by step.
+// clpv propagate: propagation without a scene: sources and blockers in an empty grid, energy of each step.
 #include "pipeline/propagate.hpp"
 
 #include <fmt/format.h>
@@ -26,8 +26,7 @@ struct Source {
   glm::dvec3 flux{1};
 };
 
-/// What is propagated where neither a preset nor the command line says otherwise: the published scheme, in numbers in
-/// full.
+/// Default options of a propagation: the published scheme, with full-precision numbers.
 RenderOptions plain_options() {
   RenderOptions options;
   options.basis = "sh2";
@@ -36,7 +35,7 @@ RenderOptions plain_options() {
   return options;
 }
 
-/// The options of a frame that matter to a propagation.
+/// Frame options that affect a propagation.
 const std::vector<std::string>& taken_options() {
   static const std::vector<std::string> names{
       "basis", "centres",   "lambda", "lobe",   "lobe-time", "evaluate",   "table-size",
@@ -52,7 +51,7 @@ struct Options {
   std::string npy, vti;
 };
 
-/// Coefficients of a source of 1 W: a clamped cosine about the normal, or the same in all directions.
+/// Coefficients of a source of 1 W: a clamped cosine about the normal, or isotropic.
 std::vector<double> lobe(const Basis& basis, const Source& source) {
   std::vector<double> c = source.normal ? basis.clamped_cosine(*source.normal) : basis.constant();
   const double scale = source.normal ? 1.0 / glm::pi<double>() : 0.25 / glm::pi<double>();
@@ -105,7 +104,7 @@ std::vector<float> to_float(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
 
-/// What travels, as coefficients in double, whichever state the device keeps.
+/// Propagating light as coefficients in double precision, for any state of the device.
 reference::Volume travelling_coefficients(const Basis& basis, const Transport& transport,
                                           const std::vector<float>& values, int grid, int carried) {
   reference::Volume result(grid, basis.size());
@@ -147,7 +146,7 @@ void run(const Options& options, const Shared& shared) {
   }
   const RenderOptions& frame = options.frame;
   const auto basis = make_basis(frame);
-  // What blocks here does so in all directions: as coefficients, whatever a frame's blockers are.
+  // Blockers block all directions here; stored as coefficients for any blocker option of the frame.
   const Transport transport = make_transport(frame.transport, *basis, frame.lobes(), Blocking::one_sided);
   const VolumeFormat format = frame.format();
   const reference::Volume light = injected_light(*basis, options);
@@ -205,7 +204,7 @@ void add_propagate(CLI::App& app, Shared& shared) {
             set_given(options->frame, "preset", name);
             options->preset_given = true;
           },
-          "basis, lambda, transport and state of that preset of clpv render, where not given themselves")
+          "preset of clpv render for basis, lambda, transport and state; explicit options override it")
       ->check(CLI::IsMember(names_of<PresetName>()));
   add_some_frame_options(*command, options->frame, taken_options());  // after the preset, which they override
   command->get_option("--centres")->excludes(command->get_option("--basis"));
@@ -221,7 +220,7 @@ void add_propagate(CLI::App& app, Shared& shared) {
             for (const std::string& text : all)
               options->sources.push_back({parse_ivec3(text, "--at"), std::nullopt, glm::dvec3(1)});
           },
-          "a source in cell i,j,k; repeatable, what follows belongs to it")
+          "cell i,j,k of a source; repeatable, the source options that follow apply to it")
       ->trigger_on_parse()
       ->take_all()
       ->type_name("i,j,k");
@@ -234,20 +233,20 @@ void add_propagate(CLI::App& app, Shared& shared) {
               throw Error(ExitCode::usage, "--normal {}: length 0; allowed: any other vector", text);
             last_source().normal = glm::normalize(n);
           },
-          "the source is a clamped cosine about x,y,z (no half-cell move)")
+          "axis x,y,z of the source's clamped cosine (no half-cell shift)")
       ->trigger_on_parse()
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
       ->type_name("x,y,z");
   command
       ->add_flag_callback(
           "--isotropic", [last_source] { last_source().normal.reset(); },
-          "the source is the same in all directions (default)")
+          "isotropic source (default)")
       ->trigger_on_parse();
   command
       ->add_option_function<std::string>(
           "--flux",
           [last_source](const std::string& text) { last_source().flux = parse_dvec3(text, "--flux"); },
-          "the source's flux r,g,b [W], default 1,1,1")
+          "flux r,g,b of the source [W] (default: 1,1,1)")
       ->trigger_on_parse()
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
       ->type_name("r,g,b");
@@ -257,13 +256,13 @@ void add_propagate(CLI::App& app, Shared& shared) {
           [options](const std::vector<std::string>& all) {
             for (const std::string& text : all) options->blocks.push_back(parse_box(text, "--block"));
           },
-          "full blocking at the geometry samples (cell corners) i0..i1, j0..j1, k0..k1, both ends included; "
-          "repeatable")
+          "box of geometry samples (cell corners) i0..i1, j0..j1, k0..k1 that block fully, both ends "
+          "included; repeatable")
       ->take_all()
       ->type_name("i0,j0,k0:i1,j1,k1");
   add(*command, "-o,--out", "FILE.npy", options->npy,
-      "accumulated light as .npy, float32, shape 3,N,z,y,x [W/sr]");
-  add(*command, "--vti", "FILE.vti", options->vti, "accumulated light for ParaView");
+      "output file for accumulated light: .npy, float32, shape 3,N,z,y,x [W/sr]");
+  add(*command, "--vti", "FILE.vti", options->vti, "output file for accumulated light, for ParaView");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

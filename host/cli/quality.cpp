@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// clpv quality: how far the frames of many variants are from the path-traced truth, and what they cost.
+// clpv quality: errors of many variants' frames against the path-traced ground truth, and their times.
 //
-//   scenes, --camera   ->  Subject: a scene, its cameras, the truth of each      quality_subjects.hpp, quality/cached_reference.hpp
+//   scenes, --camera   ->  Subject: a scene, its cameras, their ground truths    quality_subjects.hpp, quality/cached_reference.hpp
 //   --vary             ->  Variant: values of the options that vary             quality/quality.hpp
-//   subject x variant  ->  Group: the options of one frame, which shows every camera of the subject
-//   group x camera     ->  QualityCell: kept by an earlier run, or rendered, compared and kept      QualityStore
+//   subject x variant  ->  Group: the options of one frame, used for all cameras of the subject
+//   group x camera     ->  QualityCell: read from the cache, or rendered, compared and stored       QualityStore
 //   cells              ->  means of a variant; table, CSV and JSON               quality/quality.hpp
 //
 // Ranks take every N-th group, or every N-th cell where groups are fewer than ranks.
@@ -41,7 +41,7 @@ struct Options {
   OptionValues given;
 };
 
-/// All combinations: what --vary says; without a word about bases, transports or presets, which have both, all of them.
+/// All combinations of the values of --vary. Bases and transports vary over all values unless an option fixes them.
 std::vector<Variant> variants_of(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
@@ -62,7 +62,7 @@ std::vector<Variant> variants_of(const Options& options) {
   return combinations(varied);
 }
 
-/// Frames have as many bounces as their truth, unless --vary says how many.
+/// Frames use the number of bounces of the ground truth, unless --vary sets it.
 RenderOptions with(const Options& options, const Variant& variant, const Scene& scene) {
   OptionValues given = options.given;
   given["bounces"] = options.tracing.bounces;
@@ -76,7 +76,7 @@ struct Group {
   RenderOptions options;
 };
 
-/// By subject, then by variant. Throws for options that do not go together.
+/// Groups in order of subject, then variant. Throws for incompatible options.
 std::vector<Group> groups_of(const Options& options, const std::vector<Subject>& subjects,
                              const std::vector<Variant>& variants) {
   std::vector<Group> groups;
@@ -91,7 +91,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A cell of that group and camera; makes the group's frame where there is none yet.
+/// Measures the cell of that group and camera; creates the group's frame if it does not exist yet.
 QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
                      const Options& options) {
   const auto started = std::chrono::steady_clock::now();
@@ -106,7 +106,7 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
                    options.frames);
     cell.made_s = made_s;
   } catch (const Error& error) {
-    // A basis that a transport cannot carry, a grid that does not fit: a result like any other.
+    // An incompatible basis and transport, or an unsuitable grid, is a valid result.
     if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
     cell.rejected = error.what();
   }
@@ -116,7 +116,7 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
   return cell;
 }
 
-/// All cells, by group and camera, at rank 0; elsewhere those of this rank.
+/// Returns all cells by group and camera at rank 0, and this rank's cells at other ranks.
 std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::vector<Group>& groups,
                                      const QualityStore& store, const Options& options) {
   const bool whole = groups.size() >= static_cast<std::size_t>(ranks.size());
@@ -130,7 +130,7 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
   };
   std::size_t mine = 0;
   each([&](auto&...) { ++mine; });
-  std::map<std::size_t, nlohmann::json> cells;  // of this rank, by number
+  std::map<std::size_t, nlohmann::json> cells;  // cells of this rank, by number
   Progress progress("quality", mine);
   each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
     stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(), mine));
@@ -140,8 +140,8 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
     if (!options.fresh) cell = store.find(key);
     const bool kept = cell.has_value();
     if (!kept) cell = rendered(session, frame, group, camera, options);
-    cell->variant = group.variant;  // the same options may have been written otherwise
-    if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be a matter of the moment
+    cell->variant = group.variant;  // the spelling of the same options may differ
+    if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be temporary
     cells[number] = to_json(*cell);
     progress.advance();
   });
@@ -207,28 +207,26 @@ void add_options(CLI::App& command, Options& options) {
       ->required();
   add_subject_options(command, options.subjects);
   add(command, "--vary", "OPTION=a,b,c", options.varied,
-      "a render option and its values, repeatable: every combination is a variant. Bases and "
-      "transports vary\n"
-      "over all there are, unless --preset, --basis, --centres or --transport fixes them or "
-      "--vary names them");
+      "render option and its values, repeatable; each combination is a variant. Default: all bases\n"
+      "and transports, unless --preset, --basis, --centres, --transport or --vary sets them");
   add_choice(command, "--view", options.view, "what is compared");
   command
       .add_option("--frames", options.frames,
-                  "timed frames a cell, after one to warm up; their median counts")
+                  "timed frames per cell, after a warm-up frame; reports the medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
   add(command, "--cache", "DIR", options.cache,
-      "where references and finished cells are kept (default: the user's cache)");
-  command.add_flag("--fresh", options.fresh, "measures every cell anew; references are kept");
-  command.add_option("--format", options.format, "of stdout")
+      "folder for cached references and cells (default: the user's cache)");
+  command.add_flag("--fresh", options.fresh, "ignore cached cells and measure all again; cached references are still used");
+  command.add_option("--format", options.format, "format of stdout")
       ->check(CLI::IsMember({"table", "json", "csv"}))
       ->capture_default_str();
-  add(command, "--json", "FILE", options.json, "the same run as JSON");
-  add(command, "--csv", "FILE", options.csv, "the same run as CSV");
+  add(command, "--json", "FILE", options.json, "output file for the results as JSON");
+  add(command, "--csv", "FILE", options.csv, "output file for the results as CSV");
   add_frame_options(command, options.given);
   for (const auto& [name, size] : {std::pair{"width", "240"}, {"height", "135"}}) {
-    options.given[name] = size;  // references of a frame's usual size take hours
+    options.given[name] = size;  // references of a frame's default size take hours
     command.get_option(fmt::format("--{}", name))->default_str(size);
   }
 }
@@ -244,11 +242,11 @@ void add_quality(CLI::App& app, Shared& shared) {
   command->footer(
       "nrmse: root mean square error over the reference's root mean square, over the valid pixels; best "
       "gain: after the\n"
-      "single factor that makes it least; energy: sum over sum; perceptual: share of pixels that fail Yee's "
+      "single factor that minimises it; energy: ratio of sums; perceptual: share of pixels that fail Yee's "
       "test (1999).\n"
-      "A run that was stopped goes on where it was. Cells of another build, device or kernel text are "
-      "measured anew.\n"
-      "mpirun -n N clpv quality ... shares the cells among N ranks (docs/scale.md).");
+      "An interrupted run resumes from its cached cells. A new build, device or kernel source invalidates "
+      "them.\n"
+      "mpirun -n N clpv quality ... distributes the cells over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

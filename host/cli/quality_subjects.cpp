@@ -14,7 +14,7 @@
 namespace clpv {
 namespace {
 
-/// The path in "STEM=PATH" where STEM is that of the scene's file, else nothing.
+/// Returns the path in "STEM=PATH" if STEM is the stem of the scene file, else nothing.
 std::string path_in(const std::string& model, const std::string& scene) {
   const std::string stem = std::filesystem::path(scene).stem().string() + "=";
   return model.starts_with(stem) ? model.substr(stem.size()) : "";
@@ -32,10 +32,10 @@ std::filesystem::path model_for(const std::string& scene, const QualitySubjects&
 
 void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
   add(command, "--model", "[STEM=]PATH", subjects.models,
-      "replaces a scene file's model; several scenes: STEM=PATH, repeatable");
+      "model file instead of the scene file's; for several scenes: STEM=PATH, repeatable");
   add(command, "--camera", "NAME", subjects.cameras,
-      "by name, repeatable (default: all cameras of all scenes)");
-  add_seconds(command, "--time", subjects.time, "the instant of scenes that move [s]");
+      "name of a camera, repeatable (default: all cameras of all scenes)");
+  add_seconds(command, "--time", subjects.time, "time of the frame [s]");
 }
 
 std::filesystem::path quality_cache(const std::string& given) {
@@ -66,7 +66,7 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
   for (const std::string& name : given.cameras) {
     const auto has = [&](const Subject& s) { return std::ranges::count(s.cameras, name, &Camera::name) > 0; };
     if (std::ranges::none_of(subjects, has))
-      subjects[0].scene.camera(name);  // throws, with the names there are
+      subjects[0].scene.camera(name);  // throws an error that lists the camera names
   }
   return subjects;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv query: the light that volumes hold at points of a file, whether the camera sees them or not.
+// clpv query: indirect light of the volumes at points from a file, visible to the camera or not.
 #include <fmt/format.h>
 
 #include <iostream>
@@ -63,19 +63,18 @@ void run(const Options& options, const Shared& shared) {
 void add_query(CLI::App& app, Shared& shared) {
   using namespace query_command;
   CLI::App* command =
-      app.add_subcommand("query", "Indirect light at points of a file, seen by the camera or not");
+      app.add_subcommand("query", "Compute indirect light at points from a file, visible to the camera or not");
   auto options = std::make_shared<query_command::Options>();
   add(*command, "--points", "FILE.csv", options->points,
-      "lines of x,y,z,nx,ny,nz: where, in the scene's world [m], and the surface's normal")
+      "input points, lines of x,y,z,nx,ny,nz: world position [m] and surface normal")
       ->required();
-  add(*command, "-o,--output", "FILE.csv", options->output, "the table; default: stdout");
-  add_seconds(*command, "--time", options->time, "the instant of a scene that moves [s]");
+  add(*command, "-o,--output", "FILE.csv", options->output, "output table (default: stdout)");
+  add_seconds(*command, "--time", options->time, "time of the frame [s]");
   add_render_request(*command, options->request);
   command->footer(
-      "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], as "
-      "--view\nirradiance shows it. Cascades stand round the camera; beyond them it is 0. The surface need "
-      "not be "
-      "in the\nscene: a thing that moves through it, or mist, is lit the same way.");
+      "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], like "
+      "--view\nirradiance. Outside the cascades, which surround the camera, it is 0. The surface need "
+      "not be part of\nthe scene: it can be a moving object or mist.");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv render: a scene, lit by cascaded light propagation volumes, into an image.
+// clpv render: renders an image of a scene lit by cascaded light propagation volumes.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -34,14 +34,14 @@ struct Options {
   std::vector<Show> views = {Show::full};
 };
 
-/// FILE.png, or FILE.VIEW.png where there are several.
+/// Returns FILE.png, or FILE.VIEW.png if there are several views.
 fs::path png_path(const fs::path& output, Show view, bool several) {
   if (!several) return output;
   fs::path path = output;
   return path.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
 }
 
-/// Everything that can be known to be wrong before the device is touched.
+/// Checks the options before the device is opened.
 void check_outputs(const Options& options) {
   require_extension("--output", options.output, {".exr", ".png"});
   const std::string extension = fs::path(options.output).extension().string();
@@ -141,23 +141,23 @@ void add_render(CLI::App& app, Shared& shared) {
   add_render_request(*command, options->request);
   add_shown_options(*command, options->request);
   add(*command, "-o,--output", "FILE", options->output,
-      "image: .exr (linear) or .png (tone-mapped, sRGB); options in its metadata")
+      "output image: .exr (linear) or .png (tone-mapped, sRGB); its metadata holds the options")
       ->required();
-  add_seconds(*command, "--time", options->time, "the instant shown of a scene that moves [s]");
+  add_seconds(*command, "--time", options->time, "time of the frame [s]");
   add_choices(*command, "--view", options->views,
-              "what to write; several: layers of one EXR, or FILE.VIEW.png")
+              "views to write; several become layers of one EXR, or FILE.VIEW.png")
       ->default_str("full");
   add(*command, "--stats", "FILE.json", options->stats,
-      "stage times of frames whose light is made anew, options and energies, as JSON");
+      "output file for stage times of frames that recompute all lighting, options and energies, as JSON");
   command
       ->add_option("--frames", options->frames,
-                   "frames that --stats times, after one to warm up; their medians are told")
+                   "timed frames of --stats, after a warm-up frame; reports the medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add(*command, "--dump-volume", "DIR", options->dump,
-      "accumulated light of each cascade: cascadeN.npy (3,N,z,y,x) and .vti [W/sr]");
+      "output folder for accumulated light of each cascade: cascadeN.npy (3,N,z,y,x), .vti [W/sr]");
   add(*command, "--dump-normals", "FILE.json", options->normals,
-      "normals that the lights see, weighted by the flux they send on, for clpv basis --weights");
+      "output file for lit surface normals, weighted by reflected flux, for clpv basis --weights");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -13,13 +13,13 @@ namespace clpv {
 
 void add_render_request(CLI::App& command, RenderRequest& request) {
   command.add_option("scene", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
-  add(command, "--model", "PATH", request.model, "replaces the scene file's model");
-  add(command, "--camera", "NAME", request.camera, "camera by name; default: the scene's first");
+  add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
+  add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)");
   add_frame_options(command, request.frame);
 }
 
 void add_shown_options(CLI::App& command, RenderRequest& request) {
-  add(command, "--exposure", "EV", request.exposure, "brightness of a PNG [EV]; default: the scene's");
+  add(command, "--exposure", "EV", request.exposure, "exposure of a PNG [EV] (default: the scene's)");
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv report: one page with images beside the truth, errors against costs, and benchmarks; drawn by tools/clpv_draw.
+// clpv report: HTML page with images and ground truth, errors over times, and benchmarks; uses tools/clpv_draw.
 #include <fmt/format.h>
 
 #include <array>
@@ -36,7 +36,7 @@ struct Options {
   TracingOptions tracing;
 };
 
-/// The ways to render that a page shows, the one that matters last: with as many bounces as the truth, which others lack.
+/// Render variants of the page. The most important comes last; only it has as many bounces as the ground truth.
 struct Way {
   const char* title;
   OptionValues given;
@@ -53,7 +53,7 @@ std::string as_arguments(const OptionValues& given) {
   return text;
 }
 
-/// Documents as the page takes them, each with the file it is from, for messages.
+/// Input documents of the page, each with its file name for messages.
 nlohmann::json read_documents(const std::vector<std::string>& paths, const char* wanted,
                               const char* command) {
   nlohmann::json all = nlohmann::json::array();
@@ -74,7 +74,7 @@ OptionValues sized(const Options& options, OptionValues given) {
   return given;
 }
 
-/// Indirect light alone is dark at the exposure of a whole image: brings its mean luminance to a fifth of white [EV].
+/// Exposure [EV] that raises the mean luminance of indirect light, dark at the image's exposure, to 20 % of white.
 float exposure_of(const Image& truth) {
   double sum = 0, count = 0;
   for (int y = 0; y < truth.height; ++y) {
@@ -87,7 +87,7 @@ float exposure_of(const Image& truth) {
   return sum > 0 ? static_cast<float>(std::log2(kMean * count / sum)) : 0;
 }
 
-/// An image as the page takes it: as a display shows it, and its numbers.
+/// Image input of the page: display-encoded image and linear values.
 nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const Image& image,
                          float exposure) {
   write_png(drawing.folder() / (stem + ".png"), display_image(image, exposure, ToneMap::aces));
@@ -104,7 +104,7 @@ Image render_indirect(Session& session, const Subject& subject, const Camera& ca
   return view_image(frame, Show::indirect);
 }
 
-/// What one camera sees: the truth, and each way's image of it with its errors.
+/// View of one camera: the ground truth, and each variant's image with its errors.
 nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
                     const Drawing& drawing, const std::string& stem, Progress& progress) {
   const Camera& camera = subject.cameras[index];
@@ -167,20 +167,20 @@ void run(const Options& options, const Shared& shared) {
 void add_report(CLI::App& app, Shared& shared) {
   using namespace report_command;
   CLI::App* command = app.add_subcommand(
-      "report", "One HTML page: images beside the truth, errors against costs, benchmarks");
+      "report", "Write an HTML page: images and ground truth, errors over times, benchmarks");
   auto options = std::make_shared<report_command::Options>();
-  command->add_option("DIR", options->folder, "where index.html is written")->required();
+  command->add_option("DIR", options->folder, "output folder for index.html")->required();
   command->add_option("SCENE", options->subjects.scenes,
-                      "scene files whose views are shown beside path tracing");
+                      "scene files to compare with path tracing");
   add_subject_options(*command, options->subjects);
   add(*command, "--quality", "FILE.json", options->quality,
-      "figures made by clpv quality --json, repeatable");
+      "results of clpv quality --json, repeatable");
   add(*command, "--bench", "FILE.json", options->benchmarks,
-      "figures made by clpv bench table1 or layouts --format json, repeatable");
-  command->add_option("--width", options->width, "of views and references [pixels]")->capture_default_str();
-  command->add_option("--height", options->height, "of views and references [pixels]")->capture_default_str();
+      "results of clpv bench table1 or layouts --format json, repeatable");
+  command->add_option("--width", options->width, "width of views and references [pixels]")->capture_default_str();
+  command->add_option("--height", options->height, "height of views and references [pixels]")->capture_default_str();
   add_tracing_options(*command, options->tracing);
-  add(*command, "--cache", "DIR", options->cache, "where references are kept (default: the user's cache)");
+  add(*command, "--cache", "DIR", options->cache, "folder for cached references (default: the user's cache)");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

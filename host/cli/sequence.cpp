@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv sequence: a scene that moves, frame by frame into a folder, and into a film.
+// clpv sequence: renders an animated scene frame by frame into a folder, and optionally into a video.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -41,7 +41,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kMostFrames = 1000000;
 constexpr double kMostFramesPerSecond = 1000;
 constexpr const char* kKey = "made_of";          // metadata: the key of a frame
-constexpr std::chrono::seconds kTimesEvery{10};  // a run that is killed loses the times of so many seconds
+constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.json
 
 /// Frame i shows `from` + i / `frames_per_second` [s].
 struct Options {
@@ -64,7 +64,7 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Whether that file holds a frame of that key. What cannot be read does not, with a warning.
+/// Returns true if the file holds a frame with that key. Warns about unreadable files.
 bool holds_frame(const fs::path& file, const std::string& key) {
   std::error_code unknown;
   if (!fs::exists(file, unknown)) return false;
@@ -78,7 +78,7 @@ bool holds_frame(const fs::path& file, const std::string& key) {
   }
 }
 
-/// The scene, the device and all that is made for it stay from frame to frame.
+/// Renders the frames; scene, device and device resources persist between frames.
 class Sequence {
  public:
   Sequence(const Options& options, const Shared& shared, Ranks& ranks)
@@ -96,7 +96,7 @@ class Sequence {
     if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
   }
 
-  /// The frames of this rank that are not there yet; then, at rank 0, the times of all.
+  /// Renders the missing frames of this rank; then rank 0 writes the times of all.
   void render() {
     const Clock::time_point started = Clock::now();
     double mine = 0, counts[] = {0, 0};
@@ -123,7 +123,7 @@ class Sequence {
     renderer_.reset();
   }
 
-  /// stability.json of all frames, rendered once more: most of them may be of an earlier run. By one rank.
+  /// Writes stability.json. One rank renders all frames again, because an earlier run may have written most of them.
   void measure_stability() {
     Renderer renderer(device_, moving_.scene(), resolved_);
     Stability stability(renderer.session, renderer.frame, options_.traced);
@@ -139,7 +139,7 @@ class Sequence {
                stability_json(all, stability.steps()).dump(1) + "\n");
   }
 
-  /// All frames, from their files. By one rank.
+  /// Writes the video from the files of all frames, on one rank.
   void film(Video& video) {
     for_all_frames("film", "the film is not made", [&](int i) {
       const Image image = read_image(options_.file(i));
@@ -156,7 +156,7 @@ class Sequence {
         : session(device, ProgramCache::of_user()), frame(session, scene, options) {}
   };
 
-  /// `lost`: what an interrupted run lacks.
+  /// `lost`: the data missing after an interrupted run.
   template <typename Action>
   void for_all_frames(const char* title, const char* lost, const Action& action) {
     Progress progress(title, static_cast<std::uint64_t>(options_.frames));
@@ -179,7 +179,7 @@ class Sequence {
     return all;
   }
 
-  /// Names everything that a frame's pixels depend on: program, device, options, the scene's contents, and where they are now.
+  /// Cache key over all inputs of a frame's pixels: program, device, options, scene content and its current pose.
   std::string key(const nlohmann::json& described) const {
     const Scene& posed = moving_.scene();
     Fingerprint print;
@@ -190,7 +190,7 @@ class Sequence {
     return print.hex();
   }
 
-  /// Whether it was not there yet.
+  /// Returns true if the frame was missing.
   bool render(int number) {
     const double seconds = options_.instant(number);
     Clock::time_point started = Clock::now();
@@ -252,13 +252,13 @@ class Sequence {
   MovingScene moving_;
   RenderOptions resolved_;
   Device device_;
-  std::string still_;    ///< key of all that does not move
-  SequenceTimes times_;  ///< of this rank's frames; at rank 0 those of an earlier run too
+  std::string still_;    ///< key of all static content
+  SequenceTimes times_;  ///< of this rank's frames; at rank 0 also those of an earlier run
   Clock::time_point times_written_ = Clock::now();
-  std::optional<Renderer> renderer_;  ///< none before its first frame
+  std::optional<Renderer> renderer_;  ///< empty before the first frame
 };
 
-/// What can be known to be wrong before the scene is read.
+/// Checks the options before the scene is read.
 void check_outputs(const Options& options) {
   if (const double last = options.instant(options.frames - 1); last > bounds::kSeconds) {
     throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
@@ -294,36 +294,34 @@ void run(const Options& options, Shared& shared) {
 
 void add_sequence(CLI::App& app, Shared& shared) {
   using namespace sequence_command;
-  CLI::App* command = app.add_subcommand("sequence", "Render a scene that moves, frame by frame");
+  CLI::App* command = app.add_subcommand("sequence", "Render an animated scene frame by frame");
   auto options = std::make_shared<sequence_command::Options>();
   add(*command, "-o,--output", "DIR", options->output,
-      "folder of frame-0000.exr and so on, and of times.json; made where it is not there")
+      "output folder for frame-0000.exr, ... and times.json; created if missing")
       ->required();
-  add(*command, "--frames", "N", options->frames, "how many")->check(CLI::Range(1, kMostFrames))->required();
+  add(*command, "--frames", "N", options->frames, "number of frames")->check(CLI::Range(1, kMostFrames))->required();
   add_number(*command, "--fps", options->frames_per_second, "frames a second of the scene's time",
              {std::numeric_limits<double>::min(), kMostFramesPerSecond,
               fmt::format("more than 0, up to {}", kMostFramesPerSecond)})
       ->required()
       ->type_name("RATE");
-  add_seconds(*command, "--from", options->from, "the instant of the first frame [s]");
+  add_seconds(*command, "--from", options->from, "time of the first frame [s]");
   add_choice(*command, "--view", options->view, "what frames show");
   add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
-  add(*command, "--video", "FILE.mp4", options->video, "all frames as a film too, through ffmpeg");
+  add(*command, "--video", "FILE.mp4", options->video, "output video of all frames; needs ffmpeg");
   command->add_flag(
       "--stability", options->stability,
-      "stability.json: how light changes from frame to frame on surfaces that stay where they are");
+      "write stability.json: change of light between frames on static surfaces");
   add(*command, "--traced", "SPP", options->traced,
-      "with --stability: the same of path tracing by so many paths a pixel, its noise")
+      "paths per pixel for the path-traced noise of --stability")
       ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples));
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(
-      "Frame i shows FROM + i / RATE seconds, with the pixels of `clpv render --time` of that instant. A "
-      "frame "
-      "whose\nfile is there and was made of the same is not rendered again, so that a run that was ended "
-      "goes on "
-      "where it was.\ntimes.json has the times of every frame, and of each stage the median, 95th percentile "
-      "and worst [ms].\nmpirun -n N clpv sequence ... shares the frames among N ranks (docs/scale.md).");
+      "Frame i shows FROM + i / RATE seconds, identical to `clpv render --time` of that time.\n"
+      "An interrupted run resumes: frames whose file has the same inputs are not rendered again.\n"
+      "times.json has the times of all frames, and median, 95th percentile and maximum of each stage [ms].\n"
+      "mpirun -n N clpv sequence ... distributes the frames over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

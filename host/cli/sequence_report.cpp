@@ -21,7 +21,7 @@ json summary_of(std::vector<double> samples) {
   return {{"median_ms", figures.median}, {"p95_ms", figures.p95}, {"worst_ms", figures.max}};
 }
 
-/// Of each stage, cascade and light, in the order they first come in.
+/// Times of each stage, cascade and light, in order of first occurrence.
 json summary_of_stages(const std::vector<const json*>& frames) {
   std::vector<std::pair<json, std::vector<double>>> stages;
   for (const json* frame : frames) {
@@ -62,7 +62,7 @@ SequenceTimes read_times(const std::filesystem::path& file, int frames) {
   try {
     const json before = json::parse(*text);
     for (const json& frame : before.at("frames")) {
-      summary_of({&frame});  // throws where a field that is summed up is missing
+      summary_of({&frame});  // throws if a summarised field is missing
       frame.at("time").get<double>(), frame.at("first").get<bool>();
       if (const int number = frame.at("frame"); number < frames) times[number] = frame;
     }
