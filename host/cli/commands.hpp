@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sub-commands. Each adds itself to the program: its options, its help, and what it does when chosen.
+// The sub-commands. Each adds its options, help and callback to the program.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,14 +11,14 @@
 
 namespace clpv {
 
-/// What every command shares.
+/// State shared by all commands.
 struct Shared {
   std::string device;  ///< --device
   bool quiet = false;
   int verbosity = 0;
-  /// The ranks that a launcher started this process with; the first call starts MPI.
+  /// Returns the ranks of the launcher that started this process; the first call starts MPI.
   Ranks& ranks();
-  std::unique_ptr<Ranks> started;  ///< none before
+  std::unique_ptr<Ranks> started;  ///< null before the first call
 };
 
 struct Command {
@@ -26,20 +26,20 @@ struct Command {
   void (*add)(CLI::App& app, Shared& shared);
 };
 
-/// All of them, in the order of --help.
+/// All commands, in the order of --help.
 std::span<const Command> all_commands();
 
-/// The program's description, the options of all commands, and the commands.
+/// Adds the program's description, the shared options and the commands.
 void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands = all_commands());
 
-/// Parses, and runs the command. Throws CLI::Error, and Error(usage) that names the command meant by a misspelt one.
+/// Parses and runs the command. Throws CLI::Error, and Error(usage) that suggests the closest command.
 void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-/// The program but for its signals: parses, runs the command, says on stderr what failed. Returns the exit code. A rank that
-/// fails ends all ranks.
+/// The program without signal handling: parses, runs the command and logs errors to stderr. Returns the exit code. A
+/// failing rank aborts all ranks.
 int run_program(int argc, const char* const* argv);
 
-// Each in commands/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an exit code.
+// Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an exit code.
 void add_devices(CLI::App& app, Shared& shared);
 void add_render(CLI::App& app, Shared& shared);
 void add_sequence(CLI::App& app, Shared& shared);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures and pages are drawn by the Python package tools/clpv_draw, from JSON, NPY and PNG files that commands write.
+// Runs the Python package tools/clpv_draw, which draws images and pages from JSON, NPY and PNG files.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,21 @@
 
 namespace clpv {
 
-/// One run of the package: tried before the work, run after it.
+/// One run of the package: checked before the work, run after it.
 class Drawing {
  public:
   /// `kind`: "bench", "basis" or "report", the package's file of that name; `asked_by`: the option or command, for messages.
-  /// Throws Error(run_time) with Python's words where it or a module is missing.
+  /// Throws Error(run_time) with Python's message if it or a module is missing.
   Drawing(std::string kind, std::string asked_by);
   ~Drawing();
   Drawing(const Drawing&) = delete;
   Drawing& operator=(const Drawing&) = delete;
 
-  /// Where the input goes; gone with this object.
+  /// Temporary folder for the input; removed by the destructor.
   const std::filesystem::path& folder() const { return folder_; }
   void add(const std::string& file, const nlohmann::json& document) const;
 
-  /// Throws Error(bad_input) where a document is not of its shape, Error(run_time) with Python's words where it fails.
+  /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on failure.
   void draw(const std::filesystem::path& output) const;
 
  private:

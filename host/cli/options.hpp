@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Options that several commands have, and values of several parts: choices by name, numbers in a range, vectors, boxes, and
-// the options of a frame from the one table in options/render_options.hpp. What an option fills must outlive the parse.
+// Options of several commands, and structured values: named choices, numbers in a range, vectors, boxes, and the frame
+// options of options/render_options.hpp. The target variable of an option must outlive the parse.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,7 +22,7 @@
 
 namespace clpv {
 
-/// An option with the word that stands for its value in --help, and its default where `member` holds one.
+/// Adds an option with the placeholder of its value in --help, and its default if `member` holds one.
 template <typename T>
 CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T& member,
                  const std::string& help) {
@@ -33,7 +33,7 @@ CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T
   return option;
 }
 
-/// One value of an enumeration; what `member` holds is the default.
+/// Adds an option that takes one value of an enumeration; the value of `member` is the default.
 template <NamedEnum E>
 CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member, const std::string& help) {
   const auto take = [&member, option](const std::string& name) { member = named<E>(option, name); };
@@ -64,53 +64,53 @@ struct NumberRange {
   std::string allowed;  ///< "0..1 m"
 };
 
-/// A finite number within the range. A bad value is Error(usage).
+/// Adds an option for a finite number within the range. A bad value throws Error(usage).
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, const std::string& help,
                         const NumberRange& range);
 
-/// An instant or a span within those that a scene may have; what `seconds` holds is the default.
+/// Adds an option for a time [s] within the range of scenes; the value of `seconds` is the default.
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,
                          const std::string& help);
 
-/// Three numbers between commas. Throw Error(usage) naming the option, the text and what is allowed.
+/// Parse three comma-separated numbers. Throw Error(usage) with the option, the text and the allowed form.
 glm::dvec3 parse_dvec3(const std::string& text, const char* option);
 glm::ivec3 parse_ivec3(const std::string& text, const char* option);
-/// Two corners "i0,j0,k0:i1,j1,k1", the first not beyond the second.
+/// Parses two corners "i0,j0,k0:i1,j1,k1"; the first must not exceed the second.
 std::pair<glm::ivec3, glm::ivec3> parse_box(const std::string& text, const char* option);
 
-/// Adds all options of a frame, one of text each, but for those that `command` has already.
+/// Adds all frame options as text options, except those that `command` already has.
 void add_frame_options(CLI::App& command, OptionValues& given);
 
-/// Adds those of these names: each sets `options` as it is parsed, and shows its present value as default.
+/// Adds the frame options with these names. Each sets `options` during the parse; its current value is the default.
 void add_some_frame_options(CLI::App& command, RenderOptions& options, const std::vector<std::string>& names);
 
-/// As set_option; what it throws names the option as the command line does.
+/// Same as set_option, but errors name the option as on the command line.
 void set_given(RenderOptions& options, const std::string& name, const std::string& value);
 
-/// "platform", "name" and "driver".
+/// Returns the keys "platform", "name" and "driver".
 nlohmann::json to_json(const Device& device);
 
-/// Throws Error(usage) for a file whose extension is none of these (".exr").
+/// Throws Error(usage) unless the file has one of these extensions (".exr").
 void require_extension(const std::string& option, const std::filesystem::path& file,
                        const std::vector<std::string>& allowed);
 
-/// Makes the folder that an option names, where it is not there. Throws Error(run_time).
+/// Creates the folder of an option if it is missing. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);
 
-/// The options of path tracing, shared by `reference`, `quality` and `report`.
+/// The options of path tracing, shared by `pathtrace`, `quality` and `report`.
 struct TracingOptions {
   std::string bounces = "1";
   reference::PathTracerOptions values;  ///< all but `bounces`
 
-  /// Throws Error(usage) for --bounces that are neither a number from 1 nor all.
+  /// Throws Error(usage) unless --bounces is a number from 1 or all.
   reference::PathTracerOptions resolved() const;
 };
 
-/// --bounces, --spp, --noise, --seed and --threads; `options` must outlive the parse.
+/// Adds --bounces, --spp, --noise, --seed and --threads; `options` must outlive the parse.
 void add_tracing_options(CLI::App& command, TracingOptions& options);
 
-/// Shows on a bar what trace_paths tells it.
+/// Returns a callback that shows the progress of trace_paths on a bar.
 reference::TraceProgress shown_on(Progress& progress);
-inline constexpr std::uint64_t kTraceSteps = 10000;  ///< of such a bar
+inline constexpr std::uint64_t kTraceSteps = 10000;  ///< steps of that bar
 
 }  // namespace clpv

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // clpv quality: errors of many variants' frames against the path-traced ground truth, and their times.
 //
-//   scenes, --camera   ->  Subject: a scene, its cameras, their ground truths    quality_subjects.hpp, quality/cached_reference.hpp
+//   scenes, --camera   ->  Subject: a scene, its cameras, their ground truths    quality_subjects.hpp
 //   --vary             ->  Variant: values of the options that vary             quality/quality.hpp
 //   subject x variant  ->  Group: the options of one frame, used for all cameras of the subject
 //   group x camera     ->  QualityCell: read from the cache, or rendered, compared and stored       QualityStore
@@ -218,7 +218,7 @@ void add_options(CLI::App& command, Options& options) {
   add_tracing_options(command, options.tracing);
   add(command, "--cache", "DIR", options.cache,
       "folder for cached references and cells (default: the user's cache)");
-  command.add_flag("--fresh", options.fresh, "ignore cached cells and measure all again; cached references are still used");
+  command.add_flag("--fresh", options.fresh, "measure all cells again; uses cached references");
   command.add_option("--format", options.format, "format of stdout")
       ->check(CLI::IsMember({"table", "json", "csv"}))
       ->capture_default_str();

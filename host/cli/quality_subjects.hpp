@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a quality run looks at: scenes, their cameras, the truth of each view, and where truths are kept.
+// Subjects of a quality run: scenes, their cameras, the ground truth of each view, and the cache folder.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,33 +12,33 @@
 
 namespace clpv {
 
-/// As given on the command line.
+/// Command-line values.
 struct QualitySubjects {
   std::vector<std::string> scenes;   ///< files
-  std::vector<std::string> models;   ///< "STEM=PATH", STEM that of a scene's file; one scene: "PATH" does
-  std::vector<std::string> cameras;  ///< names; none: all there are
-  double time = 0;                   ///< the instant shown [s]
+  std::vector<std::string> models;   ///< "STEM=PATH", STEM of a scene file; for one scene also "PATH"
+  std::vector<std::string> cameras;  ///< names; empty: all
+  double time = 0;                   ///< time of the frame [s]
 };
 
-/// --model, --camera and --time.
+/// Adds --model, --camera and --time.
 void add_subject_options(CLI::App& command, QualitySubjects& subjects);
 
-/// A scene, the cameras chosen, and the truth of what each of them sees.
+/// A scene, the selected cameras, and the ground truth of each view.
 struct Subject {
   Scene scene;
   std::vector<Camera> cameras;
-  std::vector<reference::Reference> truths;  ///< one a camera, once traced
+  std::vector<reference::Reference> truths;  ///< one per camera, after tracing
 };
 
-/// The folder of what quality runs keep: `given` (--cache), or where that is empty the user's cache. Throws Error(usage)
-/// where there is neither.
+/// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is empty. Throws Error(usage)
+/// if neither exists.
 std::filesystem::path quality_cache(const std::string& given);
 
-/// Loads the scenes as they are at that instant, without truths. Throws like load_scene, and Error(usage) for a
-/// camera that no scene has or a model that belongs to none.
+/// Loads the scenes at that time, without ground truths. Throws the errors of load_scene, and Error(usage) for a
+/// camera or model that matches no scene.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
-/// Fills in the truths, from `folder` where they are kept, with a progress bar where they must be traced. By all ranks.
+/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective over all ranks.
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
                   const std::filesystem::path& folder, Ranks& ranks = single_rank());
 

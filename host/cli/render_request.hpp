@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What commands that render frames are asked for alike: a scene, a camera, options, and how images show it.
+// Options common to commands that render frames: scene, camera, frame options and image display.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -25,20 +25,20 @@ struct RenderRequest {
   float exposure_of(const Scene& shown) const { return exposure.value_or(shown.exposure); }
 };
 
-/// The scene, its camera and all options of frames; the request must outlive the parse, as below.
+/// Adds the options for scene, camera and frames; the request must outlive the parse, as below.
 void add_render_request(CLI::App& command, RenderRequest& request);
 
-/// How images show it.
+/// Adds the options for image display.
 void add_shown_options(CLI::App& command, RenderRequest& request);
 
-/// The scene's notes, and what was chosen of cascades in place of the user and what will come of it.
+/// Logs the scene's notes, the automatic choice of cascades and its consequences.
 void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);
 
-/// All that shaped an image of `shown` at an instant [s], by name.
+/// Returns all inputs of an image of `shown` at a time [s], by name.
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
                         const Camera& camera, double seconds);
 
-/// The same as an image holds it.
+/// Returns the same as image metadata.
 std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `clpv sequence` writes beside its frames: times.json and stability.json.
+// Reports of `clpv sequence`: times.json and stability.json.
 #pragma once
 
 #include <filesystem>
@@ -11,20 +11,20 @@
 
 namespace clpv {
 
-/// Wall times of frames [ms] as JSON, by the frames' numbers: pose_ms, the scene brought to its instant, on host and device;
-/// frame_ms, all stages, until the device is done; write_ms, read back, encoded and written. `first` of a run: its launches may
-/// compile.
+/// Wall times of frames [ms] as JSON, by frame number. pose_ms: scene animation on host and device. frame_ms: all
+/// stages, until the device has finished. write_ms: readback, encoding and writing. `first`: first frame of a run, whose
+/// launches may compile kernels.
 using SequenceTimes = std::map<int, nlohmann::json>;
 
-/// Those of frames below `frames` that a times.json of an earlier run holds; none, with a warning, where it holds something
-/// else.
+/// Reads the times of frames below `frames` from an earlier run's times.json. Empty, with a warning, if the file is
+/// invalid.
 SequenceTimes read_times(const std::filesystem::path& file, int frames);
 
-/// Schema 1: all that `about` has, the frames, and over all but first ones the median, 95th percentile and worst of pose_ms,
-/// frame_ms, write_ms and each stage, cascade and light. A frame without a stage took 0 ms for it.
+/// Schema 1: the fields of `about`, the frames, and the median, 95th percentile and maximum of pose_ms, frame_ms,
+/// write_ms and each stage, cascade and light, without first frames. A frame without a stage took 0 ms for it.
 nlohmann::json times_json(const nlohmann::json& about, const SequenceTimes& times);
 
-/// Schema 1: all that `about` has, the steps, and a summary of those before which neither lights nor triangles changed, by
+/// Schema 1: the fields of `about`, the steps, and a summary of the steps with static lights and triangles, grouped by
 /// whether a cascade moved.
 nlohmann::json stability_json(const nlohmann::json& about, std::span<const StabilityStep> steps);
 

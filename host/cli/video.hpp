@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames into a film, through ffmpeg.
+// Encodes frames into a video with ffmpeg.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace clpv {
 
-/// H.264 in an MP4. Written beside its place, and there once it is whole.
+/// H.264 video in an MP4 file. Writes a temporary file and renames it when complete.
 class Video {
  public:
-  /// Throws Error(run_time) that says what to install where there is no ffmpeg in the path, and where `file` cannot be
-  /// written. To be made before the work.
+  /// Throws Error(run_time) if ffmpeg is not in the path (with what to install) or `file` is not writable. Construct
+  /// before the work.
   Video(std::filesystem::path file, double frames_per_second);
-  ~Video();  ///< without finish(): no film
+  ~Video();  ///< without finish(): no video
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 
-  /// One more frame: display-encoded R, G, B and perhaps A, of the size of those before. Throws Error(run_time) with
-  /// ffmpeg's words where it fails; so does finish().
+  /// Adds a frame: display-encoded RGB or RGBA, of the size of earlier frames. This and finish() throw Error(run_time)
+  /// with ffmpeg's message on failure.
   void add(const Image& shown);
   void finish();
 
