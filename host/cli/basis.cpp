@@ -81,9 +81,12 @@ void add_basis(CLI::App& app, Shared&) {
                    "bandwidth of the SRBF kernels, between 0 and 1; a lambda in --centres overrides it")
       ->capture_default_str();
   add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
-  add_choice(*command, "--lobe", options->lobes.kind,
-             "method of the clamped cosine: exact projection, or projection along +z and rotation by a table");
-  command->add_option("--table-size", options->lobes.table_size, "number of entries in the table of rotated lobes")
+  add_choice(
+      *command, "--lobe", options->lobes.kind,
+      "method of the clamped cosine: exact projection, or projection along +z and rotation by a table");
+  command
+      ->add_option("--table-size", options->lobes.table_size,
+                   "number of entries in the table of rotated lobes")
       ->capture_default_str();
   add_search_options(*command, options->search);
   CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");

@@ -41,8 +41,8 @@ struct BasisSearchOptions {
   CentreSearch search;
 };
 void add_search_options(CLI::App& command, BasisSearchOptions& options);
-/// `clpv basis --search N`: finds the centres with the smallest clamped-cosine error. Writes the file for --centres, and
-/// prints the set's metrics and those of the named sets.
+/// `clpv basis --search N`: finds the centres with the smallest clamped-cosine error. Writes the file for --centres,
+/// and prints the set's metrics and those of the named sets.
 void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json);
 
 struct BasisFigures {

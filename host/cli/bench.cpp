@@ -172,9 +172,10 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMaxRepetitions));
   command
-      ->add_option("--format", options->format,
-                   "format of the output: table|json|csv, or github-action: name, unit and value of each row, smaller "
-                   "is better")
+      ->add_option(
+          "--format", options->format,
+          "format of the output: table|json|csv, or github-action: name, unit and value of each row, smaller "
+          "is better")
       ->capture_default_str()
       ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
   add(*command, "--log", "FILE.jsonl", options->log,

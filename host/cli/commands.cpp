@@ -132,7 +132,8 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"
-      "4 no device, or one that lacks what was asked; 5 validation failed. Data goes to stdout, logs to stderr.");
+      "4 no device, or one that lacks what was asked; 5 validation failed. Data goes to stdout, logs to "
+      "stderr.");
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {

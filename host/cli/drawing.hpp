@@ -12,7 +12,8 @@ namespace clpv {
 /// One run of the package: checked before the work, run after it.
 class Drawing {
  public:
-  /// `kind`: "bench", "basis" or "report", the package's file of that name; `asked_by`: the option or command, for messages.
+  /// `kind`: "bench", "basis" or "report", the package's file of that name.
+  /// `asked_by`: the option or command, for messages.
   /// Throws Error(run_time) with Python's message if it or a module is missing.
   Drawing(std::string kind, std::string asked_by);
   ~Drawing();

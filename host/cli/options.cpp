@@ -161,9 +161,8 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
                       ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples))
                       ->group(kGroup);
   command
-      .add_option(
-          "--noise", options.values.noise,
-          "relative standard error of the indirect light at which tracing stops (root mean square)")
+      .add_option("--noise", options.values.noise,
+                  "relative standard error of the indirect light at which tracing stops (root mean square)")
       ->check(CLI::PositiveNumber)
       ->excludes(samples)
       ->capture_default_str()
@@ -171,7 +170,8 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
   command.add_option("--seed", options.values.seed, "random seed; the same seed gives identical files")
       ->capture_default_str()
       ->group(kGroup);
-  add(command, "--threads", "N", options.values.threads, "number of tracing threads (default: one per processor)")
+  add(command, "--threads", "N", options.values.threads,
+      "number of tracing threads (default: one per processor)")
       ->check(CLI::Range(1, 1024))
       ->group(kGroup);
 }

@@ -122,7 +122,8 @@ void add_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
-  add(command, "--stats", "FILE.json", options.stats, "output file for paths, noise, rays and time [s], as JSON");
+  add(command, "--stats", "FILE.json", options.stats,
+      "output file for paths, noise, rays and time [s], as JSON");
 }
 
 }  // namespace pathtrace_command
@@ -133,8 +134,10 @@ void add_pathtrace(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<pathtrace_command::Options>();
   add_options(*command, *options);
   command->footer(
-      "Diffuse surfaces, hard shadows, one ray per pixel through its centre. `clpv compare` compares a rendered\n"
-      "image with the result pixel by pixel. Emissive surfaces are light sources. Background pixels are 0 with "
+      "Diffuse surfaces, hard shadows, one ray per pixel through its centre. `clpv compare` compares a "
+      "rendered\n"
+      "image with the result pixel by pixel. Emissive surfaces are light sources. Background pixels are 0 "
+      "with "
       "alpha 0.\n"
       "Time is proportional to the number of pixels: 240 x 135 pixels suffice for measurements.\n"
       "mpirun -n N clpv pathtrace ... traces with N ranks; the files are identical (docs/scale.md).");

@@ -239,8 +239,7 @@ void add_propagate(CLI::App& app, Shared& shared) {
       ->type_name("x,y,z");
   command
       ->add_flag_callback(
-          "--isotropic", [last_source] { last_source().normal.reset(); },
-          "isotropic source (default)")
+          "--isotropic", [last_source] { last_source().normal.reset(); }, "isotropic source (default)")
       ->trigger_on_parse();
   command
       ->add_option_function<std::string>(

@@ -30,8 +30,8 @@ struct Subject {
   std::vector<reference::Reference> truths;  ///< one per camera, after tracing
 };
 
-/// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is empty. Throws Error(usage)
-/// if neither exists.
+/// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is empty. Throws
+/// Error(usage) if neither exists.
 std::filesystem::path quality_cache(const std::string& given);
 
 /// Loads the scenes at that time, without ground truths. Throws the errors of load_scene, and Error(usage) for a

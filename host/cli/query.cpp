@@ -62,8 +62,8 @@ void run(const Options& options, const Shared& shared) {
 
 void add_query(CLI::App& app, Shared& shared) {
   using namespace query_command;
-  CLI::App* command =
-      app.add_subcommand("query", "Compute indirect light at points from a file, visible to the camera or not");
+  CLI::App* command = app.add_subcommand(
+      "query", "Compute indirect light at points from a file, visible to the camera or not");
   auto options = std::make_shared<query_command::Options>();
   add(*command, "--points", "FILE.csv", options->points,
       "input points, lines of x,y,z,nx,ny,nz: world position [m] and surface normal")

@@ -170,15 +170,15 @@ void add_report(CLI::App& app, Shared& shared) {
       "report", "Write an HTML page: images and ground truth, errors over times, benchmarks");
   auto options = std::make_shared<report_command::Options>();
   command->add_option("DIR", options->folder, "output folder for index.html")->required();
-  command->add_option("SCENE", options->subjects.scenes,
-                      "scene files to compare with path tracing");
+  command->add_option("SCENE", options->subjects.scenes, "scene files to compare with path tracing");
   add_subject_options(*command, options->subjects);
-  add(*command, "--quality", "FILE.json", options->quality,
-      "results of clpv quality --json, repeatable");
+  add(*command, "--quality", "FILE.json", options->quality, "results of clpv quality --json, repeatable");
   add(*command, "--bench", "FILE.json", options->benchmarks,
       "results of clpv bench table1 or layouts --format json, repeatable");
-  command->add_option("--width", options->width, "width of views and references [pixels]")->capture_default_str();
-  command->add_option("--height", options->height, "height of views and references [pixels]")->capture_default_str();
+  command->add_option("--width", options->width, "width of views and references [pixels]")
+      ->capture_default_str();
+  command->add_option("--height", options->height, "height of views and references [pixels]")
+      ->capture_default_str();
   add_tracing_options(*command, options->tracing);
   add(*command, "--cache", "DIR", options->cache, "folder for cached references (default: the user's cache)");
   command->callback([options, &shared] { run(*options, shared); });

@@ -299,7 +299,9 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add(*command, "-o,--output", "DIR", options->output,
       "output folder for frame-0000.exr, ... and times.json; created if missing")
       ->required();
-  add(*command, "--frames", "N", options->frames, "number of frames")->check(CLI::Range(1, kMostFrames))->required();
+  add(*command, "--frames", "N", options->frames, "number of frames")
+      ->check(CLI::Range(1, kMostFrames))
+      ->required();
   add_number(*command, "--fps", options->frames_per_second, "frames a second of the scene's time",
              {std::numeric_limits<double>::min(), kMostFramesPerSecond,
               fmt::format("more than 0, up to {}", kMostFramesPerSecond)})
@@ -309,9 +311,8 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_choice(*command, "--view", options->view, "what frames show");
   add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
   add(*command, "--video", "FILE.mp4", options->video, "output video of all frames; needs ffmpeg");
-  command->add_flag(
-      "--stability", options->stability,
-      "write stability.json: change of light between frames on static surfaces");
+  command->add_flag("--stability", options->stability,
+                    "write stability.json: change of light between frames on static surfaces");
   add(*command, "--traced", "SPP", options->traced,
       "paths per pixel for the path-traced noise of --stability")
       ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples));

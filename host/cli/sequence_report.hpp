@@ -12,8 +12,8 @@
 namespace clpv {
 
 /// Wall times of frames [ms] as JSON, by frame number. pose_ms: scene animation on host and device. frame_ms: all
-/// stages, until the device has finished. write_ms: readback, encoding and writing. `first`: first frame of a run, whose
-/// launches may compile kernels.
+/// stages, until the device has finished. write_ms: readback, encoding and writing. `first`: first frame of a run,
+/// whose launches may compile kernels.
 using SequenceTimes = std::map<int, nlohmann::json>;
 
 /// Reads the times of frames below `frames` from an earlier run's times.json. Empty, with a warning, if the file is

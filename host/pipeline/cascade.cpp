@@ -12,7 +12,8 @@ namespace {
 // The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full light, and the next two
 // fade out. 24 cells leave room for moving parts.
 constexpr double kRoom = 32.0 / 24;
-constexpr double kFarTooLarge = 4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
+constexpr double kFarTooLarge =
+    4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
 
 constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
 

@@ -16,7 +16,7 @@ class FrameStats {
  public:
   void begin_startup() { mark_ = Clock::now(); }
   void end_startup(const Session& session);  ///< device opened, programs built, scene uploaded
-  void end_first_frame(Session& session);    ///< the first launches compile kernels for their work-group sizes
+  void end_first_frame(Session& session);  ///< the first launches compile kernels for their work-group sizes
   void begin_frame() { mark_ = Clock::now(); }
   /// Adds the stage times of the timeline; frames of one camera have equal stages. The statistics report medians over
   /// all frames, since the first frame still warms memory and caches.

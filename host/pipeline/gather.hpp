@@ -58,8 +58,7 @@ class Gatherer {
   ProgramSource source_;
   Stencil stencil_;  ///< stencil of the packing kernel
   std::optional<Kernel> pack_;
-  std::map<std::size_t, Kernel>
-      gather_;  ///< by number of cascades; only unpacked volumes depend on it
+  std::map<std::size_t, Kernel> gather_;  ///< by number of cascades; only unpacked volumes depend on it
   Buffer packed_, grids_;
 };
 

@@ -70,7 +70,8 @@ class Propagator {
   std::optional<Form> forms_[2][2];        ///< [first step][blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<LinkTransmittance> transmitter_;
-  std::unique_ptr<Volume> sum_;  ///< sum of the six fluxes, source of the light; none if coefficients propagate
+  std::unique_ptr<Volume>
+      sum_;  ///< sum of the six fluxes, source of the light; none if coefficients propagate
   Accumulator accumulator_;
 };
 

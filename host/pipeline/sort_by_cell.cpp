@@ -13,7 +13,8 @@ namespace {
 
 static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
-constexpr std::size_t kMostTexels = std::size_t{1} << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
+constexpr std::size_t kMostTexels = std::size_t{1}
+                                    << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
 // Enough chunks to occupy a GPU, with a small table of counts. Each is long enough to amortise its column. A
 // work-item processes a chunk in one loop.
 constexpr std::size_t kMostChunks = 512, kLeastChunk = 256,

@@ -130,8 +130,7 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
   for (int axis = 0; axis < 2; ++axis) {
     const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
     const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube along this axis
-    const double texel =
-        2 * reach / (size - 1);  // one spare texel: snapping moves the window by up to one
+    const double texel = 2 * reach / (size - 1);  // one spare texel: snapping moves the window by up to one
     const double first = std::floor((glm::dot(centre, along) - reach) / texel);
     middle[axis] = (first + 0.5 * size) * texel;
     half_extent[axis] = 0.5 * size * texel;

@@ -22,9 +22,9 @@ static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
 
 /// Shape of a cascade's masks: 32-bit words, a fixed number per cell, cells along x first.
 struct VoxelMaskShape {
-  int cells;             ///< along each axis
-  int valid;             ///< number of leading cells along each axis that may hold masks; the others hold zeros
-  std::size_t words;     ///< words per cell
+  int cells;          ///< along each axis
+  int valid;          ///< number of leading cells along each axis that may hold masks; the others hold zeros
+  std::size_t words;  ///< words per cell
   std::size_t cascades;  ///< number of stored cascades; 1: masks of the last updated cascade only
 
   std::size_t words_a_cascade() const;

@@ -41,7 +41,8 @@ std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape&
 struct CheckScope {
   bool thorough = false;  ///< every combination of basis and options; takes minutes to build kernels
   std::vector<std::string> bases = basis_names();
-  std::vector<VolumeFormat> formats = all_formats();  ///< formats that the device does not support are skipped
+  std::vector<VolumeFormat> formats =
+      all_formats();  ///< formats that the device does not support are skipped
 };
 
 /// Check of one stage. Inputs are small: apart from building kernels, each check takes seconds on a CPU device.

@@ -21,7 +21,7 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kGrid = 5;                       // odd and small: many texels per cell, several segments in some cells
+constexpr int kGrid = 5;  // odd and small: many texels per cell, several segments in some cells
 constexpr unsigned kWidth = 37, kHeight = 23;  // no multiples of a work-group
 // [cells]; excludes points close to a cell boundary, where rounding decides. Exceeds the position error of 8-bit
 // normals.
@@ -153,7 +153,8 @@ std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool 
     const InjectOptions rotated{.lobes = {.kind = LobeKind::rotate}};
     cases.push_back({.options = rotated});
     cases.push_back({.options = rotated, .light = false});
-    if (device.images && (thorough || basis.size() == 4)) {  // reading an image is nearly independent of the basis
+    if (device.images &&
+        (thorough || basis.size() == 4)) {  // reading an image is nearly independent of the basis
       cases.push_back({.options = rotated, .orthographic = false});
       cases.back().options.table = TableStorage::image;
     }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr unsigned kWidth = 45, kHeight = 31;  // no multiples of a work-group
 constexpr float kFarthest = 12;                // [m]
-constexpr double kHeightError = 1e-6;  // height of a rotated centre in float32; measured 3e-7
+constexpr double kHeightError = 1e-6;          // height of a rotated centre in float32; measured 3e-7
 
 void add_materials(Scene& scene, std::mt19937& random) {
   Texture texture{.width = 5, .height = 4, .wrap_u = CLPV_WRAP_MIRROR, .rgba = {}, .name = "holes"};
