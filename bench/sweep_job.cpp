@@ -60,8 +60,8 @@ struct CascadeSweep {
   }
 };
 
-/// Cost of the kernels in use. Bin means, plane buffers and sums have the sweep's layout, not that of the volumes. Means of
-/// bins along z are read in place and not copied.
+/// Cost of the kernels in use, without sources: few rows hold light. Plane buffers and sums have the sweep's layout, not
+/// that of the volumes.
 Cost cost_of(const CascadeSweep& p) {
   const VolumeFormat& format = p.options.format;
   const double n = p.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
@@ -71,18 +71,15 @@ Cost cost_of(const CascadeSweep& p) {
   const auto number = static_cast<double>(number_bytes(format.storage));
   const double light = kChannels * static_cast<double>(bytes_per_cell(format, coefficients) +
                                                        bytes_per_cell(format, harmonics));
-  const double copied = p.sweeper.in_place() ? 2.0 / 3 : 1;  // share of bins that are written and read
   // With a launch per plane, each launch reads one plane of every direction and writes the next; the dark border is read.
   const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
   Cost cost;
-  cost.bytes = cells * (light + ((2 + 2 * copied) * bins + links) * number) + dark * number +
-               swept * n * n * sizeof(float) * planes;
+  cost.bytes =
+      cells * (light + (2 * bins + links) * number) + dark * number + swept * n * n * sizeof(float) * planes;
   const double flops_per_direction = kChannels * (4 + 1) * 2 + (p.geometry ? 4 : 0);
-  cost.flops = cells * (kChannels * (sweep_source_text(*p.basis).operations.flops() +
-                                     sweep_collect_text().operations.flops()) +
-                        p.directions() * flops_per_direction);
-  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + (1 + copied) * bins;
-  cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + (1 + copied) * bins;
+  cost.flops = cells * (kChannels * sweep_collect_text().operations.flops() + p.directions() * flops_per_direction);
+  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + bins;
+  cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + bins;
   cost.working_set =
       cells * (light + (bins + links) * number) + dark * number / 2 + swept * n * n * sizeof(float);
   if (!p.geometry) return cost;

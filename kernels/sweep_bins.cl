@@ -8,12 +8,12 @@
 // farthest downstream comes first. Each plane therefore overwrites the previous one in place and stays in cache.
 //
 // Volumes have CLPV_GRID^3 numbers, laid out as in sweep_layout.h; an ordinate is a direction and channel.
-// In:   injected, sources  I [W/sr] of 3 channels and 24 bins; ClpvSweepBin says which buffer holds a bin
+// In:   coefficients, means, sources, lit   injected light I [W/sr] and where it is (BinSweep, sweep_source.cl)
 //       links              T in [0, 1], a volume for each axis and link
 //       border             D [W/sr] in the cells beside the grid, for each ordinate (sweep_border.h); unused if `dark`
 //       plane_buffer       D [W/sr] in the plane upstream of the grid, for each ordinate; unused if `dark`
 // Out:  plane_buffer       D in the last plane
-//       sums               L s^2 [W/sr] of 3 channels and 24 bins; may be the same memory as `sources`
+//       sums               L s^2 [W/sr] of 3 channels and 24 bins
 //       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next finer cascade
 // dark: 1 if no light enters at the border
 #include "prefetch.h"
@@ -84,23 +84,21 @@ CLPV_INLINE void clpv_prefetch_row(const BinSweep* s, const int plane, const int
   const ClpvSweepBin bin = s->bin;
   const int next = clamp(plane + bin.plane_sign, 0, CLPV_GRID - 1);
   for (int column = 0; column < CLPV_SWEEP_ROW; column += CLPV_LINE / (CLPV_STORAGE_HALF ? 2 : 4)) {
-    const int source = bin.source + next * bin.plane + row * bin.row + column, at = clpv_sweep_at(next, row, column);
-    for (int channel = 0; channel < 3; ++channel) {
-      CLPV_PREFETCH(s->sources + channel * bin.channel + source);
+    const int at = clpv_sweep_at(next, row, column);
+    for (int channel = 0; channel < 3; ++channel)
       CLPV_PREFETCH(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME + at);
-    }
     for (int k = 0; k < 4 && CLPV_BLOCKING; ++k) CLPV_PREFETCH(s->links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
   }
 }
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(
-    __constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions, CLPV_BUFFER_IN injected,
-    CLPV_BUFFER_IN sources, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
+    __constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
+    __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
+    __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
     __global float* plane_buffer, CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT halo_light, const int dark) {
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
-  const BinSweep s = {b,     bin,    directions + b * CLPV_PARTS, bin.injected ? injected : sources,
-                      links, border, sums,                        halo_light};
+  const BinSweep s = CLPV_BIN_SWEEP(b);
   for (int i = 0; i < CLPV_ORDINATE(1, 0, 0) * CLPV_BORDERED_PLANE && dark; i += CLPV_LANES)
     CLPV_PLANE_STORE(plane_buffer, CLPV_ORDINATE(b, 0, 0) * CLPV_BORDERED_PLANE + i, (CLPV_REAL)(0.0f));
   const int last_column = (CLPV_GRID - 1) / CLPV_LANES * CLPV_LANES;

@@ -6,7 +6,7 @@
 //   L s^2 = sum_d share_d D_d            d: the directions of the bin
 //
 // Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light along a direction, I
-// [W/sr] the injected light, T_k in [0, 1] the transmittance of the link from cell k; t_k and share_d are in
+// [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k in [0, 1] the transmittance of the link from cell k; t_k and share_d are in
 // ClpvSweepDirection.
 #ifndef CLPV_SWEEP_CELL_H
 #define CLPV_SWEEP_CELL_H
@@ -20,18 +20,62 @@ typedef struct {
   int number;  // of the bin, 0 to CLPV_SWEEP_BINS - 1
   ClpvSweepBin bin;
   __constant const ClpvSweepDirection* directions;  // CLPV_PARTS of them
-  CLPV_BUFFER_IN sources;                           // I, addressed as ClpvSweepBin says
+  __constant const int* coefficients;               // the CLPV_EMITTING coefficients that the bin's light depends on
+  __constant const float* means;                    // of their functions, CLPV_EMITTING for each direction
+  CLPV_BUFFER_IN sources;                           // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
+  __global const uchar* lit;                        // 1 for each CLPV_SOURCE_LANES cells that hold sources
   CLPV_BUFFER_IN links;                             // T, a volume for each axis and link
   CLPV_BUFFER_IN border;                            // D in the cells beside the grid (sweep_border.h)
   CLPV_BUFFER_OUT sums;                             // L s^2, a volume for each channel and bin
   CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
 } BinSweep;
 
+#define CLPV_BIN_SWEEP(b)                                                                                     \
+  {b,                                                                                                         \
+   bin,                                                                                                       \
+   directions + (b)*CLPV_PARTS,                                                                               \
+   coefficients + (b)*CLPV_EMITTING,                                                                          \
+   means + (b)*CLPV_PARTS * CLPV_EMITTING,                                                                    \
+   sources + bin.transposed * 3 * CLPV_SOURCES * CLPV_SWEEP_VOLUME,                                           \
+   lit + bin.transposed * CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES,                                              \
+   links,                                                                                                     \
+   border,                                                                                                    \
+   sums,                                                                                                      \
+   halo_light}
+
+// Nonzero if CLPV_LANES cells hold sources.
+#if CLPV_SOURCE_LANES >= CLPV_LANES
+#define CLPV_LIT(lit, source) ((lit)[(source) / CLPV_SOURCE_LANES])
+#else
+#define CLPV_LIT(lit, source) as_ulong(vload8(0, (lit) + (source)))
+#endif
+
+// Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in these cells.
+CLPV_INLINE void clpv_add_sources(const BinSweep* s, const int source, __global float* planes, CLPV_REAL* sum) {
+  for (int channel = 0; channel < 3; ++channel) {
+    CLPV_REAL injected[CLPV_PARTS];
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
+    for (int j = 0; j < CLPV_EMITTING; ++j) {
+      const int volume = channel * CLPV_SOURCES + s->coefficients[j];
+      const CLPV_REAL c = CLPV_SWEEP_LOAD(s->sources + volume * CLPV_SWEEP_VOLUME, source);
+#pragma unroll
+      for (int part = 0; part < CLPV_PARTS; ++part)
+        injected[part] = fma((CLPV_REAL)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
+    }
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part) {
+      const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
+      CLPV_PLANE_STORE(planes, ordinate, CLPV_PLANE_LOAD(planes, ordinate) + injected[part]);
+      sum[channel] = fma((CLPV_REAL)(s->directions[part].share), injected[part], sum[channel]);
+    }
+  }
+}
+
 // `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the same.
 CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from, __global float* to, const int plane,
                                   const int row, const int column) {
   const ClpvSweepBin bin = s->bin;
-  const int source = bin.source + plane * bin.plane + row * bin.row + column;
   const int at = clpv_sweep_at(plane, row, column);
   const int here = CLPV_ORDINATE(s->number, 0, 0) * CLPV_BORDERED_PLANE + clpv_plane_at(row, column);
   __global const float* from0 = from + here;
@@ -48,20 +92,14 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
 #else
 #define CLPV_TAP(k) ((CLPV_REAL)(s->directions[part].taps[k]))
 #endif
-  CLPV_REAL injected[3], sum[3];
-#pragma unroll
-  for (int channel = 0; channel < 3; ++channel) {
-    injected[channel] = CLPV_SWEEP_LOAD(s->sources + channel * bin.channel, source);
-    sum[channel] = 0.0f;
-  }
+  CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
   for (int part = 0; part < CLPV_PARTS; ++part) {
     const CLPV_REAL w0 = CLPV_TAP(0), w1 = CLPV_TAP(1), w2 = CLPV_TAP(2), w3 = CLPV_TAP(3);
 #pragma unroll
     for (int channel = 0; channel < 3; ++channel) {
       const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
-      CLPV_REAL d = injected[channel];
-      d = fma(w0, CLPV_PLANE_LOAD(from0, ordinate), d);
+      CLPV_REAL d = w0 * CLPV_PLANE_LOAD(from0, ordinate);
       d = fma(w1, CLPV_PLANE_LOAD(from1, ordinate), d);
       d = fma(w2, CLPV_PLANE_LOAD(from2, ordinate), d);
       d = fma(w3, CLPV_PLANE_LOAD(from3, ordinate), d);
@@ -69,6 +107,8 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
       sum[channel] = fma((CLPV_REAL)(s->directions[part].share), d, sum[channel]);
     }
   }
+  const int source = plane * bin.plane + row * bin.row + column;
+  if (CLPV_LIT(s->lit, source)) clpv_add_sources(s, source, to + here, sum);
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel)
     CLPV_SWEEP_STORE(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at, sum[channel]);

@@ -8,14 +8,14 @@
 // number have separate plane buffers, since work-items run in any order.
 //
 // Volumes have CLPV_GRID^3 numbers, laid out as in sweep_layout.h; an ordinate is a direction and channel.
-// In:   injected, sources  I [W/sr] of 3 channels and 24 bins; ClpvSweepBin says which buffer holds a bin
+// In:   coefficients, means, sources, lit   injected light I [W/sr] and where it is (BinSweep, sweep_source.cl)
 //       links              T in [0, 1], a volume for each axis and link
 //       border             D [W/sr] in the cells beside the grid, for each ordinate (sweep_border.h)
 //       plane_buffer       D [W/sr] in the previous plane, for each ordinate: even planes, then odd ones; before step 0
 //                          the odd ones hold the plane upstream of the grid
 //       step               number of the plane along the bin's direction, 0 to CLPV_GRID - 1
 // Out:  plane_buffer       D in this plane
-//       sums               L s^2 [W/sr] of 3 channels and 24 bins; may be the same memory as `sources`
+//       sums               L s^2 [W/sr] of 3 channels and 24 bins
 //       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next finer cascade
 #include "shared/sweep.h"
 #include "sweep_cell.h"
@@ -39,14 +39,14 @@ CLPV_INLINE void clpv_store_halo_cell(const BinSweep* s, const ClpvSweepHalo hal
 }
 
 __kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
-                          CLPV_BUFFER_IN injected, CLPV_BUFFER_IN sources, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
+                          __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
+                          __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
                           const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
                           CLPV_BUFFER_OUT halo_light, const int step) {
   const int column = CLPV_LANES * (int)get_global_id(0), row = (int)get_global_id(1), b = (int)get_global_id(2);
   if (column >= CLPV_GRID || row >= CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
-  const BinSweep s = {b,     bin,    directions + b * CLPV_PARTS, bin.injected ? injected : sources,
-                      links, border, sums,                        halo_light};
+  const BinSweep s = CLPV_BIN_SWEEP(b);
   const int plane = bin.plane_sign > 0 ? step : CLPV_GRID - 1 - step;
   const int planes = CLPV_ORDINATE(CLPV_SWEEP_BINS, 0, 0) * CLPV_BORDERED_PLANE;  // numbers in all even planes
   __global float* to = plane_buffer + (step % 2) * planes;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes cornell and cornell_lamp, .glb and .json, beside itself: the Cornell box, by its published corners.
+"""Writes cornell, cornell_lamp and empty_room, .glb and .json, beside itself: the Cornell box, by its published corners.
 
 Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes into FOLDER instead.
 
@@ -8,7 +8,8 @@ Millimetres, as published (Cornell University Program of Computer Graphics, "The
 is at z = 0, the red wall at x = 552.8, the green one at x = 0. The reflectances are the published spectra's usual
 linear RGB. In `cornell` the ceiling's lamp is left out: the light comes through the open front, from two sides, because a
 single direction could reach only one of the two coloured walls. `cornell_lamp` has the lamp, and no other light. Its walls get a thickness (not published: they have none
-there), since light falls on them from outside too.
+there), since light falls on them from outside too. `empty_room` is `cornell` without blocks and with walls along the
+axes: light on the simplest surfaces, which tests compare with path tracing as cells get smaller.
 """
 import json
 import os
@@ -29,6 +30,7 @@ ROOM = [
 ]
 
 CEILING = ROOM[1][1]
+RIGHT = 552.8  # wall of the empty room
 LAMP = [(343, 548.8, 227), (343, 548.8, 332), (213, 548.8, 332), (213, 548.8, 227)]
 LAMP_REFLECTANCE = (0.78, 0.78, 0.78)
 # The published spectrum, 0 at 400 nm, 8 at 500, 15.6 at 600 and 18.4 at 700, by the CIE's 1931 observer as linear sRGB, its
@@ -44,9 +46,16 @@ BLOCKS = {
 }
 
 
-def room(lamp):
+def straight(corner):
+    """Moves a corner of the room onto walls along the axes."""
+    return (RIGHT if corner[0] else 0, *corner[1:])
+
+
+def room(lamp, empty):
     mesh = Mesh()
     for material, corners in ROOM:
+        if empty:
+            corners = [straight(corner) for corner in corners]
         if lamp and corners is CEILING:
             for k in range(4):
                 mesh.quad(material, [CEILING[k], CEILING[(k + 1) % 4], LAMP[(k + 1) % 4], LAMP[k]])
@@ -57,13 +66,15 @@ def room(lamp):
     return mesh
 
 
-def outside():
+def outside(empty):
     """The walls' outer faces, and the rim of the opening; the red wall leans a little, and the rim follows it."""
     mesh = Mesh()
     x0, x1, y0, y1, z1 = -WALL, 556 + WALL, -WALL, 548.8 + WALL, 559.2 + WALL
     mesh.box("white", (x0, y0, 0), (x1, y1, z1), "-z")
     outer = [(x0, y0, 0), (x1, y0, 0), (x1, y1, 0), (x0, y1, 0)]
     inner = [(0, 0, 0), (552.8, 0, 0), (556, 548.8, 0), (0, 548.8, 0)]
+    if empty:
+        inner = [straight(corner) for corner in inner]
     for k in range(4):
         mesh.quad("white", [outer[k], inner[k], inner[(k + 1) % 4], outer[(k + 1) % 4]])
     return mesh
@@ -78,18 +89,18 @@ def block(footprint, height):
     return mesh
 
 
-def scene_file(lamp):
+def scene_file(stem):
     front = {"eye": [278, 273, -180], "target": [278, 273, 280], "vertical_fov_degrees": 75}
     cameras = [
         {"name": "front", **front},
         {"name": "published", "eye": [278, 273, -800], "target": [278, 273, 0], "vertical_fov_degrees": 39.3},
     ]
     cascades = {"count": 2, "size_metres": 2.0}
-    if lamp:
+    if stem == "cornell_lamp":
         return {"model": "cornell_lamp.glb", "metres_per_unit": 0.001, "exposure": 2.0, "cameras": cameras,
                 "lights": [], "cascades": cascades}
     return {
-        "model": "cornell.glb",
+        "model": stem + ".glb",
         "metres_per_unit": 0.001,
         "exposure": 0.0,
         "cameras": [
@@ -105,25 +116,26 @@ def scene_file(lamp):
     }
 
 
-def write(folder, stem, lamp):
+def write(folder, stem):
+    lamp, empty = stem == "cornell_lamp", stem == "empty_room"
     document = Document("clpv scenes/generate_cornell.py")
     for name, colour in (("white", WHITE), ("red", RED), ("green", GREEN)):
         document.material(name, colour)
     if lamp:
         document.material("lamp", LAMP_REFLECTANCE, radiance=LAMP_RADIANCE)
-    document.node("room", document.mesh("room", room(lamp)))
-    document.node("outside", document.mesh("outside", outside()))
-    for name, (footprint, height) in BLOCKS.items():
+    document.node("room", document.mesh("room", room(lamp, empty)))
+    document.node("outside", document.mesh("outside", outside(empty)))
+    for name, (footprint, height) in [] if empty else BLOCKS.items():
         document.node(name, document.mesh(name, block(footprint, height)))
     document.write(os.path.join(folder, stem + ".glb"))
     with open(os.path.join(folder, stem + ".json"), "w", encoding="utf-8", newline="\n") as file:
-        json.dump(scene_file(lamp), file, indent=2)
+        json.dump(scene_file(stem), file, indent=2)
         file.write("\n")
 
 
 def main(folder):
-    write(folder, "cornell", lamp=False)
-    write(folder, "cornell_lamp", lamp=True)
+    for stem in ("cornell", "cornell_lamp", "empty_room"):
+        write(folder, stem)
 
 
 if __name__ == "__main__":

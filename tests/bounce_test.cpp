@@ -36,7 +36,7 @@ Transport swept() {
 }
 
 TEST(Bounce, AllThatLeavesASideLeaves) {
-  const Matrix light = reflected_intensity();
+  const Matrix light = reflected_intensity(*make_basis("bins24"));
   for (int side = 0; side < kCellFaces; ++side) {
     double flux = 0, along = 0;
     for (int b = 0; b < kSweepBins; ++b) {
@@ -54,7 +54,7 @@ TEST(Bounce, AllThatLeavesASideLeaves) {
 
 // Under the same light from everywhere a white wall sends back the light that falls on it.
 TEST(Bounce, WhatFallsOnASideIsWhatItWouldSend) {
-  const Matrix flux = incident_flux(), light = reflected_intensity();
+  const Matrix flux = incident_flux(), light = reflected_intensity(*make_basis("bins24"));
   const std::vector<double> even(kSweepBins, 1.0);
   const std::vector<double> arriving = flux * std::span<const double>(even);
   for (int side = 0; side < kCellFaces; ++side) {
@@ -98,7 +98,7 @@ struct Room {
   explicit Room(float albedo) : scene(room_scene(albedo, grid)) {
     blockers = reference::voxelize_blockers(scene, grid).lower;
     reflectors = reference::voxelize_reflectors(scene, grid).areas;
-    const Matrix leaving = reflected_intensity();
+    const Matrix leaving = reflected_intensity(*make_basis("bins24"));
     reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;
       for (int side = 0; side < kCellFaces; ++side) {

@@ -69,19 +69,22 @@ TEST(Sweep, BinsAreThoseOfTheBasis) {
     for (const SweepDirection& d : bins[static_cast<std::size_t>(b)].directions)
       EXPECT_EQ(basis->evaluate(d.w)[static_cast<std::size_t>(b)], 1) << b;
   }
-  const Matrix means = bin_means(*basis);
+  const Matrix means = part_means(*basis, 1);
   for (int i = 0; i < kSweepBins; ++i) {
-    for (int j = 0; j < kSweepBins; ++j) EXPECT_EQ(means(i, j), i == j ? 1 : 0);
+    for (int j = 0; j < kSweepBins; ++j) EXPECT_NEAR(means(i, j), i == j ? 1 : 0, kExact);
   }
 }
 
 TEST(Sweep, MeansKeepTheEnergyOfEveryBasis) {
   for (const std::string& name : basis_names()) {
     const auto basis = make_basis(name);
-    const Matrix means = bin_means(*basis);
+    const Matrix means = part_means(*basis, 2);
+    const std::vector<SweepBin> bins = sweep_bins(2);
     for (int i = 0; i < basis->size(); ++i) {
       double sum = 0;
-      for (int b = 0; b < kSweepBins; ++b) sum += std::numbers::pi / 6 * means(b, i);
+      for (int d = 0; d < means.rows(); ++d)
+        sum += bins[static_cast<std::size_t>(d / 4)].directions[static_cast<std::size_t>(d % 4)].solid_angle *
+               means(d, i);
       EXPECT_NEAR(sum, basis->integrals()[static_cast<std::size_t>(i)], 1e-9) << name << ' ' << i;
     }
   }

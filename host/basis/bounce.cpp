@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "basis/sweep.hpp"
+#include "basis/transport.hpp"
 
 namespace clpv {
 namespace {
@@ -40,13 +41,12 @@ Matrix incident_flux() {
   return flux;
 }
 
-Matrix reflected_intensity() {
-  const std::vector<SweepBin> bins = sweep_bins(1);
-  Matrix light(kSweepBins, kCellFaces);
+Matrix reflected_intensity(const Basis& basis) {
+  Matrix light(basis.size(), kCellFaces);
   for (int side = 0; side < kCellFaces; ++side) {
-    double total = 0;
-    for (const SweepBin& bin : bins) total += bin.solid_angle * cosine(bin, side);
-    for (int b = 0; b < kSweepBins; ++b) light(b, side) = cosine(bins[b], side) / total;
+    const std::vector<double> cosine = basis.clamped_cosine(glm::dvec3(kAxes[side]));
+    const double total = basis.energy(cosine);
+    for (int i = 0; i < basis.size(); ++i) light(i, side) = cosine[i] / total;
   }
   return light;
 }

@@ -3,6 +3,7 @@
 // without OpenCL.
 #pragma once
 
+#include "basis/basis.hpp"
 #include "basis/matrix.hpp"
 
 namespace clpv {
@@ -18,9 +19,9 @@ inline constexpr int kFurtherBounces = 6;
 /// Omega_b max(0, -w_b . a). It equals the flux that a sweep along 24 directions carries between planes.
 Matrix incident_flux();
 
-/// 24 x 6: intensity [W/sr] in each bin per flux [W] that a face emits:
-/// max(0, w_b . a) / sum_b' Omega_b' max(0, w_b' . a). Conserves the flux.
-Matrix reflected_intensity();
+/// N x 6: coefficients [W/sr] of the light that a face emits per flux [W]: the projected clamped cosine about its normal,
+/// divided by its integral. Conserves the flux.
+Matrix reflected_intensity(const Basis& basis);
 
 /// Share of a face's incident flux that incident_flux() counts twice at the edge to one adjacent face, for isotropic
 /// light on two fully covered faces. A sweep carries light through an edge once; both faces count it.

@@ -89,45 +89,27 @@ int coarser_part(int part, int parts, int coarser_parts) {
   return along(part / parts) * coarser_parts + along(part % parts);
 }
 
-Matrix bin_means(const Basis& basis) {
-  const DirectionBins bins(kSide);
-  Matrix sums(kSweepBins, basis.size());
-  std::vector<double> total(kSweepBins, 0.0);
-  // Polygons end at boundaries of bins and at discontinuities of the basis.
-  std::vector<glm::dvec3> planes = bins.creases();
-  const std::vector<glm::dvec3> creases = basis.creases();
-  planes.insert(planes.end(), creases.begin(), creases.end());
-  for (const SphericalPolygon& polygon : split(octants(), planes)) {
-    for (const QuadratureNode& node : nodes_of(polygon)) {
-      const std::vector<double> in = bins.evaluate(node.w), b = basis.evaluate(node.w);
-      for (int bin = 0; bin < kSweepBins; ++bin) {
-        const double weight = node.weight * in[bin];
-        if (weight == 0) continue;
-        total[bin] += weight;
-        for (int i = 0; i < basis.size(); ++i) sums(bin, i) += weight * b[i];
+Matrix part_means(const Basis& basis, int parts) {
+  const int of_bin = parts * parts;
+  Matrix means(kSweepBins * of_bin, basis.size());
+  for (int d = 0; d < means.rows(); ++d) {
+    const int part = d % of_bin;
+    const SphericalPolygon whole = part_polygon(d / of_bin, parts, part % parts, part / parts);
+    double total = 0;
+    for (const SphericalPolygon& piece : split({whole}, basis.creases())) {
+      for (const QuadratureNode& node : nodes_of(piece)) {
+        const std::vector<double> b = basis.evaluate(node.w);
+        for (int i = 0; i < basis.size(); ++i) means(d, i) += node.weight * b[i];
+        total += node.weight;
       }
     }
-  }
-  constexpr double kZero = 1e-14;  // means below are rounding errors of 0
-  for (int bin = 0; bin < kSweepBins; ++bin) {
-    for (double& mean : sums.row(bin)) {
-      mean /= total[bin];
+    constexpr double kZero = 1e-14;  // means below are rounding errors of 0
+    for (double& mean : means.row(d)) {
+      mean /= total;
       if (std::abs(mean) < kZero) mean = 0;
     }
   }
-  return sums;
-}
-
-bool holds_bin_means(const Basis& basis) {
-  constexpr double kSame = 1e-9;
-  if (basis.size() != kSweepBins) return false;
-  const Matrix means = bin_means(basis);
-  for (int b = 0; b < kSweepBins; ++b) {
-    for (int i = 0; i < kSweepBins; ++i) {
-      if (std::abs(means(b, i) - (b == i ? 1 : 0)) > kSame) return false;
-    }
-  }
-  return true;
+  return means;
 }
 
 std::unique_ptr<Basis> swept_basis() {

@@ -49,12 +49,10 @@ SubBin sub_bin_along(const glm::dvec3& w, int parts);
 /// Returns the one of `coarser_parts`^2 parts of a bin that contains most of part `part` of `parts`^2.
 int coarser_part(int part, int parts, int coarser_parts);
 
-/// 24 x N: mean of each basis function over each bin. A field is swept as these means, negative ones included, which
-/// conserves its energy.
-Matrix bin_means(const Basis& basis);
-
-/// Returns true if the basis's coefficients equal these means, as for bins24.
-bool holds_bin_means(const Basis& basis);
+/// (24 parts^2) x N: mean of each basis function over each part of a bin, in the order of sweep_bins(). Light that a cell
+/// injects along a direction is this row times its coefficients, negative values included: the sum over all directions
+/// is then the exact energy.
+Matrix part_means(const Basis& basis, int parts);
 
 /// Returns the basis of swept light: the nine spherical harmonics of bands 0 to 2. Convolution with the clamped cosine leaves
 /// almost nothing beyond band 2 (Ramamoorthi and Hanrahan 2001, 'An efficient representation for irradiance environment

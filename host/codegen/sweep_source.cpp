@@ -44,15 +44,6 @@ std::string sweep_bin_macros() {
   return text;
 }
 
-CountedText sweep_source_text(const Basis& basis) {
-  LinearCode code;
-  const std::string means =
-      code.function("Bins", "clpv_bin_means", "Coefficients", bin_means(basis), mirrors_of(basis).list());
-  return {
-      coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) + means,
-      code.operations()};
-}
-
 std::string sweep_links_text(const Basis& basis, const Transport& transport) {
   return transmittance_source(basis, transport).text + link_macros();
 }
@@ -67,15 +58,16 @@ CountedText sweep_collect_text() {
           code.operations()};
 }
 
-std::string bounce_source_text() {
-  return coefficient_macros(kCellFaces) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) +
-         LinearCode().function("Coefficients", "clpv_incident_flux", "Bins", incident_flux()) +
-         LinearCode().function("Bins", "clpv_reflected_intensity", "Coefficients", reflected_intensity());
-}
-
 std::string incident_flux_text() {
   return cell_macros("FaceFluxes", "FACE_FLUX", kCellFaces) +
          LinearCode().function("FaceFluxes", "clpv_incident_flux", "Bins", incident_flux());
+}
+
+std::string bounce_source_text(const Basis& basis) {
+  return coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) +
+         incident_flux_text() +
+         LinearCode().function("Coefficients", "clpv_reflected_intensity", "FaceFluxes",
+                               reflected_intensity(basis));
 }
 
 }  // namespace clpv

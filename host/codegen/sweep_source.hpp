@@ -19,17 +19,15 @@ struct CountedText {
   std::string text;
   OperationCount operations;
 };
-/// For sweep_source.cl: coefficient_macros, struct Bins, and Bins clpv_bin_means(Coefficients).
-CountedText sweep_source_text(const Basis& basis);
 /// For sweep_links.cl: the text of transmittance_source, and macros of the links used across each axis.
 std::string sweep_links_text(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: coefficient_macros of swept_basis(), struct Bins, and Coefficients clpv_project_bins(Bins).
 CountedText sweep_collect_text();
 
-/// For bounce.cl: coefficient_macros of six faces, struct Bins, Coefficients clpv_incident_flux(Bins) and
-/// Bins clpv_reflected_intensity(Coefficients).
-std::string bounce_source_text();
 /// For sweep_collect.cl with CLPV_WITH_INCIDENT: struct FaceFluxes, and FaceFluxes clpv_incident_flux(Bins).
 std::string incident_flux_text();
+/// For bounce.cl: coefficient_macros of `basis`, struct Bins, incident_flux_text(), and
+/// Coefficients clpv_reflected_intensity(FaceFluxes).
+std::string bounce_source_text(const Basis& basis);
 
 }  // namespace clpv

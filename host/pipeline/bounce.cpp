@@ -11,12 +11,12 @@ constexpr int kChannels = 3;
 
 }  // namespace
 
-Bouncer::Bouncer(Session& session, const SweepOptions& options)
+Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& options)
     : volumes_(session, options.grid, options.format),
       reflectors_(options.parts.size()),
-      inject_reflected_(session, volumes_.program("bounce.cl", bounce_source_text()), "inject_reflected") {
+      inject_reflected_(session, volumes_.program("bounce.cl", bounce_source_text(basis)), "inject_reflected") {
   if (options.bounces != Bounces::all) return;
-  const ProgramSource program = volumes_.program("bounce.cl", bounce_source_text());
+  const ProgramSource program = volumes_.program("bounce.cl", bounce_source_text(basis));
   inject_unit_.emplace(session, program, "inject_unit");
   extend_series_.emplace(session, program, "extend_series");
   inject_series_.emplace(session, program, "inject_series");
@@ -32,8 +32,8 @@ void Bouncer::set_reflectors(std::size_t cascade, const Volume& reflectors) {
   if (cascade + 1 == reflectors_.size()) series_ = &reflectors;
 }
 
-void Bouncer::inject_unit(const Buffer& sources) {
-  inject_unit_->set(series_->memory(), sources);
+void Bouncer::inject_unit(Volume& bounced) {
+  inject_unit_->set(series_->memory(), bounced.memory());
   volumes_.launch(*inject_unit_, kChannels);
 }
 
@@ -43,20 +43,23 @@ void Bouncer::extend_series(const Buffer& swept) {
   series_ = series_volume_.get();
 }
 
-void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const Buffer& sources) {
-  inject_reflected_.set(swept, reflectors_[cascade]->memory(), sources);
+void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, float share, const Volume& injected,
+                               Volume& bounced) {
+  inject_reflected_.set(swept, reflectors_[cascade]->memory(), injected.memory(), share, bounced.memory());
   volumes_.launch(inject_reflected_, kChannels);
 }
 
-void Bouncer::inject_series(const Buffer& first_swept, const Buffer& second_swept, const Buffer& sources) {
-  inject_series_->set(first_swept, second_swept, reflectors_.back()->memory(), series_->memory(), sources);
+void Bouncer::inject_series(const Buffer& first_swept, const Buffer& second_swept, const Volume& injected,
+                            Volume& bounced) {
+  inject_series_->set(first_swept, second_swept, reflectors_.back()->memory(), series_->memory(),
+                      injected.memory(), bounced.memory());
   volumes_.launch(*inject_series_, kChannels);
 }
 
 void Bouncer::inject_interpolated(std::size_t cascade, const std::array<int, 3>& offset,
-                                  const Buffer& sources) {
+                                  const Volume& injected, Volume& bounced) {
   inject_interpolated_->set(incident_[cascade], offset[0], offset[1], offset[2],
-                            reflectors_[cascade]->memory(), sources);
+                            reflectors_[cascade]->memory(), injected.memory(), bounced.memory());
   volumes_.launch(*inject_interpolated_, kChannels);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "basis/basis.hpp"
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
@@ -16,36 +17,38 @@
 
 namespace clpv {
 
-/// Reflects swept light off the surfaces of cascades. `swept` and `sources` have a volume for each channel and bin.
-/// Deterministic to the bit.
+/// Reflects swept light off the surfaces of cascades. `swept` has a volume of planes for each channel and bin; `injected`
+/// and `bounced` are light volumes of the basis. Deterministic to the bit.
 class Bouncer {
  public:
   /// `options`.bounces: two or all. With all, only the coarsest cascade evaluates the series; finer ones interpolate
   /// incident flux.
-  Bouncer(Session& session, const SweepOptions& options);
+  Bouncer(Session& session, const Basis& basis, const SweepOptions& options);
 
   /// Sets the reflectors of a cascade (ReflectorVoxelizer::reflectors), which must outlive this object. For the
   /// coarsest cascade it also restarts the series: S = R.
   void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
-  /// Adds S to `sources`, which holds zeros. In the coarsest cascade each face emits the light it reflects of 1 W.
-  void inject_unit(const Buffer& sources);
-  /// Adds a term to the series, S = R (1 + E). `swept`: a sweep of the sources of inject_unit().
+  /// Writes S to `bounced`: in the coarsest cascade each face emits the light it reflects of 1 W.
+  void inject_unit(Volume& bounced);
+  /// Adds a term to the series, S = R (1 + E). `swept`: a sweep of the light of inject_unit().
   void extend_series(const Buffer& swept);
 
-  /// Adds R D to `sources`. `swept` gives the incident flux D.
-  void inject_reflected(std::size_t cascade, const Buffer& swept, const Buffer& sources);
-  /// Adds R D_1 + S D_2 to `sources` in the coarsest cascade.
-  void inject_series(const Buffer& first_swept, const Buffer& second_swept, const Buffer& sources);
+  /// Writes `share` I + R D. `swept` gives the incident flux D.
+  void inject_reflected(std::size_t cascade, const Buffer& swept, float share, const Volume& injected,
+                        Volume& bounced);
+  /// Writes I + R D_1 + S D_2 in the coarsest cascade.
+  void inject_series(const Buffer& first_swept, const Buffer& second_swept, const Volume& injected,
+                     Volume& bounced);
 
   /// Incident flux on the faces of a cascade with all bounces, written by sweep_collect.cl; null for the finest
   /// cascade.
   const Buffer* incident(std::size_t cascade) const {
     return cascade == 0 ? nullptr : &incident_[cascade - 1];
   }
-  /// Adds R D to `sources`. D is interpolated from incident() of the next coarser cascade. `offset`:
-  /// offset_in_coarser().
-  void inject_interpolated(std::size_t cascade, const std::array<int, 3>& offset, const Buffer& sources);
+  /// Writes I + R D. D is interpolated from incident() of the next coarser cascade. `offset`: offset_in_coarser().
+  void inject_interpolated(std::size_t cascade, const std::array<int, 3>& offset, const Volume& injected,
+                           Volume& bounced);
 
  private:
   SweepVolumes volumes_;

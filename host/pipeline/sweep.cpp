@@ -8,6 +8,7 @@
 #include "basis/bounce.hpp"
 #include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
+#include "codegen/linear_code.hpp"
 #include "codegen/sweep_source.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/sweep_tables.hpp"
@@ -52,15 +53,6 @@ bool within(const ClpvSweepHalo& halo, int grid) {
                      [&](int first) { return first >= 0 && first + halo.side <= grid; });
 }
 
-ProgramSource sweep_program(const SweepOptions& options, int parts, bool whole_bins) {
-  ProgramSource source{whole_bins ? "sweep_bins.cl" : "sweep_planes.cl", {}, {}};
-  source.literals.integer("CLPV_GRID", options.grid)
-      .integer("CLPV_PARTS", parts * parts)
-      .flag("CLPV_BLOCKING", options.blocking);
-  add_format_literals(source.literals, options.format, whole_bins ? 8 : 1);
-  return source;
-}
-
 /// Kernels that set the boundary condition of a cascade whose bins have parts^2 parts.
 ProgramSource border_program(const char* file, const SweepOptions& options, int parts) {
   ProgramSource source{file, {}, {}};
@@ -76,15 +68,16 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     : session_(session),
       options_(options),
       volumes_(session, options.grid, options.format),
-      in_place_(options.bounces == Bounces::one && swept_in_place(basis, options.format)),
-      source_(session, source_program(basis), "sweep_source"),
+      source_(session, volumes_.program("sweep_source.cl", coefficient_macros(basis.size())), "sweep_source"),
       collect_(session, volumes_.program("sweep_collect.cl", sweep_collect_text().text), "sweep_collect") {
   const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t ordinates =
       3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
-  const std::optional<VolumeFormat> swept_from = in_place_ ? std::optional(options.format) : std::nullopt;
-  bins_ = session.upload(sweep_bin_table(options.grid, swept_from), "bins to sweep");
-  light_ = volumes_.make(3 * kSweepBins, "sources and sums of the sweep");
+  bins_ = session.upload(sweep_bin_table(options.grid), "bins to sweep");
+  sources_ = volumes_.make(2 * 3 * basis.size(), "sources of the sweep");
+  lit_ = zeroed_buffer(session, 2 * CLPV_SWEEP_VOLUME_OF(std::size_t(options.grid)) / volumes_.lanes(),
+                       "lit rows of the sweep");
+  sums_ = volumes_.make(3 * kSweepBins, "sums of the sweep");
   plane_buffer_ =
       zeroed_buffer(session, (whole_bins() ? 1 : 2) * ordinates * plane, "plane buffer of the sweep");
   border_ = zeroed_buffer(session,
@@ -96,24 +89,31 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   const std::size_t links = options.blocking ? link_volumes().count() : 1;
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     links_.push_back(volumes_.make(links, "transmittance of the sweep's links"));
-  passes_ = make_passes(options.parts);
+  passes_ = make_passes(basis, options.parts);
   if (options.bounces == Bounces::one) return;
-  bouncer_.emplace(session, options);
+  bouncer_.emplace(session, basis, options);
+  bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},
+                                      "injected and reflected light", options.format);
   const bool all = options.bounces == Bounces::all;
-  bounce_passes_ = make_passes(std::vector<int>(all ? 1 : options.parts.size(), kBounceParts));
-  first_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
+  bounce_passes_ = make_passes(basis, std::vector<int>(all ? 1 : options.parts.size(), kBounceParts));
   if (!all) return;
-  second_swept_ = volumes_.make(3 * kSweepBins, "light of the second bounce");
+  first_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
   ProgramSource collecting =
       volumes_.program("sweep_collect.cl", sweep_collect_text().text + incident_flux_text());
   collecting.literals.flag("CLPV_WITH_INCIDENT", true);
   collect_with_incident_.emplace(session, collecting, "sweep_collect");
 }
 
-/// Program of sweep_source.cl; of the bins across x and y alone with in_place().
-ProgramSource Sweeper::source_program(const Basis& basis) const {
-  ProgramSource source = volumes_.program("sweep_source.cl", sweep_source_text(basis).text);
-  source.literals.flag("CLPV_Z_IN_PLACE", in_place_);
+/// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`, of which a bin depends on `emitting`.
+ProgramSource Sweeper::sweep_program(int coefficients, int emitting, int parts) const {
+  ProgramSource source{whole_bins() ? "sweep_bins.cl" : "sweep_planes.cl", {}, {}};
+  source.literals.integer("CLPV_GRID", options_.grid)
+      .integer("CLPV_PARTS", parts * parts)
+      .integer("CLPV_SOURCES", coefficients)
+      .integer("CLPV_EMITTING", emitting)
+      .integer("CLPV_SOURCE_LANES", volumes_.lanes())
+      .flag("CLPV_BLOCKING", options_.blocking);
+  add_format_literals(source.literals, options_.format, whole_bins() ? 8 : 1);
   return source;
 }
 
@@ -122,13 +122,16 @@ bool Sweeper::whole_bins() const {
          (options_.form == SweepForm::suited && session_.device().type == "cpu");
 }
 
-Sweeper::Passes Sweeper::make_passes(const std::vector<int>& parts) {
+Sweeper::Passes Sweeper::make_passes(const Basis& basis, const std::vector<int>& parts) {
   Passes passes;
   for (std::size_t c = 0; c < parts.size(); ++c) {
     const int coarser = c + 1 < parts.size() ? parts[c + 1] : 0;
+    const SweepMeans means = sweep_means(basis, parts[c]);
     Pass pass{parts[c],
               session_.upload(sweep_direction_table(parts[c], coarser), "directions to sweep"),
-              Kernel(session_, sweep_program(options_, parts[c], whole_bins()),
+              session_.upload(means.coefficients, "coefficients of the sweep's bins"),
+              session_.upload(means.means, "means of the basis's functions"),
+              Kernel(session_, sweep_program(basis.size(), means.emitting, parts[c]),
                      whole_bins() ? "sweep_bin" : "sweep_plane"),
               {},
               zeroed_buffer(session_, halo_bytes(options_, parts[c], c), "boundary light of a finer cascade"),
@@ -153,10 +156,10 @@ void Sweeper::set_reflectors(std::size_t cascade, const Volume& reflectors) {
   bouncer_.value().set_reflectors(cascade, reflectors);
   if (options_.bounces != Bounces::all || cascade + 1 < options_.parts.size()) return;
   for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
-    session_.fill_zero(first_swept_, first_swept_.bytes());
-    bouncer_->inject_unit(first_swept_);
-    launch(bounce_passes_.back(), cascade, {first_swept_.handle(), first_swept_, first_swept_}, {}, false);
-    bouncer_->extend_series(first_swept_);
+    bouncer_->inject_unit(*bounced_);
+    set_sources(*bounced_);
+    launch(bounce_passes_.back(), cascade, sums_, {}, false);
+    bouncer_->extend_series(sums_);
   }
 }
 
@@ -207,12 +210,18 @@ ClpvSweepHalo Sweeper::halo(std::size_t cascade, const std::vector<ClpvGrid>& gr
   return halo_of(options_.grid, offset_in_coarser(grids[cascade], grids[cascade - 1]));
 }
 
+/// Sets the light that the next sweeps inject.
+void Sweeper::set_sources(const Volume& light) {
+  source_.set(light.memory(), sources_, lit_);
+  volumes_.launch(source_, 1);
+}
+
 /// Launches the sweep of a cascade. `lit`: set_boundary() has set light at the border.
-void Sweeper::launch(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepHalo& halo,
+void Sweeper::launch(Pass& pass, std::size_t cascade, const Buffer& sums, const ClpvSweepHalo& halo,
                      bool lit) {
   const auto set = [&](cl_int last) {
-    pass.sweep.set(bins_, pass.directions, light.injected, light.sources, links_[cascade], border_, halo,
-                   plane_buffer_, light.sums, pass.halo_light, last);
+    pass.sweep.set(bins_, pass.directions, pass.coefficients, pass.means, sources_, lit_, links_[cascade],
+                   border_, halo, plane_buffer_, sums, pass.halo_light, last);
   };
   if (whole_bins()) {
     set(lit ? 0 : 1);
@@ -234,40 +243,42 @@ void Sweeper::set_dark_boundary(const Pass& pass) {
   session_.fill_zero(plane_buffer_, 2 * planes * sizeof(float));
 }
 
-/// Sweeps a cascade with its boundary condition, and stores the halo of the next finer one.
-void Sweeper::sweep_cascade(Passes& passes, std::size_t cascade, const Light& light,
-                            const std::vector<ClpvGrid>& grids) {
+/// Sweeps a cascade with its boundary condition into sums_, and stores the halo of the next finer one.
+void Sweeper::sweep_cascade(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
   const bool lit = set_boundary(passes, cascade, grids);
   Pass& pass = passes[cascade];
   const ClpvSweepHalo stored = halo(cascade, grids);
   // Cells of the halo outside this grid are dark.
   if (!within(stored, options_.grid)) session_.fill_zero(pass.halo_light, pass.halo_light.bytes());
-  launch(pass, cascade, light, stored, lit);
+  launch(pass, cascade, sums_, stored, lit);
 }
 
-/// Adds reflected light to light_, for bounces beyond the first.
-void Sweeper::add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids) {
+/// Sets bounced_ to `injected` and reflected light, for bounces beyond the first.
+void Sweeper::add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected) {
   if (options_.bounces == Bounces::two) {
-    sweep_cascade(bounce_passes_, cascade, {light_.handle(), light_, first_swept_}, grids);
-    bouncer_->inject_reflected(cascade, first_swept_, light_);
+    set_sources(injected);
+    sweep_cascade(bounce_passes_, cascade, grids);
+    bouncer_->inject_reflected(cascade, sums_, 1, injected, *bounced_);
   } else if (cascade + 1 == options_.parts.size()) {
-    add_series(grids[cascade].cell);
+    add_series(grids[cascade].cell, injected);
   } else {
-    bouncer_->inject_interpolated(cascade, offset_in_coarser(grids[cascade + 1], grids[cascade]), light_);
+    bouncer_->inject_interpolated(cascade, offset_in_coarser(grids[cascade + 1], grids[cascade]), injected,
+                                  *bounced_);
   }
 }
 
-/// Adds all bounces to light_ in the coarsest cascade, R D_1 + R (1 + E) D_2: two sweeps, and the series of
+/// Adds all bounces in the coarsest cascade, I + R D_1 + R (1 + E) D_2: two sweeps, and the series of
 /// set_reflectors().
-void Sweeper::add_series(float cell) {
+void Sweeper::add_series(float cell, const Volume& injected) {
   Pass& pass = bounce_passes_.back();
   const std::size_t coarsest = options_.parts.size() - 1;
   const bool lit = set_boundary(pass, cell);
-  launch(pass, coarsest, {light_.handle(), light_, first_swept_}, {}, lit);
-  session_.fill_zero(second_swept_, second_swept_.bytes());
-  bouncer_->inject_reflected(coarsest, first_swept_, second_swept_);
-  launch(pass, coarsest, {second_swept_.handle(), second_swept_, second_swept_}, {}, false);
-  bouncer_->inject_series(first_swept_, second_swept_, light_);
+  set_sources(injected);
+  launch(pass, coarsest, first_swept_, {}, lit);
+  bouncer_->inject_reflected(coarsest, first_swept_, 0, injected, *bounced_);
+  set_sources(*bounced_);
+  launch(pass, coarsest, sums_, {}, false);
+  bouncer_->inject_series(first_swept_, sums_, injected, *bounced_);
 }
 
 /// Projects swept light on harmonics; with all bounces also stores the incident flux that the next finer cascade
@@ -275,19 +286,18 @@ void Sweeper::add_series(float cell) {
 void Sweeper::collect(std::size_t cascade, Volume& accumulated) {
   const Buffer* incident = bouncer_ && collect_with_incident_ ? bouncer_->incident(cascade) : nullptr;
   if (incident != nullptr) {
-    collect_with_incident_->set(light_, accumulated.memory(), *incident);
+    collect_with_incident_->set(sums_, accumulated.memory(), *incident);
     return volumes_.launch(*collect_with_incident_, 3);
   }
-  collect_.set(light_, accumulated.memory());
+  collect_.set(sums_, accumulated.memory());
   volumes_.launch(collect_, 3);
 }
 
 void Sweeper::sweep(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected,
                     Volume& accumulated) {
-  source_.set(injected.memory(), light_);
-  volumes_.launch(source_, 3);
-  if (bouncer_) add_bounces(cascade, grids);
-  sweep_cascade(passes_, cascade, {in_place_ ? injected.memory() : light_.handle(), light_, light_}, grids);
+  if (bouncer_) add_bounces(cascade, grids, injected);
+  set_sources(bouncer_ ? *bounced_ : injected);
+  sweep_cascade(passes_, cascade, grids);
   collect(cascade, accumulated);
 }
 

@@ -3,6 +3,7 @@
 // (kernels/sweep_*.cl; docs/method.md, 'The sweep').
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -55,14 +56,12 @@ class Sweeper {
   /// (kernels/sweep_planes.cl).
   bool whole_bins() const;
 
-  /// Returns true if bins across z are swept from the injected volume (swept_in_place()).
-  bool in_place() const { return in_place_; }
-
  private:
   /// Directions, kernels and boundary light of one cascade.
   struct Pass {
     int parts;
-    Buffer directions;  ///< ClpvSweepDirection
+    Buffer directions;           ///< ClpvSweepDirection
+    Buffer coefficients, means;  ///< SweepMeans
     Kernel sweep;
     std::optional<Kernel> border;      ///< boundary condition from the coarser cascade; none for the coarsest
     Buffer halo_light;                 ///< boundary light for the next finer cascade
@@ -70,39 +69,34 @@ class Sweeper {
     Buffer sky;                        ///< swept_sky()
   };
   using Passes = std::vector<Pass>;  ///< one per cascade
-  struct Light {
-    const cl::Memory& injected;  ///< sources of some bins, as bins_ says
-    const Buffer& sources;
-    const Buffer& sums;  ///< may be `sources`
-  };
-  ProgramSource source_program(const Basis& basis) const;
-  Passes make_passes(const std::vector<int>& parts);
+  ProgramSource sweep_program(int coefficients, int emitting, int parts) const;
+  Passes make_passes(const Basis& basis, const std::vector<int>& parts);
   bool set_boundary(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   bool set_boundary(Pass& coarsest, float cell);
   void set_dark_boundary(const Pass& pass);
   void launch_border(Kernel& kernel, const Pass& pass);
-  void sweep_cascade(Passes& passes, std::size_t cascade, const Light& light,
-                     const std::vector<ClpvGrid>& grids);
-  void launch(Pass& pass, std::size_t cascade, const Light& light, const ClpvSweepHalo& halo, bool lit);
-  void add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids);
-  void add_series(float cell);
+  void set_sources(const Volume& light);
+  void sweep_cascade(Passes& passes, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  void launch(Pass& pass, std::size_t cascade, const Buffer& sums, const ClpvSweepHalo& halo, bool lit);
+  void add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected);
+  void add_series(float cell, const Volume& injected);
   void collect(std::size_t cascade, Volume& accumulated);
   cl_int upstream_plane(const Pass& pass) const;
 
   Session& session_;
   SweepOptions options_;
   SweepVolumes volumes_;
-  Buffer bins_, light_, plane_buffer_, border_;
+  Buffer bins_, sources_, lit_;  ///< sources_, lit_: sweep_source.cl
+  Buffer sums_, plane_buffer_, border_;
   std::vector<Buffer> links_;  ///< transmittance of the links of each cascade
-  bool in_place_;
   Kernel source_, collect_;
   std::optional<Kernel> transmittance_, collect_with_incident_;
   Passes passes_;
   std::optional<Bouncer> bouncer_;  ///< none with one bounce
   /// Along 24 directions, for incident flux: of each cascade, or with all bounces of the coarsest one.
   Passes bounce_passes_;
-  Buffer first_swept_;   ///< light swept along 24 directions: D_1 of docs/method.md
-  Buffer second_swept_;  ///< D_2; only with all bounces
+  std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce
+  Buffer first_swept_;               ///< D_1 of docs/method.md; only with all bounces
   float sky_scale_ = 1;
 };
 

@@ -2,53 +2,26 @@
 #include "pipeline/sweep_tables.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "basis/sweep.hpp"
 
 namespace clpv {
-namespace {
-
-/// Stores the index of the first cell's source in a volume, and the strides to the next channel, plane and row.
-void put_source(ClpvSweepBin& entry, std::size_t b, const SweepBin& bin, int grid,
-                const VolumeFormat& injected) {
-  const VolumeShape shape{grid, kSweepBins, 3};
-  const auto at = [&](int channel, const glm::ivec3& cell) -> int {
-    return stored_index(injected, shape, channel, static_cast<int>(b), cell.x, cell.y, cell.z);
-  };
-  const auto along = [](int axis) {
-    glm::ivec3 step(0);
-    step[axis] = 1;
-    return step;
-  };
-  entry.injected = 1;
-  entry.source = at(0, {});
-  entry.channel = at(1, {}) - entry.source;
-  entry.plane = at(0, along(bin.axis)) - entry.source;
-  entry.row = at(0, along(bin.v)) - entry.source;
-}
-
-}  // namespace
-
-bool swept_in_place(const Basis& basis, const VolumeFormat& injected) {
-  return injected.layout == Layout::soa && holds_bin_means(basis);
-}
-
-std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected) {
+std::vector<ClpvSweepBin> sweep_bin_table(int grid) {
   const LinkVolumes links = link_volumes();
   const std::vector<SweepBin> bins = sweep_bins(1);
   std::vector<ClpvSweepBin> table;
-  for (std::size_t b = 0; b < bins.size(); ++b) {
-    const SweepBin& bin = bins[b];
+  for (const SweepBin& bin : bins) {
     ClpvSweepBin entry{};
     entry.plane_axis = bin.axis, entry.row_axis = bin.v, entry.column_axis = bin.u;
     entry.plane_sign = bin.sign[bin.axis], entry.row_sign = bin.sign[bin.v],
     entry.column_sign = bin.sign[bin.u];
     for (std::size_t k = 0; k < bin.offset.size(); ++k)
       entry.links[k] = links.volume(bin.axis, bin.offset[k]);
-    const int volume = CLPV_SWEEP_VOLUME_OF(grid);
-    entry.source = static_cast<int>(b) * volume, entry.channel = kSweepBins * volume;
+    // Volumes across z serve bins across y with plane and row exchanged.
+    entry.transposed = bin.axis == 0 ? 1 : 0;
     entry.plane = CLPV_SWEEP_PLANE_OF(grid), entry.row = CLPV_SWEEP_ROW_OF(grid);
-    if (injected && bin.axis == 2) put_source(entry, b, bin, grid, *injected);
+    if (bin.axis == 1) std::swap(entry.plane, entry.row);
     table.push_back(entry);
   }
   return table;
@@ -70,6 +43,32 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
         entry.from_coarser = kArea * d.flux / from.flux;
       }
       table.push_back(entry);
+    }
+  }
+  return table;
+}
+
+SweepMeans sweep_means(const Basis& basis, int parts) {
+  const Matrix means = part_means(basis, parts);
+  const int of_bin = parts * parts;
+  constexpr int kNone = -1;
+  std::vector<std::vector<int>> used(kSweepBins);  // coefficients of each bin
+  for (int bin = 0; bin < kSweepBins; ++bin) {
+    for (int i = 0; i < basis.size(); ++i) {
+      for (int part = 0; part < of_bin; ++part) {
+        if (means(bin * of_bin + part, i) == 0) continue;
+        used[bin].push_back(i);
+        break;
+      }
+    }
+  }
+  const auto most = std::ranges::max_element(used, {}, &std::vector<int>::size);
+  SweepMeans table{static_cast<int>(most->size()), {}, {}};
+  for (int bin = 0; bin < kSweepBins; ++bin) {
+    used[bin].resize(table.emitting, kNone);
+    for (const int i : used[bin]) table.coefficients.push_back(i == kNone ? 0 : i);
+    for (int part = 0; part < of_bin; ++part) {
+      for (const int i : used[bin]) table.means.push_back(i == kNone ? 0 : means(bin * of_bin + part, i));
     }
   }
   return table;

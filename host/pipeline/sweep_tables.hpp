@@ -2,21 +2,23 @@
 // Tables of bins and directions for the kernels of the sweep (kernels/shared/sweep.h).
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "kernels/shared/sweep.h"
-#include "volume/volume_format.hpp"
 
 namespace clpv {
 
-/// Returns true if bins across z can be swept from the injected volume, which requires bins' means (bins24) in layout
-/// soa. Bins across x and y need volumes of planes: the injected volume scatters their rows or planes.
-bool swept_in_place(const Basis& basis, const VolumeFormat& injected);
-/// `injected`: format of the volume from which bins across z are swept; none: all bins use volumes of planes.
-std::vector<ClpvSweepBin> sweep_bin_table(int grid, const std::optional<VolumeFormat>& injected = {});
+std::vector<ClpvSweepBin> sweep_bin_table(int grid);
 /// `coarser_parts`: parts of the next coarser cascade; 0 for the coarsest.
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);
+
+/// part_means() without the coefficients that no direction of a bin depends on (those of other bins).
+struct SweepMeans {
+  int emitting;                   ///< coefficients per bin, the most of any bin
+  std::vector<int> coefficients;  ///< 24 x emitting
+  std::vector<float> means;       ///< 24 parts^2 x emitting; 0 for entries that a bin does not need
+};
+SweepMeans sweep_means(const Basis& basis, int parts);
 
 }  // namespace clpv

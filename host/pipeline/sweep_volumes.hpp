@@ -17,6 +17,8 @@ class SweepVolumes {
 
   /// Program with a work-item per tile; its literals are grid, lanes, layout and storage.
   ProgramSource program(const char* file, std::string generated) const;
+  int lanes() const { return tile_; }  ///< cells along the edges of a tile
+
   /// Launches a kernel over the tiles of all slices and `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
@@ -29,7 +31,7 @@ class SweepVolumes {
   Session& session_;
   int grid_;
   VolumeFormat format_;
-  int tile_;  ///< cells along the edges of a tile
+  int tile_;
 };
 
 /// Returns a zeroed buffer of at least `bytes`. Errors as in Session::buffer().

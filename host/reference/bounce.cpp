@@ -17,23 +17,25 @@ namespace {
 using IncidentFlux = std::function<std::vector<double>(int, const glm::ivec3&)>;
 
 /// light += R D: adds the intensity of the reflected flux.
-void inject_reflected(Volume& light, const Volume& reflectors, const IncidentFlux& incident) {
-  const Matrix intensity = reflected_intensity();
+void inject_reflected(const Basis& basis, const Volume& reflectors, const IncidentFlux& incident,
+                      Volume& light) {
+  const Matrix intensity = reflected_intensity(basis);
   for_each_cell(light.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < 3; ++channel) {
       std::vector<double> flux = incident(channel, p);
       for (int side = 0; side < kCellFaces; ++side)
         flux[side] *= reflectors.value(channel, side, p.x, p.y, p.z);
       const std::vector<double> added = intensity * flux;
-      for (int bin = 0; bin < kSweepBins; ++bin) light.at(channel, bin, p.x, p.y, p.z) += added[bin];
+      for (int i = 0; i < basis.size(); ++i) light.at(channel, i, p.x, p.y, p.z) += added[i];
     }
   });
 }
 
-/// Sweeps light in bins along 24 directions.
-Volume swept_along_24(const Transport& transport, SweptCascade cascade, const Volume& light) {
+/// Sweeps light along 24 directions.
+Volume swept_along_24(const Basis& basis, const Transport& transport, SweptCascade cascade,
+                      const Volume& light) {
   cascade.injected = &light, cascade.parts = 1;
-  return sweep(*make_basis("bins24"), transport, {cascade})[0];
+  return sweep(basis, transport, {cascade})[0];
 }
 
 /// Incident flux of swept light.
@@ -54,43 +56,45 @@ IncidentFlux interpolated_flux(const ClpvGrid& coarse, const Volume& swept, cons
 }
 
 /// light += R D in every cascade.
-void add_one_bounce(const Transport& transport, std::vector<SweptCascade> cascades,
+void add_one_bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
   for (SweptCascade& cascade : cascades) cascade.parts = 1;
-  const std::vector<Volume> swept = sweep(*make_basis("bins24"), transport, cascades);
+  const std::vector<Volume> swept = sweep(basis, transport, cascades);
   for (std::size_t c = 0; c < cascades.size(); ++c)
-    inject_reflected(light[c], *reflectors[c], incident_flux_of(swept[c]));
+    inject_reflected(basis, *reflectors[c], incident_flux_of(swept[c]), light[c]);
 }
 
 /// light += R D_1 + R (1 + E) D_2 in the coarsest cascade, R D in finer ones, D interpolated from the next coarser one.
-void add_all_bounces(const Transport& transport, const std::vector<SweptCascade>& cascades,
+void add_all_bounces(const Basis& basis, const Transport& transport, const std::vector<SweptCascade>& cascades,
                      const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
   const SweptCascade& coarsest = cascades.back();
-  const Volume first = swept_along_24(transport, coarsest, light.back());
-  Volume reflected(first.n, kSweepBins);
-  inject_reflected(reflected, *reflectors.back(), incident_flux_of(first));
-  inject_reflected(light.back(), *reflectors.back(), incident_flux_of(first));
-  const Volume second = swept_along_24(transport, coarsest, reflected);
-  inject_reflected(light.back(), bounce_series(transport, coarsest, *reflectors.back()),
-                   incident_flux_of(second));
+  const Volume first = swept_along_24(basis, transport, coarsest, light.back());
+  Volume reflected(first.n, basis.size());
+  inject_reflected(basis, *reflectors.back(), incident_flux_of(first), reflected);
+  inject_reflected(basis, *reflectors.back(), incident_flux_of(first), light.back());
+  const Volume second = swept_along_24(basis, transport, coarsest, reflected);
+  inject_reflected(basis, bounce_series(basis, transport, coarsest, *reflectors.back()),
+                   incident_flux_of(second), light.back());
   for (std::size_t c = cascades.size() - 1; c-- > 0;) {
     const std::vector<SweptCascade> coarser(cascades.begin() + static_cast<std::ptrdiff_t>(c) + 1,
                                             cascades.end());
-    const Volume swept = sweep(*make_basis("bins24"), transport, coarser)[0];
-    inject_reflected(light[c], *reflectors[c],
-                     interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid));
+    const Volume swept = sweep(basis, transport, coarser)[0];
+    inject_reflected(basis, *reflectors[c],
+                     interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid), light[c]);
   }
 }
 
 }  // namespace
 
-Volume bounce_series(const Transport& transport, const SweptCascade& cascade, const Volume& reflectors) {
+Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
+                     const Volume& reflectors) {
   Volume series = reflectors;
   for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
-    Volume reflected(series.n, kSweepBins);
-    inject_reflected(reflected, series,
-                     [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); });
-    const Volume swept = swept_along_24(transport, cascade, reflected);
+    Volume reflected(series.n, basis.size());
+    inject_reflected(
+        basis, series, [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); },
+        reflected);
+    const Volume swept = swept_along_24(basis, transport, cascade, reflected);
     const IncidentFlux incident = incident_flux_of(swept);
     for_each_cell(series.n, [&](const glm::ivec3& p) {
       for (int channel = 0; channel < 3; ++channel) {
@@ -108,20 +112,19 @@ Volume bounce_series(const Transport& transport, const SweptCascade& cascade, co
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces) {
   std::vector<Volume> light;
-  for (const SweptCascade& cascade : cascades) light.push_back(in_bins(basis, *cascade.injected));
+  for (const SweptCascade& cascade : cascades) light.push_back(*cascade.injected);
   for (std::size_t c = 0; c < cascades.size(); ++c) cascades[c].injected = &light[c];
-  if (bounces == Bounces::two) add_one_bounce(transport, cascades, reflectors, light);
-  if (bounces == Bounces::all) add_all_bounces(transport, cascades, reflectors, light);
+  if (bounces == Bounces::two) add_one_bounce(basis, transport, cascades, reflectors, light);
+  if (bounces == Bounces::all) add_all_bounces(basis, transport, cascades, reflectors, light);
   return light;
 }
 
 std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport,
                                   std::vector<SweptCascade> cascades,
                                   const std::vector<const Volume*>& reflectors, Bounces bounces) {
-  const auto bins = make_basis("bins24");
   const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces);
   for (std::size_t c = 0; c < cascades.size(); ++c) cascades[c].injected = &light[c];
-  return sweep(*bins, transport, cascades);
+  return sweep(basis, transport, cascades);
 }
 
 }  // namespace clpv::reference

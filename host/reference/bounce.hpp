@@ -11,9 +11,10 @@
 namespace clpv::reference {
 
 /// Reflectance with the series of kFurtherBounces bounces inside one cascade: R (1 + E).
-Volume bounce_series(const Transport& transport, const SweptCascade& cascade, const Volume& reflectors);
+Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
+                     const Volume& reflectors);
 
-/// Sources of the sweep in every cascade, in bins24 [W/sr]: injected light and the light that `reflectors`, one volume per
+/// Sources of the sweep in every cascade, in `basis` [W/sr]: injected light and the light that `reflectors`, one volume per
 /// cascade, reflect. With all bounces, finer cascades interpolate incident flux from the next coarser one.
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces);

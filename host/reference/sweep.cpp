@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <span>
 #include <variant>
 
 #include "basis/sky_light.hpp"
@@ -34,13 +35,14 @@ class Sweep {
       : cascade_(cascade),
         boundary_(boundary),
         n_(cascade.grid.n),
-        sources_(in_bins(basis, *cascade.injected)) {
+        means_(part_means(basis, cascade.parts)) {
     set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
   /// D of one direction.
   Volume direction(int bin, const SweepBin& sweep_bin, int part) const {
     const SweepDirection& d = sweep_bin.directions[part];
+    const std::span<const double> means = means_.row(bin * cascade_.parts * cascade_.parts + part);
     Volume field(n_, 1, 3);
     for_each_cell(n_, [&](const glm::ivec3& along) {
       glm::ivec3 p;  // in order from upstream to downstream
@@ -50,7 +52,7 @@ class Sweep {
         p[axis] = sweep_bin.sign[axis] > 0 ? step : n_ - 1 - step;
       }
       for (int channel = 0; channel < 3; ++channel) {
-        double value = sources_.value(channel, bin, p.x, p.y, p.z);
+        double value = dot(means, cascade_.injected->cell(channel, p));
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
           const glm::ivec3 q = p - sweep_bin.offset[k];
           const double transmitted = transmittance_[link_of(sweep_bin.offset[k])].value(0, 0, p.x, p.y, p.z);
@@ -101,7 +103,7 @@ class Sweep {
   SweptCascade cascade_;
   BoundaryCondition boundary_;
   int n_;
-  Volume sources_;
+  Matrix means_;  ///< part_means()
   std::vector<Volume> transmittance_;  ///< by link_of()
 };
 
@@ -143,16 +145,6 @@ std::vector<double> trilinear(const Volume& volume, int channel, const glm::dvec
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weights.x * weights.y * weights.z * c[i];
   }
   return sum;
-}
-
-Volume in_bins(const Basis& basis, const Volume& injected) {
-  const Matrix means = bin_means(basis);
-  Volume light(injected.n, kSweepBins);
-  for_each_cell(light.n, [&](const glm::ivec3& p) {
-    for (int channel = 0; channel < 3; ++channel)
-      light.set_cell(channel, p, means * injected.cell(channel, p));
-  });
-  return light;
 }
 
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,

@@ -21,9 +21,6 @@ struct SweptCascade {
   int parts = 1;                     ///< subdivision of its bins (sweep_bins)
 };
 
-/// Returns injected light [W/sr] as means over the bins of bins24.
-Volume in_bins(const Basis& basis, const Volume& injected);
-
 /// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of its first cell.
 glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell);
 /// Returns all coefficients of a channel at such a position, interpolated trilinearly between cell centres; 0 outside.

@@ -31,8 +31,7 @@
   SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)               \
     OFFSET(ClpvSweepBin, column_sign) OFFSET(ClpvSweepBin, plane_axis)                             \
     OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, links)    \
-    OFFSET(ClpvSweepBin, injected) OFFSET(ClpvSweepBin, source) OFFSET(ClpvSweepBin, channel)      \
-    OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)                                          \
+    OFFSET(ClpvSweepBin, transposed) OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)         \
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
     OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \
   SIZE(ClpvSweepHalo) OFFSET(ClpvSweepHalo, first) OFFSET(ClpvSweepHalo, side)                  \

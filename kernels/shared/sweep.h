@@ -12,11 +12,11 @@ typedef struct {
   int plane_sign, row_sign, column_sign;  // 1: light travels towards larger numbers; -1: towards smaller ones
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
   int links[4];  // transmittance volumes of the links from the cells offset by 0, u, v, and u and v
-  int injected;  // 1: sources are in the injected light volume; 0: in volumes of planes (sweep_layout.h)
-  int source, channel, plane, row;  // index of the first cell's source; steps to the next channel, plane and row
+  int transposed;  // 1: sources are in the volumes across x; 0: in those across z (sweep_source.cl)
+  int plane, row;  // steps from a source to the next plane's and the next row's
 } ClpvSweepBin;
 
-#define CLPV_SIZEOF_SWEEP_BIN 60
+#define CLPV_SIZEOF_SWEEP_BIN 52
 
 typedef struct {
   float taps[4];       // t of the same four cells; their sum is 1
