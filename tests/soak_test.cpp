@@ -16,7 +16,7 @@ const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
 
 constexpr double kFlat = 1.01;  // over frames()
 
-/// More by CLPV_SOAK_FRAMES (500 for docs/security.md).
+/// CLPV_SOAK_FRAMES sets another number.
 int frames() {
   const char* wish = std::getenv("CLPV_SOAK_FRAMES");
   return wish != nullptr ? std::atoi(wish) : 20;
