@@ -16,7 +16,7 @@ test::Outcome clpv(const std::string& arguments) {
   return test::run(CLPV_PROGRAM " " + arguments);
 }
 
-TEST(CommandLine, NothingGivenIsAQuestionForHelp) {
+TEST(CommandLine, WithoutArgumentsItPrintsHelp) {
   const test::Outcome bare = clpv(""), help = clpv("--help");
   EXPECT_EQ(bare.exit_code, 0);
   EXPECT_EQ(bare.out, help.out);
@@ -42,7 +42,7 @@ TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
               AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));
 }
 
-TEST(CommandLine, AReaderThatIsGone) {
+TEST(CommandLine, AClosedPipeEndsTheProgram) {
   // As any program: the signal of the pipe ends it, with nothing said.
   const test::TemporaryFolder folder;
   const test::Outcome outcome =
@@ -52,7 +52,7 @@ TEST(CommandLine, AReaderThatIsGone) {
   EXPECT_TRUE(code == "141\n" || code == "0\n") << code;  // 0: it was done before
 }
 
-TEST(CommandLine, DataThatDoesNotFitIsNotLostUnsaid) {
+TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
   const test::Outcome outcome = clpv("devices --json >/dev/full");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));

@@ -95,7 +95,7 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
                         "int64_atomics", "fp64", "profiling_valid", "supported", "missing"));
 }
 
-TEST(DevicesCommand, WithoutAnyDriverIsAnEmptyListAndAWord) {
+TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
   const test::TemporaryFolder empty;
   const std::string none = "OCL_ICD_VENDORS=" + empty.path().string() + " ";
   const auto listed = test::run(none + CLPV_PROGRAM " devices --json");

@@ -67,7 +67,7 @@ TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
 }
 
 // A spot of some texels anywhere on a texture far finer than the points are apart: neither missed nor counted twice.
-TEST(Emit, ASmallBrightSpotCountsOnceWhereverItIs) {
+TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
   for (const unsigned at : {3u, 517u, 1020u}) {
     Scene scene;
     Texture spot{.width = 1024, .height = 1024, .rgba = {}, .name = "spot"};
@@ -92,7 +92,7 @@ TEST(Emit, ASmallBrightSpotCountsOnceWhereverItIs) {
   }
 }
 
-TEST(Emit, HolesDoNotGlow) {
+TEST(Emit, HolesDoNotEmit) {
   Scene scene;
   scene.textures.push_back({.width = 2,
                             .height = 1,
@@ -134,7 +134,7 @@ TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
   EXPECT_LT(plan.points, 60'000u);
 }
 
-TEST(Emit, PointsAreBoundedBeforeTheyAreMade) {
+TEST(Emit, TheNumberOfPointsIsBounded) {
   Scene scene;
   const unsigned lamp = add_lamp_material(scene, glm::vec3(1));
   add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, lamp);
@@ -150,7 +150,7 @@ TEST(Emit, PointsAreBoundedBeforeTheyAreMade) {
   EXPECT_EQ(plan_of(scene, grids).points, all.points);
 }
 
-TEST(Emit, WhatIsMostIsWhatOneCellOrTheWholeSends) {
+TEST(Emit, MaximumFluxIsThatOfACellOrTheTotal) {
   Scene scene;
   add_quad(scene, {0, 0, 0}, {0, 0, 1}, {2, 0, 0}, add_lamp_material(scene, {3, 1, 1}));
   const std::vector<std::uint32_t> triangles = emissive_triangles(scene);
@@ -233,7 +233,7 @@ TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   EXPECT_EQ(passes(frame, camera).first, 0);
 }
 
-TEST(EmissiveFrame, AtRestItsPointsDoNotDependOnWhatElseMoves) {
+TEST(EmissiveFrame, StaticEmittersKeepTheirPoints) {
   Scene scene = lamp_over_floor();
   scene.moving = {{0, 4, 0, 2}};  // the floor
   Frame frame(test_session(), scene, small_frame());

@@ -83,7 +83,7 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
   EXPECT_GE(images, 7);
 }
 
-TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
+TEST(ExrHeader, TheFirstOfSeveralPartsIsReturned) {
   std::string bytes = test::read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/two_parts");
   const DeclaredImage declared = walked(bytes);
   EXPECT_EQ(declared.width, 5);

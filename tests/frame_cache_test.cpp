@@ -108,7 +108,7 @@ Passes with(Passes passes, const Passes& more) {
 const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light, Pass::propagate};
 const Passes kOfCells{Pass::blockers, Pass::visibility, Pass::reflectors};
 
-TEST_F(CachedFrame, MakesWhatChanged) {
+TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
   Instants at;
   const Passes all = with(with(kOfEveryFrame, kOfLight), kOfCells);
   EXPECT_EQ(passes(at), all);
@@ -142,16 +142,16 @@ TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
   }
 }
 
-TEST_F(CachedFrame, MakesAnewWhatItIsToldToForget) {
+TEST_F(CachedFrame, RecomputesInvalidatedResults) {
   const Instants at;
   passes(at);
-  frame_.forget_light();
+  frame_.invalidate_light();
   EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
   frame_.invalidate();
   EXPECT_EQ(passes(at), with(with(kOfEveryFrame, kOfLight), kOfCells));
 }
 
-TEST_F(CachedFrame, AnObserverSeesWhatCascadesShare) {
+TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
   const Instants at;
   using Seen = std::vector<std::vector<float>>;
   const auto observed = [&] {
@@ -180,7 +180,7 @@ class CachedPublishedFrame : public CachedFrame {
         }) {}
 };
 
-TEST_F(CachedPublishedFrame, MakesWhatChanged) {
+TEST_F(CachedPublishedFrame, RecomputesOnlyWhatChanged) {
   const Passes of_view{Pass::inject_geometry, Pass::propagate};
   Instants at;
   const Passes all = with(with(kOfEveryFrame, kOfLight), of_view);
@@ -192,7 +192,7 @@ TEST_F(CachedPublishedFrame, MakesWhatChanged) {
   EXPECT_EQ(passes(at), all);
   at.wall = 0.6;
   EXPECT_EQ(passes(at), all);
-  frame_.forget_light();
+  frame_.invalidate_light();
   EXPECT_EQ(passes(at), all);
   for (int i = 0; i < 5; ++i) {
     at.eye += glm::vec3(0.6f, 0.0f, -0.55f) * kCell;

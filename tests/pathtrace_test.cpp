@@ -112,7 +112,7 @@ TEST_F(CachedReference, IsTracedOnce) {
   EXPECT_EQ(first.file.parent_path(), folder_) << "a slash in a scene's name leads nowhere";
 }
 
-TEST_F(CachedReference, DependsOnAllThatShapesIt) {
+TEST_F(CachedReference, KeyDependsOnEveryInput) {
   get();
   EXPECT_TRUE(get(13).traced);
   camera_.eye.x += 0.01f;
@@ -134,7 +134,7 @@ TEST_F(CachedReference, DependsOnAllThatShapesIt) {
   EXPECT_FALSE(get().traced) << "neither of these changes the image";
 }
 
-TEST_F(CachedReference, DamagedFilesAreTracedAnew) {
+TEST_F(CachedReference, DamagedFilesAreTracedAgain) {
   const fs::path file = get().file;
   fs::resize_file(file, fs::file_size(file) / 2);
   const Reference again = get();
@@ -143,7 +143,7 @@ TEST_F(CachedReference, DamagedFilesAreTracedAnew) {
   EXPECT_FALSE(get().traced);
 }
 
-TEST_F(CachedReference, AFolderThatCannotBeIsToldBeforeTracing) {
+TEST_F(CachedReference, AnImpossibleFolderIsReportedBeforeTracing) {
   temporary_.write("references", "a file where the folder should be");
   test::error_of(ExitCode::run_time, [&] { get(); });
 }

@@ -56,7 +56,7 @@ std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
   return pixels;
 }
 
-TEST(LightField, IsWhatTheCameraSeesWhereItSees) {
+TEST(LightField, EqualsTheCamerasIrradiance) {
   const Scene scene = load_scene(kCornell);
   const Camera& camera = scene.camera("");
   for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {

@@ -43,7 +43,7 @@ Sky map_of(int width, int height, const std::function<float(int x, int y)>& radi
   return sky;
 }
 
-TEST(Sky, TheMiddleOfAMapLooksAheadAndItsRightIsOurs) {
+TEST(Sky, TheCentreOfAMapLooksAlongMinusZ) {
   Sky sky = map_of(8, 4, [](int x, int y) { return static_cast<float>(10 * y + x); });
   const double edge = 1e-3;
   EXPECT_NEAR(glm::length(sky.direction(4, 2) - glm::dvec3(0, 0, -1)), 0, 1e-12);
@@ -80,7 +80,7 @@ TEST(SkyLight, EachDirectionLiesInItsOwnPart) {
   }
 }
 
-TEST(SkyLight, MeansKeepAllThatAMapSends) {
+TEST(SkyLight, MeansKeepTheFluxOfAMap) {
   Sky sky = map_of(37, 19, [](int x, int y) { return static_cast<float>((x * 7 + y * 13) % 11); });
   sky.texels[200] = glm::vec3(5000);  // a small sun
   sky.rotation = 0.3;
@@ -192,7 +192,7 @@ TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
   EXPECT_NEAR(traced(under(sky), 1, 256), wanted, 0.003 * wanted);
 }
 
-TEST(PathTracer, TheSkyIsPickedByWhatItSends) {
+TEST(PathTracer, TheSkyIsSampledByItsRadiance) {
   const Sky sky = map_of(7, 5, [](int x, int y) { return static_cast<float>((x + y) % 3); });
   const reference::SkySampler sampler(&sky);
   double share = 0, whole = 0;
@@ -212,7 +212,7 @@ TEST(PathTracer, TheSkyIsPickedByWhatItSends) {
 }
 
 // Light from the floor to a wall and from the wall to the floor: the same paths for as many bounces.
-TEST(SkyFrame, TheSkyIsCarriedAsTheFirstBounceIs) {
+TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
   Scene scene = under(constant_sky(glm::vec3(1)));
   for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;
   add_black_wall(scene, 1, 1.5f);
@@ -289,7 +289,7 @@ TEST_F(SkyFile, IsFoundFromTheFolderThatItLiesIn) {
   std::filesystem::current_path(before);
 }
 
-TEST_F(SkyFile, RejectsWhatCannotShine) {
+TEST_F(SkyFile, RejectsInvalidSkies) {
   const std::pair<std::string, std::string> members[] = {
       {"{}", "/sky: found neither radiance nor map"},
       {R"({"map": "map.exr", "radiance": [1, 1, 1]})", "/sky: found radiance and map"},

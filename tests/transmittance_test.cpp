@@ -86,7 +86,7 @@ TEST_P(EachTransport, NothingBlocksNothing) {
 
 // In sh2, whose constant is exactly 1: blockers that grow from corner to corner are averaged over the side that light
 // enters by, and B is clamped to [0, 1].
-TEST_P(EachTransport, BlockersAreAveragedOverTheSideOfTheWay) {
+TEST_P(EachTransport, BlockersAreAveragedOverTheLinksFace) {
   const auto basis = make_basis("sh2");
   const glm::dvec3 slope(0.21, -0.13, 0.17);
   const auto blocked = [&](const glm::dvec3& corner) { return 0.4 + glm::dot(slope, corner); };

@@ -54,7 +54,7 @@ void run(const Options& options) {
     return;
   }
   const BasisView view{options.lobes, unit_axis(options.axis)};
-  if (options.search.centres) return search_and_tell(options.search, options.lambda, view, options.json);
+  if (options.search.centres) return print_search(options.search, options.lambda, view, options.json);
   nlohmann::json bases = nlohmann::json::array();
   for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, view));
   if (options.json) {

@@ -79,14 +79,14 @@ void add_search_options(CLI::App& command, BasisSearchOptions& options) {
              "lambdas that a search optimises: none, one for all centres, or one per centre")
       ->needs(search);
   command
-      .add_option("--most-condition", options.search.most_condition,
+      .add_option("--max-condition", options.search.max_condition,
                   "maximum condition number of the Gram matrix of a search result")
       ->needs(search)
       ->capture_default_str();
   add(command, "-o,--output", "FILE.json", options.output, "output file of the found set")->needs(search);
 }
 
-void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {
+void print_search(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {
   if (!options.output.empty()) check_writable(options.output);
   CentreSearch search = options.search;
   search.centres = *options.centres;
@@ -101,19 +101,19 @@ void search_and_tell(const BasisSearchOptions& options, double lambda, const Bas
     const nlohmann::json of_search{{"centres", search.centres},
                                    {"over", search.aims.name},
                                    {"lambdas", name_of(search.lambdas)},
-                                   {"most_condition", search.most_condition},
+                                   {"max_condition", search.max_condition},
                                    {"starts", search.starts},
                                    {"valid", found.valid},
                                    {"seed", search.seed},
                                    {"error", found.error},
-                                   {"least_error_over_all", minimum_error(search.centres)}};
+                                   {"error_bound", minimum_error(search.centres)}};
     fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"search", of_search}, {"bases", bases}}.dump(2));
     return;
   }
   fmt::print(
-      "{}\naimed: root of the mean squared relative L2 error over {}; {} of {} starts ended within the "
+      "{}\nobjective: root mean square of the relative L2 error over {}; {} of {} starts ended within the "
       "bounds.\n"
-      "Over all directions no {} functions of any kind have less than {:.4f}.\n",
+      "Minimum over all directions of any {} functions: {:.4f}.\n",
       table_of(bases), search.aims.name, found.valid, search.starts, search.centres,
       minimum_error(search.centres));
   for (std::size_t i = 0; i < basis->centres().size(); ++i) {

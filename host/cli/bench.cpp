@@ -92,7 +92,7 @@ void take_scene(Options& options, const bench::Suite& suite) {
     throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
   if (options.scene.empty() && suite.default_scene.empty()) return;
   if (options.scene.empty() && !std::filesystem::exists(suite.default_scene)) {
-    spdlog::warn("{} is not here: {} works on the hall in its place", suite.default_scene, suite.name);
+    spdlog::warn("{} does not exist: {} uses the generated hall", suite.default_scene, suite.name);
     return;
   }
   const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
@@ -107,8 +107,8 @@ void judge(const std::vector<bench::Row>& rows) {
   const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
   if (wrong == 0) return;
   const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
-  throw Error(ExitCode::validation, "{} of {} rows computed something wrong; {}: {:.3g} > {:.0e} at {}",
-              wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
+  throw Error(ExitCode::validation, "{} of {} rows have wrong results; {}: {:.3g} > {:.0e} at {}", wrong,
+              rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
 }
 
 void write(const Options& options, const std::string& text) {

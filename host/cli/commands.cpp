@@ -22,7 +22,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kMostEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
+constexpr std::size_t kMaxEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
 
 /// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.
 void set_log(const Shared& shared) {
@@ -75,9 +75,17 @@ void reject_misspelt_command(const CLI::App& app) {
     throw Error(ExitCode::usage, "{}", renamed);
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
-  if (edits(*word, *nearest) <= kMostEdits)
+  if (edits(*word, *nearest) <= kMaxEdits)
     throw Error(ExitCode::usage, "'{}' is no command; did you mean {}?", *word, *nearest);
   throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));
+}
+
+/// Throws Error(usage) that names the successor of a renamed option.
+void reject_renamed_option(const CLI::App& app) {
+  for (const std::string& word : app.remaining(true)) {
+    if (const std::string renamed = reject_old_name(word.substr(0, word.find('='))); !renamed.empty())
+      throw Error(ExitCode::usage, "{}", renamed);
+  }
 }
 
 /// Reports write errors of stdout, such as a full disk.
@@ -141,6 +149,9 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError&) {
     if (app.get_subcommands().empty()) reject_misspelt_command(app);
+    throw;
+  } catch (const CLI::ExtrasError&) {
+    reject_renamed_option(app);
     throw;
   }
 }

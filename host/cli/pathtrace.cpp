@@ -99,12 +99,12 @@ void run(const Options& options, Shared& shared) {
   if (!ranks.is_root()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
-    spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
+    spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
                  traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, camera, traced, seconds);
   const std::string noise = std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
-  spdlog::info("{} paths a pixel, {}{:.1f} s", traced.samples, noise, seconds);
+  spdlog::info("{} paths per pixel, {}{:.1f} s", traced.samples, noise, seconds);
 }
 
 void add_options(CLI::App& command, Options& options) {

@@ -97,20 +97,20 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
   const auto started = std::chrono::steady_clock::now();
   QualityCell cell;
   try {
-    double made_s = 0;
+    double setup_s = 0;
     if (!frame) {
       frame = std::make_unique<Frame>(session, group.subject.scene, group.options);
-      made_s = seconds_since(started);
+      setup_s = seconds_since(started);
     }
     cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera], options.view,
                    options.frames);
-    cell.made_s = made_s;
+    cell.setup_s = setup_s;
   } catch (const Error& error) {
     // An incompatible basis and transport, or an unsuitable grid, is a valid result.
     if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
     cell.rejected = error.what();
   }
-  cell.measured_s = seconds_since(started) - cell.made_s;
+  cell.measured_s = seconds_since(started) - cell.setup_s;
   cell.scene = group.subject.scene.name;
   cell.camera = group.subject.cameras[camera].name;
   return cell;
@@ -133,7 +133,8 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
   std::map<std::size_t, nlohmann::json> cells;  // cells of this rank, by number
   Progress progress("quality", mine);
   each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
-    stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(), mine));
+    stop_if_interrupted(
+        fmt::format("{} of {} cells are finished; the same command resumes", cells.size(), mine));
     const std::string key = quality_key(group.subject.truths[camera], session.device(), group.options,
                                         options.view, options.frames);
     std::optional<QualityCell> cell;
@@ -145,8 +146,8 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
     cells[number] = to_json(*cell);
     progress.advance();
   });
-  for (const std::string& told : ranks.gather(nlohmann::json(cells).dump()))
-    cells.merge(nlohmann::json::parse(told).get<std::map<std::size_t, nlohmann::json>>());
+  for (const std::string& gathered : ranks.gather(nlohmann::json(cells).dump()))
+    cells.merge(nlohmann::json::parse(gathered).get<std::map<std::size_t, nlohmann::json>>());
   std::vector<QualityCell> all;
   for (const auto& [number, cell] : cells) all.push_back(cell_from_json(cell));
   return all;

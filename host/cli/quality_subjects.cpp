@@ -78,7 +78,7 @@ void trace_truths(Subject& subject, int width, int height, const reference::Path
     subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
                                                          options, shown_on(progress), ranks));
     const reference::Reference& truth = subject.truths.back();
-    spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
+    spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }
 }
 

@@ -45,7 +45,7 @@ void run(const Options& options, const Shared& shared) {
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, moving.scene());
   const Camera& camera = moving.scene().camera(request.camera);
-  tell_of_scene(moving.scene(), camera, resolved);
+  log_scene(moving.scene(), camera, resolved);
   Session session(choose_device(shared.device), ProgramCache::of_user());
   Frame frame(session, moving.scene(), resolved);
   frame.render(camera);

@@ -96,7 +96,7 @@ void run(const Options& options, const Shared& shared) {
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, scene);
   const Camera& camera = scene.camera(request.camera);
-  tell_of_scene(scene, camera, resolved);
+  log_scene(scene, camera, resolved);
   progress.advance();
 
   stats.begin_startup();
@@ -116,7 +116,7 @@ void run(const Options& options, const Shared& shared) {
   progress.advance();
   for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
     stop_if_interrupted();
-    frame.forget_light();
+    frame.invalidate_light();
     stats.begin_frame();
     frame.render(camera);
     stats.end_frame(session);

@@ -38,9 +38,9 @@ namespace sequence_command {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostFrames = 1000000;
-constexpr double kMostFramesPerSecond = 1000;
-constexpr const char* kKey = "made_of";          // metadata: the key of a frame
+constexpr int kMaxFrames = 1000000;
+constexpr double kMaxFramesPerSecond = 1000;
+constexpr const char* kKey = "frame_key";        // metadata: the key of a frame
 constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.json
 
 /// Frame i shows `from` + i / `frames_per_second` [s].
@@ -87,9 +87,8 @@ class Sequence {
         moving_(options.request.scene, options.request.model),
         resolved_(resolve_options(options.request.frame, moving_.scene())),
         device_(ranks.device(shared.device)) {
-    tell_of_scene(moving_.scene(), camera(), resolved_);
-    if (!moving_.moves())
-      spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
+    log_scene(moving_.scene(), camera(), resolved_);
+    if (!moving_.moves()) spdlog::warn("{}: nothing moves: all frames are equal", options.request.scene);
     Fingerprint print;
     print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
     still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
@@ -107,17 +106,18 @@ class Sequence {
       if (!ranks_.takes(static_cast<std::size_t>(i))) continue;
       if (interrupted()) {
         write_times();
-        throw Interrupted(fmt::format("{} of {} frames are in {}; the same command goes on", rendered + there,
+        throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes", rendered + there,
                                       mine, options_.output));
       }
       (render(i) ? rendered : there) += 1;
       progress.advance();
     }
     ranks_.sum(counts);
-    if (there > 0) spdlog::info("{} of {} frames were there already", there, options_.frames);
+    if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
     if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
-    for (const std::string& told : ranks_.gather(nlohmann::json(times_).dump()))
-      for (auto& [number, frame] : nlohmann::json::parse(told).get<SequenceTimes>()) times_[number] = frame;
+    for (const std::string& gathered : ranks_.gather(nlohmann::json(times_).dump()))
+      for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>())
+        times_[number] = frame;
     write_times();
     if (renderer_) renderer_->session.store_programs();
     renderer_.reset();
@@ -127,7 +127,7 @@ class Sequence {
   void measure_stability() {
     Renderer renderer(device_, moving_.scene(), resolved_);
     Stability stability(renderer.session, renderer.frame, options_.traced);
-    for_all_frames("stability", "their stability is not told", [&](int i) {
+    for_all_frames("stability", "stability.json is not written", [&](int i) {
       moving_.pose(options_.instant(i));
       renderer.frame.scene_moved();
       renderer.frame.render(camera());
@@ -141,7 +141,7 @@ class Sequence {
 
   /// Writes the video from the files of all frames, on one rank.
   void film(Video& video) {
-    for_all_frames("film", "the film is not made", [&](int i) {
+    for_all_frames("film", "the video is not written", [&](int i) {
       const Image image = read_image(options_.file(i));
       video.add(image.encoding == Encoding::srgb ? image : displayed(image));
     });
@@ -266,12 +266,11 @@ void check_outputs(const Options& options) {
   }
   if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
   if (options.traced > 0 && !options.stability)
-    throw Error(ExitCode::usage, "--traced {}: found no --stability, whose noise it tells of; allowed: both",
-                options.traced);
+    throw Error(ExitCode::usage, "--traced {}: needs --stability", options.traced);
   std::error_code failed;
   const fs::path folder = options.output;
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
-    throw Error(ExitCode::run_time, "--output {}: what is there is not a folder", options.output);
+    throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.output);
   create_folder("--output", folder);
   check_writable(options.file(0));
   check_writable(folder / "times.json");
@@ -300,16 +299,18 @@ void add_sequence(CLI::App& app, Shared& shared) {
       "output folder for frame-0000.exr, ... and times.json; created if missing")
       ->required();
   add(*command, "--frames", "N", options->frames, "number of frames")
-      ->check(CLI::Range(1, kMostFrames))
+      ->check(CLI::Range(1, kMaxFrames))
       ->required();
-  add_number(*command, "--fps", options->frames_per_second, "frames a second of the scene's time",
-             {std::numeric_limits<double>::min(), kMostFramesPerSecond,
-              fmt::format("more than 0, up to {}", kMostFramesPerSecond)})
+  add_number(*command, "--fps", options->frames_per_second,
+             "frame rate [frames per second of the scene's time]",
+             {std::numeric_limits<double>::min(), kMaxFramesPerSecond,
+              fmt::format("more than 0, up to {}", kMaxFramesPerSecond)})
       ->required()
       ->type_name("RATE");
   add_seconds(*command, "--from", options->from, "time of the first frame [s]");
-  add_choice(*command, "--view", options->view, "what frames show");
-  add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
+  add_choice(*command, "--view", options->view, "view of the frames");
+  add_choice(*command, "--format", options->format,
+             "file format of the frames: linear EXR, or tone-mapped sRGB PNG");
   add(*command, "--video", "FILE.mp4", options->video, "output video of all frames; needs ffmpeg");
   command->add_flag("--stability", options->stability,
                     "write stability.json: change of light between frames on static surfaces");

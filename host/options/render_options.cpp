@@ -22,7 +22,7 @@ constexpr int kMaxStride = 16;
 constexpr int kMaxEntries = 65536;  // minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
 
 struct Range {
-  double least, most;
+  double minimum, maximum;
   bool open = false;  ///< excludes both ends
 };
 
@@ -128,8 +128,8 @@ std::string allowed_text(const std::string&, const Path& path) {
   return fmt::format("a file of {}", path.content);
 }
 std::string allowed_text(double, const Range& range) {
-  return range.open ? fmt::format("greater than {} and less than {}", range.least, range.most)
-                    : fmt::format("{}..{}", range.least, range.most);
+  return range.open ? fmt::format("greater than {} and less than {}", range.minimum, range.maximum)
+                    : fmt::format("{}..{}", range.minimum, range.maximum);
 }
 
 template <NamedEnum E>
@@ -162,8 +162,8 @@ bool parse(std::string_view text, const Path&, std::string& out) {
 template <typename Number>
 bool parse(std::string_view text, const Range& range, Number& out) {
   const auto value = parse_number<Number>(text);
-  const bool inside = value && (range.open ? *value > range.least && *value < range.most
-                                           : *value >= range.least && *value <= range.most);
+  const bool inside = value && (range.open ? *value > range.minimum && *value < range.maximum
+                                           : *value >= range.minimum && *value <= range.maximum);
   if (inside) out = *value;
   return inside;
 }

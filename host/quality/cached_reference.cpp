@@ -88,12 +88,12 @@ std::string scene_fingerprint(const Scene& scene) {
 namespace {
 
 /// Returns the cached reference if its file is readable.
-std::optional<Reference> kept_reference(const std::filesystem::path& file) {
+std::optional<Reference> read_cached(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
     return read_reference(file);
   } catch (const std::exception& error) {
-    spdlog::warn("{}; traced anew", error.what());
+    spdlog::warn("{}; traced again", error.what());
     return std::nullopt;
   }
 }
@@ -115,7 +115,7 @@ Reference cached_reference(const std::filesystem::path& folder, const Scene& sce
                            key(scene, camera, view, options));
   std::optional<Reference> kept;
   const std::string found = ranks.from_root([&] {
-    kept = kept_reference(file);
+    kept = read_cached(file);
     if (!kept) check_place(file);
     return kept ? "there" : "";
   });

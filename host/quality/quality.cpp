@@ -63,7 +63,7 @@ VariedOption parse_varied(const std::string& text) {
     RenderOptions probe;
     set_option(probe, varied.name, value);  // throws for an unknown option or a bad value
     if (std::ranges::count(varied.values, value) > 0) {
-      throw Error(ExitCode::usage, "vary {}: {} comes twice", text, value);
+      throw Error(ExitCode::usage, "vary {}: duplicate value {}", text, value);
     }
     varied.values.push_back(value);
   }
@@ -75,7 +75,7 @@ std::vector<Variant> combinations(const std::vector<VariedOption>& varied) {
   for (const VariedOption& option : varied) {
     const auto same = [&](const VariedOption& other) { return other.name == option.name; };
     if (std::ranges::count_if(varied, same) > 1) {
-      throw Error(ExitCode::usage, "vary {}: the option comes twice", option.name);
+      throw Error(ExitCode::usage, "vary {}: duplicate option", option.name);
     }
     std::vector<Variant> longer;
     for (const Variant& variant : all) {
@@ -103,7 +103,7 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
   std::map<std::string, std::vector<double>> samples;
   std::vector<double> totals;
   for (int i = 0; i <= frames; ++i) {
-    frame.forget_light();
+    frame.invalidate_light();
     frame.render(camera);
     const Image image = view_image(frame, show);
     if (i == 0) continue;  // the first launch compiles kernels
@@ -151,7 +151,7 @@ std::optional<QualityCell> QualityStore::find(const std::string& key) const {
   try {
     return cell_from_json(nlohmann::json::parse(*kept));
   } catch (const nlohmann::json::exception& error) {
-    spdlog::warn("{}: {}; measured anew", file(key).string(), error.what());
+    spdlog::warn("{}: {}; measured again", file(key).string(), error.what());
     return std::nullopt;
   }
 }

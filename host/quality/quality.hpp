@@ -47,7 +47,7 @@ struct QualityCell {
   std::map<std::string, double> stage_ms;  ///< median over the timed frames; sum over cascades and lights
   bool from_events = true;                 ///< times from device events; false: wall time
   unsigned compute_units = 0;              ///< of the device or sub-device that was timed
-  double made_s = 0;                       ///< time to create the frame; 0 if reused from another view
+  double setup_s = 0;                      ///< time to create the frame; 0 if reused from another view
   double measured_s = 0;                   ///< total time of the measurement
 };
 

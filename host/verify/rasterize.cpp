@@ -123,9 +123,9 @@ class SceneMaker {
 };
 
 double largest(const std::vector<glm::vec4>& field) {
-  float most = 0;
-  for (const glm::vec4& v : field) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  return most > 0 ? most : 1.0;
+  float maximum = 0;
+  for (const glm::vec4& v : field) maximum = std::max({maximum, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return maximum > 0 ? maximum : 1.0;
 }
 
 /// Returns the largest difference of a pixel's three numbers, relative to the field's largest value; 0 without a field.

@@ -18,15 +18,15 @@ namespace clpv::test {
 /// Words between blanks; '...' keeps blanks together.
 inline std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
-  bool quoted = false, begun = false;
+  bool quoted = false, in_word = false;
   for (const char c : text) {
     if (c == '\'') quoted = !quoted;
     if (c == ' ' && !quoted) {
-      begun = false;
+      in_word = false;
       continue;
     }
-    if (!begun) words.emplace_back();
-    begun = true;
+    if (!in_word) words.emplace_back();
+    in_word = true;
     if (c != '\'') words.back() += c;
   }
   return words;
