@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glTF animations: where meshes, cameras and lights are at an instant.
+// glTF animations: poses of meshes, cameras and lights at given times.
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The library's door: what a program of somebody else's sees.
+// The public interface of the library (include/clpv).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hostile and broken models: each is rejected in words, as exit code 3 (bad_input), before anything of the size it asks for is
+// Invalid models: each is rejected with a message and exit code 3 (bad_input), before memory of the requested size is
 // allocated.
 #include "tests/support/gltf_builder.hpp"
 

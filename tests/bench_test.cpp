@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Benchmarks: statistics, reports, comparison of runs, suites, and `clpv bench` as a user meets it.
+// Benchmarks: statistics, reports, comparison of runs, suites, and the command `clpv bench`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

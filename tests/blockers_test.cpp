@@ -92,7 +92,7 @@ TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
            material);  // opaque from u 0 to 1/2, repeated beyond
   EXPECT_EQ(sum(blocked(scene), 1), 0.5f);
   scene.materials[material].flags = 0;
-  EXPECT_EQ(sum(blocked(scene), 1), 1) << "alpha is nothing to what is not masked";
+  EXPECT_EQ(sum(blocked(scene), 1), 1) << "opaque materials ignore alpha";
 }
 
 TEST(Blockers, AHugeTriangleIsAWall) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cascades: nested round the camera, on whole cells.
+// Cascades: nested grids about the camera, on whole cells.
 #include "pipeline/cascade.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program as a process: its exit codes, what it says before any command runs, and what its streams take. All else runs in the
-// tests' own process (support/run_here.hpp).
+// The program as a process: exit codes, help and errors of its output streams. Other tests run commands in their own process
+// (support/run_here.hpp).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
 }
 
 TEST(CommandLine, AClosedPipeEndsTheProgram) {
-  // As any program: the signal of the pipe ends it, with nothing said.
+  // SIGPIPE ends the program without a message, like any other.
   const test::TemporaryFolder folder;
   const test::Outcome outcome =
       test::run("{ " CLPV_PROGRAM " basis; echo $? >" + (folder / "code").string() + "; } | exec true");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Figures of the comparison against hand-made images whose errors are known, and the command around them.
+// Error measures on images with known errors, and the command `clpv compare`.
 #include "image/compare.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one comparison of results with the CPU reference, and its report as test cases.
+// Comparison of results with the CPU reference, and its JUnit report.
 #include "verify/comparison.hpp"
 
 #include <gmock/gmock.h>

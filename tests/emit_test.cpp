@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Emissive surfaces: how much light leaves them, from where, and what it does in a frame.
+// Emissive surfaces: flux and positions of their virtual point lights, and the light in a frame.
 #include "pipeline/emit.hpp"
 
 #include <gtest/gtest.h>
@@ -226,9 +226,9 @@ TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   frame.scene_moved();
   EXPECT_EQ(passes(frame, camera), std::pair(1, 2));
   const std::vector<float> moved = frame.read(Show::irradiance);
-  Frame anew(test_session(), scene, small_frame());
-  anew.render(camera);
-  EXPECT_TRUE(anew.read(Show::irradiance) == moved);
+  Frame fresh(test_session(), scene, small_frame());
+  fresh.render(camera);
+  EXPECT_TRUE(fresh.read(Show::irradiance) == moved);
   camera.eye.x += 0.2f;  // cells of 1/8 and 1/4 m, and the lamp as near as before
   EXPECT_EQ(passes(frame, camera).first, 0);
 }

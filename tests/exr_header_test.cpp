@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The walk through an EXR's headers, against files that OpenEXR wrote and against headers put together here, byte by byte.
+// Parser of EXR headers, on files that OpenEXR wrote and on headers built byte by byte.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@ TEST(Cached, IsComputedForAnotherKey) {
   Cached cached;
   int computed = 0;
   for (const CacheKey key : {0, 0, 7, 7, 0}) cached.update(key, [&] { ++computed; });
-  EXPECT_EQ(computed, 3) << "it holds what was computed last";
+  EXPECT_EQ(computed, 3) << "it holds the last result";
 }
 
 TEST(Cached, HoldsNothingAfterAFailure) {
@@ -86,9 +86,9 @@ class CachedFrame : public ::testing::Test {
     Passes passes;
     for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
     Frame alone(session_, scene_, options_);
-    const Found anew = rendered(session_, alone, camera);
-    EXPECT_EQ(kept.size(), anew.size());
-    for (std::size_t i = 0; i < anew.size(); ++i) EXPECT_TRUE(kept[i] == anew[i]) << i;
+    const Found fresh = rendered(session_, alone, camera);
+    EXPECT_EQ(kept.size(), fresh.size());
+    for (std::size_t i = 0; i < fresh.size(); ++i) EXPECT_TRUE(kept[i] == fresh[i]) << i;
     return passes;
   }
 
@@ -162,10 +162,10 @@ TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
     });
     return seen;
   };
-  const Seen anew = observed();
-  ASSERT_EQ(anew.size(), 4u);
-  EXPECT_FALSE(anew[0] == anew[2]) << "a cascade's own";
-  EXPECT_TRUE(observed() == anew);
+  const Seen recomputed = observed();
+  ASSERT_EQ(recomputed.size(), 4u);
+  EXPECT_FALSE(recomputed[0] == recomputed[2]) << "a cascade's own";
+  EXPECT_TRUE(observed() == recomputed);
 }
 
 /// Surfels that the camera sees are blockers: what depends on them changes with the view.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whole frames: the scenes of this project against what they must show, whatever the numbers inside.
+// Whole frames against golden images and known properties of the scenes.
 #include "pipeline/frame.hpp"
 
 #include <gtest/gtest.h>

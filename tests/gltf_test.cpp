@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and looks at what comes
-// out in world space.
+// glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and checks the scene
+// in world space.
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"

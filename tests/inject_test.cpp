@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Injection against closed forms: where light goes and how much, what walls block, merging, repeatability; and the
+// Injection against closed forms: position and flux of light, blockers, several surfaces, repeatability; and the
 // kernels against their CPU reference.
 #include "pipeline/inject.hpp"
 

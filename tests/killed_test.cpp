@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs that are ended from outside: killed at moments drawn with a fixed seed, after which there is no half file and the
-// next run is right; interrupted, told what is kept.
+// Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or none, and the next run is
+// right. Interrupted, they report which results exist.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The paper's look-up tables on the device, and lobes that the propagation kernel computes from them. clpv check compares such
-// lobes with the CPU reference; here is what it does not have.
+// lobes with the CPU reference; these tests cover the rest.
 #include "pipeline/lookup_table.hpp"
 
 #include <gmock/gmock.h>

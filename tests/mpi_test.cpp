@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv under mpirun: what two and three ranks make has the bytes of what one process makes; a rank that is killed, or fails,
+// clpv under mpirun: two and three ranks write the same bytes as one process; a rank that is killed, or fails,
 // ends the job, and the same command resumes.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -71,10 +71,10 @@ class Mpi : public ::testing::Test {
   TemporaryFolder folder;
 };
 
-/// A quality run's JSON without what was measured by the clock, and without where it was kept.
+/// A quality run's JSON without times and paths of cached files.
 json without_times(const std::string& text) {
   json run = json::parse(text);
-  for (json& reference : run["references"]) reference.erase("file");
+  for (json& truth : run["ground_truths"]) truth.erase("file");
   for (json& cell : run["cells"])
     for (const char* key : {"frame_ms", "stage_ms", "compute_units", "setup_s", "measured_s"})
       cell.erase(key);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The options of a frame: each goes from text to a value and back, invalid values are rejected with the valid ones, presets set
-// what they say, and every enumeration of a choice has a name for each value.
+// Options of a frame: conversion from text to a value and back, errors for invalid values, presets, and a name for each value of
+// each enumeration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

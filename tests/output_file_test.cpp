@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Output is whole or not there; volumes written for others' tools say what they should.
+// Output files are complete or absent; headers of .npy and .vti files.
 #include "support/output_file.hpp"
 
 #include <gtest/gtest.h>

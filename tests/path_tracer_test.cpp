@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The path tracer against closed forms: what the pipeline is held against has to be right itself.
+// The path tracer against closed forms.
 #include "pathtracer/path_tracer.hpp"
 
 #include <gtest/gtest.h>
@@ -106,7 +106,7 @@ TEST(PathTracer, EmissiveSquaresLightByTheirFormFactors) {
   EXPECT_NEAR(received(add_ceiling, 3, 0, 256, {0, 0.5f, 0}, 1e-3f), 3 * pi * patch, 0.002 * 3 * pi * patch);
 }
 
-// Few samples, many runs: no path is counted twice between those that look for light and those that meet it.
+// Few samples, many runs: no light is counted twice by direct sampling and by hits.
 TEST(PathTracer, EmissionIsCountedOnceByBothSamplers) {
   for (const float height : {0.02f, 0.2f, 3.0f}) {  // light is met, either, looked for
     const auto add = [&](Scene& scene, unsigned material) {

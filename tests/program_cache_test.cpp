@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled programs kept on disk: what is stored comes back, and whatever else a file holds never does.
+// Cache of compiled programs on disk: it returns what was stored, and rejects any other content.
 #include "device/program_cache.hpp"
 
 #include <gmock/gmock.h>
@@ -146,7 +146,7 @@ TEST_F(ProgramCacheTest, ManyProcessesAtOnceNeverReadATornFile) {
   EXPECT_EQ(file_count(cache_.folder()), 1u);
 }
 
-/// A session's program out of the cache, told from a compiled one by what the kernel writes.
+/// A session's program from the cache; its kernel writes another value than a compiled one.
 class CachedSession : public ProgramCacheTest {
  protected:
   CachedSession() {

@@ -163,7 +163,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   EXPECT_EQ(json["schema"], 1);
   ASSERT_EQ(json["cells"].size(), 4u);
   ASSERT_EQ(json["variants"].size(), 2u);
-  ASSERT_EQ(json["references"].size(), 2u);
+  ASSERT_EQ(json["ground_truths"].size(), 2u);
   for (const nlohmann::json& one : json["cells"]) {
     EXPECT_EQ(one["rejected"], "") << one.dump();
     EXPECT_GT(one["nrmse"], 0.01);

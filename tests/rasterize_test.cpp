@@ -68,7 +68,7 @@ std::size_t covered(const std::vector<float>& depth) {
   return static_cast<std::size_t>(std::count_if(depth.begin(), depth.end(), [](float d) { return d != 0; }));
 }
 
-/// A wall across the camera's view, 4 m before it, larger than what it sees.
+/// A wall 4 m before the camera, larger than its view.
 Scene wall(float distance = 4) {
   Scene scene;
   add_quad(scene, {-20, -20, -distance}, {40, 0, 0}, {0, 40, 0}, add_material(scene, {0.25f, 0.5f, 0.75f}));

@@ -99,7 +99,7 @@ TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
   EXPECT_NEAR(tinted.sum(2, 1), 0.5f * tinted.sum(2, 0), 2 * kColour);
   scene.materials[material].flags = CLPV_MATERIAL_MASKED;
   scene.materials[material].alpha_cutoff = 0.5f;
-  EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.06f) << "what is black was all hole";
+  EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.06f) << "black texels are holes";
 }
 
 TEST(Reflectors, AdjacentFacesDoNotCountLightTwice) {

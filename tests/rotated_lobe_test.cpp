@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's lobes: the one towards +z, rotated, with and without the table; and direction bins' integrals.
+// The paper's rotated lobes, with and without the table; and integrals of direction bins.
 #include "basis/rotated_lobe.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras and lights of scene files that move by keys: where they are at an instant.
+// Cameras and lights of scene files that move by keys.
 #include "scene/scene_keys.hpp"
 
 #include <cmath>

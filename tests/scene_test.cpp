@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: what they say, what they replace, what is added where nothing is given; and Sponza as a whole.
+// Scene files: their keys, what they replace in the model, and defaults; and Sponza as a whole.
 #include "scene/scene.hpp"
 
 #include <glm/gtc/constants.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scenes made for this project: their generators write the committed files byte by byte, which load as their cards say.
+// This project's scenes: their generators reproduce the committed files, which match their descriptions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

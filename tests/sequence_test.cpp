@@ -43,7 +43,7 @@ struct SequenceTest : ::testing::Test {
   }
   json written(const std::string& file) const { return json::parse(read_file(folder / ("out/" + file))); }
 
-  /// A folder of an ffmpeg that writes what it is fed and told into its output.
+  /// A folder with an ffmpeg that copies its input and arguments to its output.
   std::string fake_ffmpeg(const std::string& script) const {
     const fs::path path = folder.write("bin/ffmpeg", "#!/bin/sh\n" + script);
     fs::permissions(path, fs::perms::owner_all);
@@ -77,7 +77,7 @@ TEST_F(SequenceTest, ARunResumesWhereAnotherEnded) {
   EXPECT_EQ(fs::last_write_time(frame(0)), time) << "not rendered again";
   EXPECT_EQ(read_file(frame(1)), second) << "the same bytes";
   const json times = written("times.json");
-  ASSERT_EQ(times["frames"].size(), 4u) << "what was there has its times of then";
+  ASSERT_EQ(times["frames"].size(), 4u) << "existing frames keep their times";
   EXPECT_EQ(times["frames"][3]["frame"], 3);
   EXPECT_DOUBLE_EQ(times["frames"][3]["time"].get<double>(), 0.3);
   EXPECT_EQ(times["summary"]["frames"], 2) << "the first frame of each run aside";
@@ -159,7 +159,7 @@ TEST_F(SequenceTest, StabilityCoversAllFramesButTheFirst) {
     EXPECT_LE(frame["seen"].get<double>(), 1);
     EXPECT_GT(frame["traced"].get<double>(), 0);
   }
-  EXPECT_EQ(stability["summary"]["across_cells"]["frames"], 0) << "of what stands still";
+  EXPECT_EQ(stability["summary"]["across_cells"]["frames"], 0) << "no cascade moved";
 }
 
 TEST_F(SequenceTest, AStaticSceneIsReported) {

@@ -26,7 +26,7 @@ TEST(Session, RejectsABufferTheDeviceCannotHoldWithItsLimit) {
   EXPECT_EQ(session.largest_buffer(), 2u << 20);
   EXPECT_THAT(test::error_of(ExitCode::run_time, [&] { session.buffer(3u << 20, "light volume"); }),
               AllOf(HasSubstr("light volume needs 3.0 MiB"), HasSubstr("at most 2.0 MiB")));
-  EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was rejected does not count";
+  EXPECT_EQ(session.device_bytes(), 4u << 20) << "rejected buffers do not count";
 }
 
 TEST(Session, WhatWasEnqueuedIsDoneWhenItEnds) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light from beyond a scene: maps of the sky, what of them light is swept from, and what it does to surfaces.
+// Skies: maps, their mean radiance per direction, and the light on surfaces.
 #include "scene/sky.hpp"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ TEST(Sky, TheCentreOfAMapLooksAlongMinusZ) {
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(edge, edge, -1))).x, 14);
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(-edge, -edge, -1))).x, 23);
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(edge, -1, -2 * edge))).x, 30 + 4);
-  sky.rotation = pi / 2;  // what was ahead is to the right
+  sky.rotation = pi / 2;  // the former centre is to the right
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(1, edge, edge))).x, 14);
   for (const auto& [x, y] : {std::pair{0.3, 0.4}, {7.9, 3.7}, {4.1, 1.2}}) {
     const auto at = static_cast<std::size_t>(static_cast<int>(y) * 8 + static_cast<int>(x));
@@ -174,7 +174,7 @@ TEST(SkyFrame, ABrightHalfOfTheSkyLightsHalfAsMuch) {
 
 // A long wall of height h at a distance d leaves (1 + cos(atan(h / d))) / 2 of an even sky.
 TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
-  for (const float distance : {0.5f, 1.5f}) {  // the wall, as any, lets a third through on diagonal ways
+  for (const float distance : {0.5f, 1.5f}) {  // the wall transmits about 1/3 along diagonal links
     Scene scene = under(constant_sky(glm::vec3(1)));
     add_black_wall(scene, distance, 1.5f);
     const double wanted = pi / 2 * (1 + std::cos(std::atan(1.5 / double{distance})));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How steady light is: closed cases of the measure, and frames of a camera that moves.
+// Stability of light: closed cases of the measure, and frames of a moving camera.
 #include "quality/stability.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Devices and disks that give out in mid-work: every allocation, enqueue and build of a frame failing in turn (by a shim of
-// the OpenCL loader, tests/starved/opencl_shim.cpp), and no room for what is written. Each ends with a word and exit code
-// 1, leaves no device memory behind and no file.
+// Failing devices and full disks: allocations, enqueues and builds of a frame fail in turn (by a shim of the OpenCL loader,
+// tests/starved/opencl_shim.cpp). Each run ends with a message and exit code 1, and leaves no device memory and no file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +33,7 @@ class Starved : public ::testing::Test {
   }
   static void TearDownTestSuite() { delete cache_; }
 
-  /// Programs are compiled once for all tests, each in a process of its own; the cache lies beside the program.
+  /// Programs are compiled once for all tests, each in its process; the cache lies beside the program.
   static fs::path compiled() { return fs::path(CLPV_PROGRAM).parent_path() / "starved_cache"; }
 
   /// `timeout` goes first: the shim is for the program alone.

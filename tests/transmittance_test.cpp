@@ -47,7 +47,7 @@ reference::Volume geometry_of(int numbers, const Blockers& blockers) {
   return volume;
 }
 
-/// Expects each cell to let through `expected` by each link. The checks of propagation and of the sweep hold the kernels
+/// Expects each cell to transmit `expected` along each link. The checks of propagation and of the sweep hold the kernels
 /// against the same reference.
 void expect_all(const Transport& transport, const reference::Volume& geometry,
                 const std::function<double(const glm::ivec3& cell, const Link& link)>& expected,

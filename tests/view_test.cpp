@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The views a frame is rasterised from: what they cover, and that a moving cascade moves by whole texels.
+// Views of a frame: the space they cover, and steps of whole texels as a cascade moves.
 #include "pipeline/view.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Visibility between cells against closed forms: walls hide the cells behind them, from every point, and no others.
+// Visibility between cells against closed forms: walls hide exactly the cells behind them.
 #include "pipeline/visibility.hpp"
 
 #include <gtest/gtest.h>

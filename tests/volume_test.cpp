@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volumes in every layout and storage: what is written is read back, sums end where they should, what a device lacks is said,
-// and a work-item may have one cell or eight.
+// Volumes in every layout and storage: writing and reading, accumulation, errors of the device, and work-items of one or eight
+// cells.
 #include "volume/volume.hpp"
 
 #include <gtest/gtest.h>

@@ -56,8 +56,8 @@ nlohmann::json beside_others(const Basis& found, double lambda, const BasisView&
 void add_search_options(CLI::App& command, BasisSearchOptions& options) {
   CLI::Option* search =
       add(command, "--search", "N", options.centres,
-          "number of centres to search for: minimises the clamped-cosine error by descent from many "
-          "starts; the same seed gives the same set")
+          "number of centres of a set to search for, with minimum clamped-cosine error; the same seed gives "
+          "the same set")
           ->excludes("name")
           ->excludes("--centres");
   command.add_option("--seed", options.search.seed, "seed of the random starts of a search")
@@ -76,7 +76,7 @@ void add_search_options(CLI::App& command, BasisSearchOptions& options) {
       ->needs(search)
       ->excludes(over);
   add_choice(command, "--lambdas", options.search.lambdas,
-             "lambdas that a search optimises: none, one for all centres, or one per centre")
+             "lambdas that the search optimises: none, one for all centres, or one per centre")
       ->needs(search);
   command
       .add_option("--max-condition", options.search.max_condition,

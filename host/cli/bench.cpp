@@ -155,20 +155,20 @@ void add_bench(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("bench", "Time stages and frames on this device, and check their outputs");
   auto options = std::make_shared<bench_command::Options>();
-  std::string suites = "what to time:";
+  std::string suites = "suite to run:";
   for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
-  command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
+  command->add_option("SUITE", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
   add(*command, "--scene", "SCENE", options->scene,
       "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");
   add(*command, "--camera", "NAME", options->bench.suite.camera,
       "name of the camera (default: the scene's first)");
   add(*command, "--basis", "NAME", options->bench.suite.bases,
-      "comma-separated bases; table1 adds them to its own")
+      "comma-separated bases (default: those of the suite); table1 adds them to its own")
       ->delimiter(',');
   add(*command, "--filter", "REGEX", options->filter,
       "regular expression for the names of rows to run (default: all)");
-  command->add_option("--repetitions", options->bench.repetitions, "number of timed runs per row")
+  command->add_option("--repetitions", options->bench.repetitions, "timed runs per row")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMaxRepetitions));
   command
@@ -179,10 +179,10 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->capture_default_str()
       ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
   add(*command, "--log", "FILE.jsonl", options->log,
-      "log of row starts and ends, one JSON line each; shows the row of a crash or a hanging kernel");
+      "log of row starts and ends, one JSON line each; after a crash its last line names the row");
   add(*command, "-o,--out", "FILE", options->out, "output file (default: stdout)");
   add(*command, "--compare", "OLD.json", options->compare,
-      "JSON of an earlier run; prints the changes and their spread");
+      "JSON of an earlier run, for a table of changes and their spread");
   add(*command, "--plot", "DIR", options->plot, "output folder for SVG and PNG charts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }

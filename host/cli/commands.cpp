@@ -126,11 +126,13 @@ std::span<const Command> all_commands() {
 void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
   app.name("clpv");
-  app.set_version_flag("--version", "clpv " + version());
+  app.set_version_flag("--version", "clpv " + version(), "version of the program");
+  app.set_help_flag("-h,--help", "this help");
   app.set_help_all_flag("--help-all", "help of all commands");
   add(app, "--device", "DEVICE", shared.device,
-      "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)");
-  app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
+      "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the first "
+      "supported)");
+  app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
   app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more");
   app.require_subcommand(1);
   app.fallthrough();

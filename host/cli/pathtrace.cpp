@@ -108,13 +108,15 @@ void run(const Options& options, Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene, "scene file (.json), or a bare .gltf or .glb")->required();
-  add(command, "-o,--output", "FILE.exr", options.output, "linear EXR; one layer per view if several")
+  command.add_option("SCENE", options.scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  add(command, "-o,--output", "FILE.exr", options.output,
+      "output image, linear EXR; one layer per view if several")
       ->required();
   add(command, "--model", "PATH", options.model, "model file instead of the scene file's");
   add(command, "--camera", "NAME", options.camera, "name of the camera (default: the scene's first)");
-  add_seconds(command, "--time", options.time, "time of the frame [s]");
-  add_choices(command, "--view", options.views, "views to write; several become layers")->default_str("full");
+  add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
+  add_choices(command, "--view", options.views, "views to write; several become layers of the EXR")
+      ->default_str("full");
   command.add_option("--width", options.width, "image width [pixels]")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();

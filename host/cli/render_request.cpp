@@ -12,7 +12,7 @@
 namespace clpv {
 
 void add_render_request(CLI::App& command, RenderRequest& request) {
-  command.add_option("scene", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
   add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)");
   add_frame_options(command, request.frame);

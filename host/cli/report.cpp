@@ -108,7 +108,7 @@ Image render_indirect(Session& session, const Subject& subject, const Camera& ca
 nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
                     const Drawing& drawing, const std::string& stem, Progress& progress) {
   const Camera& camera = subject.cameras[index];
-  const reference::Reference& traced = subject.truths[index];
+  const reference::GroundTruth& traced = subject.truths[index];
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
   const float exposure = exposure_of(truth);
   nlohmann::json shots = nlohmann::json::array();
@@ -175,12 +175,11 @@ void add_report(CLI::App& app, Shared& shared) {
   add(*command, "--quality", "FILE.json", options->quality, "results of clpv quality --json, repeatable");
   add(*command, "--bench", "FILE.json", options->benchmarks,
       "results of clpv bench table1 or layouts --format json, repeatable");
-  command->add_option("--width", options->width, "width of views and references [pixels]")
-      ->capture_default_str();
-  command->add_option("--height", options->height, "height of views and references [pixels]")
-      ->capture_default_str();
+  command->add_option("--width", options->width, "width of the images [pixels]")->capture_default_str();
+  command->add_option("--height", options->height, "height of the images [pixels]")->capture_default_str();
   add_tracing_options(*command, options->tracing);
-  add(*command, "--cache", "DIR", options->cache, "folder for cached references (default: the user's cache)");
+  add(*command, "--cache", "DIR", options->cache,
+      "folder for cached ground truths (default: $XDG_CACHE_HOME/clpv/quality)");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

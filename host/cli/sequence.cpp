@@ -16,7 +16,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame_stats.hpp"
 #include "pipeline/view.hpp"
-#include "quality/cached_reference.hpp"
+#include "quality/ground_truth.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"

@@ -52,8 +52,8 @@ template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
   visit("preset", o.preset, preset_help(), Named{});
   visit("basis", o.basis, "basis of spherical functions (clpv basis describes each)", OneOf{basis_names()});
-  visit("centres", o.centres, "SRBF set of your own, replaces --basis", Path{"directions as JSON"});
-  visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
+  visit("centres", o.centres, "custom SRBF set, replaces --basis", Path{"centres as JSON"});
+  visit("lambda", o.lambda, "parameter of the SRBF kernels, narrower with larger values", Range{0, 1, true});
   visit("lobe", o.lobe, "cosine lobes: each projected exactly, or the lobe along +z rotated through a table",
         Named{});
   visit("lobe-time", o.lobe_time,
@@ -66,7 +66,7 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
   visit("coarser-directions", o.coarser_directions, "number of sweep directions in all other cascades",
         Named{});
-  visit("bounces", o.bounces, "indirect bounces; more than 1 needs --transport sweep", Named{});
+  visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep", Named{});
   visit("state", o.state, "cell state between steps: the coefficients of the basis, or six face fluxes",
         Named{});
   visit("layout", o.layout,
@@ -93,7 +93,7 @@ void for_each_option(Options& o, Visit&& visit) {
         "paper)",
         Named{});
   visit("blocker-stride", o.blocker_stride,
-        "with --blockers seen: every Nth G-buffer pixel along x and y becomes a blocker",
+        "distance of the G-buffer's blockers along x and y [pixels], with --blockers seen",
         Range{1, kMaxStride});
   visit("gather", o.gather,
         "cells that light a surface, of the eight nearest: all, or only those that no triangle hides",

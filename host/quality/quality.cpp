@@ -31,7 +31,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-void fill_errors(QualityCell& cell, const Image& image, const reference::Reference& truth, Show show) {
+void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show) {
   const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
   const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
   cell.nrmse = c.nrmse_valid;
@@ -96,7 +96,7 @@ std::string describe(const Variant& variant) {
   return text;
 }
 
-QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
+QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::GroundTruth& truth,
                     Show show, int frames) {
   QualityCell cell;
   cell.compute_units = session.device().compute_units;
@@ -120,8 +120,8 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
   return cell;
 }
 
-std::string quality_key(const reference::Reference& truth, const Device& device, const RenderOptions& options,
-                        Show show, int frames) {
+std::string quality_key(const reference::GroundTruth& truth, const Device& device,
+                        const RenderOptions& options, Show show, int frames) {
   static const std::string program = program_fingerprint();
   Fingerprint print;
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);

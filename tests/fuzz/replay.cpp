@@ -3,7 +3,7 @@
 //
 //   fuzz_NAME FOLDER SECONDS
 //
-// The mutants are the same in every run: a test that failed fails again. The input in hand lies in a file, which stays when it
+// The mutants are the same in every run: a test that failed fails again. The current input is a file, which remains when it
 // ends the program.
 #include <algorithm>
 #include <array>

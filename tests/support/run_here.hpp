@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program in this process: what it says and its exit code, without the seconds that starting it many times takes. For
-// environment variables, signals and streams that go nowhere: run_program.hpp.
+// Runs the program in this process and returns output and exit code, which saves its start-up time. Tests of environment
+// variables, signals and broken streams use run_program.hpp.
 #pragma once
 
 #include <gtest/gtest.h>
