@@ -22,9 +22,10 @@ const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
 /// Bytes of all points, by the kernel, which check_visibility holds against the CPU reference.
 std::vector<std::uint8_t> occluded(const Scene& scene, const ClpvGrid& grid = kCells) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  CellVisibility sight(test_session(), buffers, static_cast<int>(grid.n), 1);
-  sight.update(0, grid);
-  return test_session().read<std::uint8_t>(sight.occluded(), CellVisibility::bytes(static_cast<int>(grid.n)));
+  CellVisibility visibility(test_session(), buffers, static_cast<int>(grid.n), 1);
+  visibility.update(0, grid);
+  return test_session().read<std::uint8_t>(visibility.occluded(),
+                                           CellVisibility::bytes(static_cast<int>(grid.n)));
 }
 
 /// Cube and point of a byte.

@@ -14,7 +14,7 @@
 namespace clpv {
 namespace {
 
-constexpr const char* kBeside[] = {"srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "sh2", "sh3"};
+constexpr const char* kNamedSets[] = {"srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "sh2", "sh3"};
 
 LobeAims aims_of(const BasisSearchOptions& options) {
   if (!options.weights.empty()) return load_aims(options.weights);
@@ -45,9 +45,10 @@ nlohmann::json described(const Basis& basis, const BasisView& view, const LobeAi
 }
 
 /// The found set, and the named sets for comparison.
-nlohmann::json beside_others(const Basis& found, double lambda, const BasisView& view, const LobeAims& aims) {
+nlohmann::json with_named_sets(const Basis& found, double lambda, const BasisView& view,
+                               const LobeAims& aims) {
   nlohmann::json bases = nlohmann::json::array({described(found, view, aims)});
-  for (const char* name : kBeside) bases.push_back(described(*make_basis(name, lambda), view, aims));
+  for (const char* name : kNamedSets) bases.push_back(described(*make_basis(name, lambda), view, aims));
   return bases;
 }
 
@@ -96,7 +97,7 @@ void print_search(const BasisSearchOptions& options, double lambda, const BasisV
   const CentreSearchResult found = search_centres(search, [&] { progress.advance(); });
   const auto basis = make_basis_from_centres(name_of(options), found.set.centres, found.set.lambdas);
   if (!options.output.empty()) write_file(options.output, file_of(*basis).dump(1) + "\n");
-  const nlohmann::json bases = beside_others(*basis, lambda, view, search.aims);
+  const nlohmann::json bases = with_named_sets(*basis, lambda, view, search.aims);
   if (json) {
     const nlohmann::json of_search{{"centres", search.centres},
                                    {"over", search.aims.name},

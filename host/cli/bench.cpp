@@ -86,8 +86,8 @@ std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   return drawing;
 }
 
-/// Returns the given scene, or the suite's default scene.
-void take_scene(Options& options, const bench::Suite& suite) {
+/// Loads the scene of --scene, or the default scene of the suite, into the options.
+void load_suite_scene(Options& options, const bench::Suite& suite) {
   if (options.scene.empty() && !options.model.empty())
     throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
   if (options.scene.empty() && suite.default_scene.empty()) return;
@@ -102,8 +102,8 @@ void take_scene(Options& options, const bench::Suite& suite) {
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
 }
 
-/// Reports failed rows. Exit code 5 if an output was wrong.
-void judge(const std::vector<bench::Row>& rows) {
+/// Throws Error(validation) if an output was wrong.
+void require_right_results(const std::vector<bench::Row>& rows) {
   const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
   if (wrong == 0) return;
   const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
@@ -127,7 +127,7 @@ void run(Options options, const Shared& shared) {
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
-  take_scene(options, suite);
+  load_suite_scene(options, suite);
   // Cached programs have no build time.
   Session session(choose_device(shared.device),
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
@@ -145,7 +145,7 @@ void run(Options options, const Shared& shared) {
     plot->draw(options.plot);
   }
   session.store_programs();
-  judge(results.rows);
+  require_right_results(results.rows);
 }
 
 }  // namespace bench_command

@@ -34,7 +34,7 @@ void set_log(const Shared& shared) {
 }
 
 /// Commands that distribute work over ranks; each rank would repeat all work of any other command.
-void reject_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
+void reject_ranks_except(CLI::App& app, const std::vector<std::string>& names) {
   for (CLI::App* command : app.get_subcommands({})) {
     const std::string name = command->get_name();
     if (std::ranges::count(names, name) > 0) continue;
@@ -95,13 +95,13 @@ void flush_data() {
 }
 
 /// Returns a message prefix like "rank 3 on node7: " if there are several ranks.
-std::string who(const Shared& shared) {
+std::string rank_prefix(const Shared& shared) {
   return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
 }
 
 /// Logs the error and aborts the other ranks.
-int ended(const Shared& shared, ExitCode code, const char* words) {
-  std::cerr << "clpv: " << who(shared) << words << std::endl;
+int report_failure(const Shared& shared, ExitCode code, const char* message) {
+  std::cerr << "clpv: " << rank_prefix(shared) << message << std::endl;
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }
@@ -138,7 +138,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
   for (const Command& command : commands) command.add(app, shared);
-  reject_ranks_but_to(app, {"quality", "sequence", "pathtrace"});
+  reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"
@@ -174,17 +174,17 @@ int run_program(int argc, const char* const* argv) {
     app.exit(error, std::cout, std::cerr);
     return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const Interrupted& interrupted) {
-    std::cerr << "clpv: " << who(shared) << "interrupted; " << interrupted.what() << std::endl;
+    std::cerr << "clpv: " << rank_prefix(shared) << "interrupted; " << interrupted.what() << std::endl;
     end_as_interrupted();
   } catch (const Error& error) {
-    return ended(shared, error.code(), error.what());
+    return report_failure(shared, error.code(), error.what());
   } catch (const cl::Error& error) {
     const Error named = cl_error(error);
-    return ended(shared, named.code(), named.what());
+    return report_failure(shared, named.code(), named.what());
   } catch (const std::bad_alloc&) {
-    return ended(shared, ExitCode::run_time, "out of memory");
+    return report_failure(shared, ExitCode::run_time, "out of memory");
   } catch (const std::exception& error) {
-    return ended(shared, ExitCode::run_time, error.what());
+    return report_failure(shared, ExitCode::run_time, error.what());
   }
 }
 

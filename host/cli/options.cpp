@@ -179,7 +179,7 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
       ->group(kGroup);
 }
 
-reference::TraceProgress shown_on(Progress& progress) {
+reference::TraceProgress trace_progress(Progress& progress) {
   return [&progress](double share) { progress.reach(static_cast<std::uint64_t>(share * kTraceSteps)); };
 }
 

@@ -111,7 +111,7 @@ struct TracingOptions {
 void add_tracing_options(CLI::App& command, TracingOptions& options);
 
 /// Returns a callback that shows the progress of trace_paths on a bar.
-reference::TraceProgress shown_on(Progress& progress);
+reference::TraceProgress trace_progress(Progress& progress);
 inline constexpr std::uint64_t kTraceSteps = 10000;  ///< steps of that bar
 
 }  // namespace clpv

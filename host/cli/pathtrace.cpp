@@ -95,7 +95,7 @@ void run(const Options& options, Shared& shared) {
   Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
-      shown_on(progress), ranks);
+      trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {

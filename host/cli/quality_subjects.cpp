@@ -76,7 +76,7 @@ void trace_truths(Subject& subject, int width, int height, const reference::Path
   for (const Camera& camera : subject.cameras) {
     Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name), kTraceSteps);
     subject.truths.push_back(reference::cached_ground_truth(folder, subject.scene, camera, width, height,
-                                                            options, shown_on(progress), ranks));
+                                                            options, trace_progress(progress), ranks));
     const reference::GroundTruth& truth = subject.truths.back();
     spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }

@@ -54,7 +54,7 @@ struct Options {
   bool stability = false;
   std::uint32_t traced = 0;
 
-  double instant(int frame) const { return from + frame / frames_per_second; }
+  double time_of(int frame) const { return from + frame / frames_per_second; }
   fs::path file(int frame) const {
     return fs::path(output) / fmt::format("frame-{:04}.{}", frame, name_of(format));
   }
@@ -128,20 +128,20 @@ class Sequence {
     Renderer renderer(device_, moving_.scene(), resolved_);
     Stability stability(renderer.session, renderer.frame, options_.traced);
     for_all_frames("stability", "stability.json is not written", [&](int i) {
-      moving_.pose(options_.instant(i));
+      moving_.pose(options_.time_of(i));
       renderer.frame.scene_moved();
       renderer.frame.render(camera());
-      stability.add(i, options_.instant(i), moving_.scene(), camera());
+      stability.add(i, options_.time_of(i), moving_.scene(), camera());
     });
-    nlohmann::json all = about();
+    nlohmann::json all = header_json();
     all["traced_spp"] = options_.traced;
     write_file(fs::path(options_.output) / "stability.json",
                stability_json(all, stability.steps()).dump(1) + "\n");
   }
 
   /// Writes the video from the files of all frames, on one rank.
-  void film(Video& video) {
-    for_all_frames("film", "the video is not written", [&](int i) {
+  void write_video(Video& video) {
+    for_all_frames("video", "the video is not written", [&](int i) {
       const Image image = read_image(options_.file(i));
       video.add(image.encoding == Encoding::srgb ? image : displayed(image));
     });
@@ -192,7 +192,7 @@ class Sequence {
 
   /// Returns true if the frame was missing.
   bool render(int number) {
-    const double seconds = options_.instant(number);
+    const double seconds = options_.time_of(number);
     Clock::time_point started = Clock::now();
     moving_.pose(seconds);
     double pose_ms = milliseconds_since(started);
@@ -232,7 +232,7 @@ class Sequence {
     write_png(options_.file(number), displayed(image));
   }
 
-  nlohmann::json about() const {
+  nlohmann::json header_json() const {
     nlohmann::json options = described(options_.from);
     options.erase("time");
     return {{"device", to_json(device_)},
@@ -243,7 +243,7 @@ class Sequence {
 
   void write_times() {
     if (!ranks_.is_root()) return;
-    write_file(times_file(), times_json(about(), times_).dump(1) + "\n");
+    write_file(times_file(), times_json(header_json(), times_).dump(1) + "\n");
     times_written_ = Clock::now();
   }
 
@@ -260,7 +260,7 @@ class Sequence {
 
 /// Checks the options before the scene is read.
 void check_outputs(const Options& options) {
-  if (const double last = options.instant(options.frames - 1); last > bounds::kSeconds) {
+  if (const double last = options.time_of(options.frames - 1); last > bounds::kSeconds) {
     throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
                 last, bounds::kSeconds);
   }
@@ -286,7 +286,7 @@ void run(const Options& options, Shared& shared) {
   sequence.render();
   if (!ranks.is_root()) return;
   if (options.stability) sequence.measure_stability();
-  if (video) sequence.film(*video);
+  if (video) sequence.write_video(*video);
 }
 
 }  // namespace sequence_command

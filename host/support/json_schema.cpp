@@ -86,7 +86,7 @@ bool in_range(const Rule& rule, const json& value) {
   return value.is_number() && value.get<double>() >= rule.minimum && value.get<double>() <= rule.maximum;
 }
 
-bool obeys(const Rule& rule, const json& value, std::size_t into_size) {
+bool matches(const Rule& rule, const json& value, std::size_t into_size) {
   const auto one_of = [](const auto& values, const auto& wanted) {
     return values.empty() || std::find(values.begin(), values.end(), wanted) != values.end();
   };
@@ -172,7 +172,7 @@ class Checker {
   }
 
   void check(const json& value) const {
-    if (obeys(rule_, value, into_size_)) return;
+    if (matches(rule_, value, into_size_)) return;
     std::string found = quoted(value);
     if (rule_.shape == Shape::vector && value.is_array() && value.size() == rule_.size) {
       const auto wrong =
