@@ -99,7 +99,7 @@ class FrameCascades {
   std::vector<CachedVolume> injected_, accumulated_;
   std::vector<CachedVolume> geometry_;  ///< none without occlusion
   /// Contents of the sweeper (links and face albedos) and of `visibility_`, per cascade.
-  std::vector<Cached> links_, reflected_, visible_cells_;
+  std::vector<Cached> links_, visible_cells_, reflected_;
   std::vector<ClpvGrid> grids_;
   std::vector<Keys> keys_;
   const Surface* camera_ = nullptr;
