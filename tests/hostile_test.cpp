@@ -126,7 +126,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {"--quiet renderr " + kCornell, {"'renderr'", "did you mean render?"}},
                        {"reference scene.json -o a.exr", {"now 'pathtrace'"}},
                        {"qualtiy", {"did you mean quality?"}},
-                       {"basis --search 4 --most-condition=9", {"now '--max-condition'"}},
+                       {"basis --search 4 --most-condition 9", {"now '--max-condition'"}},
                        {"--quiet", {"subcommand"}},
                        {"--device 99 devices2", {"devices"}},
                        {"devices check", {"check"}},

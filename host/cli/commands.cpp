@@ -81,10 +81,10 @@ void reject_misspelt_command(const CLI::App& app) {
 }
 
 /// Throws Error(usage) that names the successor of a renamed option.
-void reject_renamed_option(const CLI::App& app) {
-  for (const std::string& word : app.remaining(true)) {
-    if (const std::string renamed = reject_old_name(word.substr(0, word.find('='))); !renamed.empty())
-      throw Error(ExitCode::usage, "{}", renamed);
+void reject_renamed_options(int argc, const char* const* argv) {
+  for (const std::string word : std::span(argv, static_cast<std::size_t>(argc))) {
+    const std::string renamed = word.starts_with("--") ? reject_old_name(word.substr(0, word.find('='))) : "";
+    if (!renamed.empty()) throw Error(ExitCode::usage, "{}", renamed);
   }
 }
 
@@ -147,13 +147,11 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  reject_renamed_options(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError&) {
     if (app.get_subcommands().empty()) reject_misspelt_command(app);
-    throw;
-  } catch (const CLI::ExtrasError&) {
-    reject_renamed_option(app);
     throw;
   }
 }
