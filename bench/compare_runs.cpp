@@ -87,7 +87,7 @@ std::string comparison_table(const Comparison& comparison) {
                         verdict);
   }
   for (const std::string& name : comparison.only_before)
-    text += fmt::format("{}: only in the run before\n", name);
+    text += fmt::format("{}: only in the earlier run\n", name);
   for (const std::string& name : comparison.only_after) text += fmt::format("{}: only in this run\n", name);
   return text;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glTF animations: where meshes, cameras and lights are at an instant.
+// glTF animations: poses of meshes, cameras and lights at given times.
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"
@@ -39,7 +39,7 @@ TEST_F(AnimationTest, AStillModelDoesNotMove) {
   EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(1, 0, 0), kClose));
 }
 
-TEST_F(AnimationTest, WhatCurvesDoNotNameStaysAsStored) {
+TEST_F(AnimationTest, PropertiesWithoutCurvesAreConstant) {
   model.document["nodes"][0]["translation"] = {5, 6, 7};
   model.document["nodes"][0]["scale"] = {2, 2, 2};
   animate<float>(0, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, kHalf, kHalf});
@@ -72,7 +72,7 @@ TEST_F(AnimationTest, NormalsTurnAlong) {
   EXPECT_THAT(normal(moving.scene(), 0, 0), IsNear(glm::vec3(1, 0, 0), kClose));
 }
 
-TEST_F(AnimationTest, WhatTurnsInsideOutKeepsItsOutsideOutside) {
+TEST_F(AnimationTest, MirroredMeshesKeepTheirFront) {
   animate<float>(0, "scale", {0, 1}, {1, 1, 1, -1, 1, 1});
   MovingScene moving = load();
   for (const double seconds : {0.0, 1.0, 0.0}) {
@@ -104,7 +104,7 @@ TEST_F(AnimationTest, RotationsInShortIntegers) {
   EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(std::cos(angle), std::sin(angle), 0), 1e-4f));
 }
 
-TEST_F(AnimationTest, CamerasAndLightsGoWithTheirNodes) {
+TEST_F(AnimationTest, CamerasAndLightsFollowTheirNodes) {
   model.document["cameras"] =
       json::parse(R"([{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}])");
   model.document["extensions"]["KHR_lights_punctual"]["lights"] =
@@ -126,7 +126,7 @@ TEST_F(AnimationTest, CamerasAndLightsGoWithTheirNodes) {
   EXPECT_THAT(scene.lights[1].data.position, ::testing::ElementsAre(1, 1, 1));
 }
 
-TEST_F(AnimationTest, AnyInstantIsTheSameWhateverCameBefore) {
+TEST_F(AnimationTest, APoseDoesNotDependOnEarlierOnes) {
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
   animate<float>(0, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, kHalf, kHalf});
   MovingScene straight = load(), wandering = load();
@@ -135,7 +135,7 @@ TEST_F(AnimationTest, AnyInstantIsTheSameWhateverCameBefore) {
   EXPECT_EQ(bytes_of(straight.scene().vertices), bytes_of(wandering.scene().vertices));
 }
 
-TEST_F(AnimationTest, WhatIsFittedToASceneGoesByItsFirstInstant) {
+TEST_F(AnimationTest, FittedCascadesUseTheFirstPose) {
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 500, 0, 0});
   MovingScene moving = load();
   const double reach = moving.scene().reach();
@@ -148,7 +148,7 @@ TEST_F(AnimationTest, WhatIsFittedToASceneGoesByItsFirstInstant) {
   EXPECT_EQ(moving.scene().cameras[0].eye, eye) << "of the camera that was added";
 }
 
-TEST_F(AnimationTest, OfSeveralThatMoveTheSameTheFirstDoes) {
+TEST_F(AnimationTest, TheFirstOfSeveralChannelsWins) {
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
   model.add("animations", {{"samplers", json::array()}, {"channels", json::array()}});
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 9, 9, 9});
@@ -158,7 +158,7 @@ TEST_F(AnimationTest, OfSeveralThatMoveTheSameTheFirstDoes) {
   EXPECT_THAT(position(moving.scene(), 0, 0), IsNear(glm::vec3(1, 0, 0), kClose));
 }
 
-TEST_F(AnimationTest, WhatIsNotReadGetsANote) {
+TEST_F(AnimationTest, UnsupportedAnimationsGetANote) {
   animate<float>(0, "weights", {0, 1}, {0, 1});
   EXPECT_THAT(load().scene().notes, Contains(HasSubstr("/animations/0: animates weights")));
   model.document["animations"][0]["channels"][0]["target"].erase("node");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The library's door: what a program of somebody else's sees.
+// The public interface of the library (include/clpv).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ double mean(const Image& image, std::size_t channel) {
   return sum / static_cast<double>(image.pixel_count());
 }
 
-TEST(Door, RendersCornell) {
+TEST(Api, RendersCornell) {
   Renderer made(SceneFile(kCornell), small());
   Renderer renderer = std::move(made);
   const Image full = renderer.render(), direct = renderer.render(View::direct),
@@ -45,7 +45,7 @@ TEST(Door, RendersCornell) {
   EXPECT_EQ(full.pixels, renderer.render().pixels) << "frames of one renderer are the same";
 }
 
-TEST(Door, TellsOfLightAtAnyPoint) {
+TEST(Api, ReturnsLightAtAnyPoint) {
   Renderer renderer(SceneFile(kCornell), small());
   EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error) << "before the first frame";
   renderer.render();
@@ -58,7 +58,7 @@ TEST(Door, TellsOfLightAtAnyPoint) {
   EXPECT_THROW(renderer.irradiance({0, NAN, 0}, {0, 1, 0}), Error);
 }
 
-TEST(Door, ScenesThatMoveAreShownAtAnyInstant) {
+TEST(Api, AnimatedScenesRenderAtAnyTime) {
   const test::TemporaryFolder folder;
   const SceneFile scene(test::write_moving_scene(folder));
   EXPECT_TRUE(scene.moves());
@@ -75,7 +75,7 @@ TEST(Door, ScenesThatMoveAreShownAtAnyInstant) {
   EXPECT_THROW(renderer.render(View::full, {}, 1e9), Error);
 }
 
-TEST(Door, ImagesAreSavedByTheirExtension) {
+TEST(Api, ImagesAreSavedByTheirExtension) {
   const test::TemporaryFolder folder;
   Image image{2, 1, {"R", "G", "B", "A"}, {1, 0, 0, 1, 0, 1, 0, 1}, {}, Encoding::linear};
   for (const char* name : {"image.exr", "image.png"}) {
@@ -85,14 +85,14 @@ TEST(Door, ImagesAreSavedByTheirExtension) {
   EXPECT_THROW(save_image(folder.path() / "image.tga", image), Error);
 }
 
-TEST(Door, ScenesTellTheirCameras) {
+TEST(Api, ScenesListTheirCameras) {
   const SceneFile scene(kCornell);
   EXPECT_THAT(scene.cameras(), ::testing::Contains("front"));
   Renderer renderer(scene, small());
   EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
 }
 
-TEST(Door, OptionsAreTheProgramsAndBadOnesAreRejected) {
+TEST(Api, OptionsAreThoseOfTheProgram) {
   const auto all = Options::all();
   EXPECT_TRUE(std::ranges::any_of(all, [](const OptionDescription& o) { return o.name == "basis"; }));
   EXPECT_THAT(test::error_of(ExitCode::usage, [] { Options().set("layout", "planes"); }),
@@ -100,12 +100,12 @@ TEST(Door, OptionsAreTheProgramsAndBadOnesAreRejected) {
   EXPECT_THROW(Options().set("no-such-option", "1"), Error);
 }
 
-TEST(Door, FailuresHaveTheirKind) {
+TEST(Api, ErrorsHaveTheirExitCode) {
   test::error_of(ExitCode::bad_input, [] { SceneFile("/nowhere/scene.json"); });
   test::error_of(ExitCode::device, [] { Renderer(SceneFile(kCornell), small(), "no device of this name"); });
 }
 
-TEST(Door, ListsTheDeviceThatTestsRunOn) {
+TEST(Api, ListsTheDeviceThatTestsRunOn) {
   EXPECT_TRUE(
       std::ranges::any_of(all_devices(), [](const DeviceDescription& d) { return d.missing.empty(); }));
 }

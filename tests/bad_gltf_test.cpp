@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hostile and broken models: each is rejected in words, as exit code 3 (bad_input), before anything of the size it asks for is
+// Invalid models: each is rejected with a message and exit code 3 (bad_input), before memory of the requested size is
 // allocated.
 #include "tests/support/gltf_builder.hpp"
 
@@ -292,7 +292,7 @@ TEST_F(BadGltfTest, Animations) {
   EXPECT_THAT(rejected(), HasSubstr("/animations/0/extensions"));
 }
 
-TEST_F(BadGltfTest, BombsOfInstancesAndMorphTargets) {
+TEST_F(BadGltfTest, TooManyInstancesAndMorphTargets) {
   GltfBuilder many;
   std::vector<std::uint32_t> corners(99999);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
@@ -308,7 +308,7 @@ TEST_F(BadGltfTest, BombsOfInstancesAndMorphTargets) {
                                 HasSubstr("67108864 in all")));
 }
 
-TEST_F(BadGltfTest, WhatMovesOutOfTheWorldCanComeBack) {
+TEST_F(BadGltfTest, PosesBeyondTheBoundsAreRejected) {
   // A spline of rotations from a turn to its negative, at no speed, passes nothing half way; a node flies off.
   animate<float>(0, "rotation", {0, 1},
                  {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0}, "CUBICSPLINE");

@@ -100,7 +100,7 @@ TEST(Srbf, PoissonKernelIsItsSeries) {
 }
 
 TEST(LobeQuality, OfSh2IsKnownInClosedForm) {
-  // 1/4 + 1/2 cos: least -1/4, flux pi, peak along the axis; |max(0,t)|^2 - |fit|^2 = 2 pi/3 - 7 pi/12.
+  // 1/4 + 1/2 cos: minimum -1/4, flux pi, peak along the axis; |max(0,t)|^2 - |fit|^2 = 2 pi/3 - 7 pi/12.
   const auto basis = make_basis("sh2");
   const LobeQuality quality = lobe_quality(*basis, basis->clamped_cosine(kOblique), kOblique);
   EXPECT_NEAR(quality.minimum, -0.25, 1e-12);
@@ -119,13 +119,13 @@ TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
     return difference * difference;
   });
   EXPECT_NEAR(quality.relative_l2, std::sqrt(squared / (2 * std::numbers::pi / 3)), 1e-9);
-  double least = 0, most = 0;
+  double minimum = 0, maximum = 0;
   for (const glm::dvec3& w : test::spread_axes(20000)) {
-    least = std::min(least, basis->value(c, w));
-    most = std::max(most, basis->value(c, w));
+    minimum = std::min(minimum, basis->value(c, w));
+    maximum = std::max(maximum, basis->value(c, w));
   }
-  EXPECT_LE(quality.minimum, least + 1e-12);
-  EXPECT_NEAR(quality.minimum, least, 1e-3);
+  EXPECT_LE(quality.minimum, minimum + 1e-12);
+  EXPECT_NEAR(quality.minimum, minimum, 1e-3);
   // Some direction at that distance from the axis is as high as the highest.
   double highest = 0;
   const auto [u, v] = test::across(kOblique);
@@ -136,7 +136,7 @@ TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
         std::max(highest, basis->value(c, std::cos(tilt) * kOblique +
                                               std::sin(tilt) * (std::cos(phi) * u + std::sin(phi) * v)));
   }
-  EXPECT_NEAR(highest, most, 1e-3);
+  EXPECT_NEAR(highest, maximum, 1e-3);
 }
 
 TEST(ClampedCosine, Bands) {

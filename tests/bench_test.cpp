@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Benchmarks: statistics, reports, comparison of runs, suites, and `clpv bench` as a user meets it.
+// Benchmarks: statistics, reports, comparison of runs, suites, and the command `clpv bench`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
   EXPECT_EQ(statistics_of({}).median, 0);
 }
 
-TEST(BenchCeilings, TheLongestOfTheLeastTimesBinds) {
+TEST(BenchCeilings, TheLongestMinimumTimeIsTheCeiling) {
   Ceilings ceilings{100, {{1e6, 50}, {1e9, 10}}, 0.001};
   Row row;
   row.times.median = 4;
@@ -72,7 +72,7 @@ nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>
   return {{"context", {{"schema", 1}}}, {"benchmarks", list}};
 }
 
-TEST(BenchCompare, TellsAChangeFromTheSpread) {
+TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
   const auto before =
       report({{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
   const auto after =
@@ -150,7 +150,7 @@ void expect_right(const std::vector<Row>& rows) {
   }
 }
 
-TEST(BenchSuites, BaselineTellsARowOverTheSameByHand) {
+TEST(BenchSuites, BaselineComparesWithCodeByHand) {
   if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
   const auto sh2 = make_basis("sh2");
   EXPECT_THROW(PropagateBaseline(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
@@ -181,7 +181,7 @@ TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
   EXPECT_GT(actions[1]["value"], 0);
 }
 
-TEST(BenchSuites, RowsOfScalingSayWhatTheyArePointsOf) {
+TEST(BenchSuites, RowsOfScalingNameTheirAxis) {
   const std::vector<Row> rows = rows_of(scaling_suite(), "iterations:[48]$");
   expect_right(rows);
   ASSERT_EQ(rows.size(), 2u);
@@ -191,7 +191,7 @@ TEST(BenchSuites, RowsOfScalingSayWhatTheyArePointsOf) {
               ::testing::ContainsRegex("iterations +propagate/sh2 +-?[0-9.]+\n"));
 }
 
-TEST(BenchSuites, Table1StandsBesideThePublishedTimes) {
+TEST(BenchSuites, Table1HasThePublishedTimes) {
   const std::vector<Row> rows =
       rows_of(table1_suite(), "(inject-|gather).*/sh2/.*(cascade:0|gather/.*soa.*)$|gather/sh2/soa");
   expect_right(rows);

@@ -39,7 +39,7 @@ float sum(const Shares& shares, int axis) {
   return total;
 }
 
-TEST(Block, AWallFillsTheSquaresItStandsAcrossAndNoOthers) {
+TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
   Scene scene;
   add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
   const Shares shares = blocked(scene);
@@ -51,14 +51,14 @@ TEST(Block, AWallFillsTheSquaresItStandsAcrossAndNoOthers) {
   EXPECT_EQ(sum(shares, 2), 0);
 }
 
-TEST(Block, WallsBehindEachOtherAreOneWall) {
+TEST(Blockers, OverlappingWallsCountOnce) {
   Scene scene;
   const unsigned material = add_material(scene);
   for (const float x : {1.6f, 1.9f, 2.3f}) add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
   EXPECT_EQ(sum(blocked(scene), 0), 25);
 }
 
-TEST(Block, PartOfASquareCountsByItsArea) {
+TEST(Blockers, BlockingIsProportionalToCoveredArea) {
   Scene scene;
   add_quad(scene, {1.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, -0.25f},
            add_material(scene));  // beyond the corner's cell
@@ -70,7 +70,7 @@ TEST(Block, PartOfASquareCountsByItsArea) {
   EXPECT_EQ(sum(shares, 1), 0.25f);
 }
 
-TEST(Block, ASlantedWallBlocksAlongEachAxisItCrosses) {
+TEST(Blockers, ASlantedWallBlocksAlongEachAxisItCrosses) {
   Scene scene;
   add_quad(scene, {-5, -5, -5}, {20, 20, 0}, {0, 0, 20}, add_material(scene));  // x = y
   const Shares shares = blocked(scene);
@@ -81,7 +81,7 @@ TEST(Block, ASlantedWallBlocksAlongEachAxisItCrosses) {
   EXPECT_EQ(sum(shares, 2), 0) << "seen edge-on";
 }
 
-TEST(Block, HolesOfMaskedMaterialsLetLightPass) {
+TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
   Scene scene;
   Texture stripes{.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
   scene.textures.push_back(stripes);
@@ -92,16 +92,16 @@ TEST(Block, HolesOfMaskedMaterialsLetLightPass) {
            material);  // opaque from u 0 to 1/2, repeated beyond
   EXPECT_EQ(sum(blocked(scene), 1), 0.5f);
   scene.materials[material].flags = 0;
-  EXPECT_EQ(sum(blocked(scene), 1), 1) << "alpha is nothing to what is not masked";
+  EXPECT_EQ(sum(blocked(scene), 1), 1) << "opaque materials ignore alpha";
 }
 
-TEST(Block, ATriangleBeyondTheHorizonIsAWall) {
+TEST(Blockers, AHugeTriangleIsAWall) {
   Scene scene;
   add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, add_material(scene));
   EXPECT_EQ(sum(blocked(scene), 1), 25);
 }
 
-TEST(Block, KernelsAgreeWithTheReference) {
+TEST(Blockers, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::blockers, test_session()), 2);
 }
 

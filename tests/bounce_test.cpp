@@ -35,7 +35,7 @@ Transport swept() {
   return make_transport(TransportKind::sweep, *make_basis("bins24"), {}, Blocking::areas);
 }
 
-TEST(Bounce, AllThatLeavesASideLeaves) {
+TEST(Bounce, FacesEmitAllReflectedFlux) {
   const Matrix light = reflected_intensity(*make_basis("bins24"));
   for (int side = 0; side < kCellFaces; ++side) {
     double flux = 0, along = 0;
@@ -53,7 +53,7 @@ TEST(Bounce, AllThatLeavesASideLeaves) {
 }
 
 // Under the same light from everywhere a white wall sends back the light that falls on it.
-TEST(Bounce, WhatFallsOnASideIsWhatItWouldSend) {
+TEST(Bounce, AWhiteFaceReturnsEvenLight) {
   const Matrix flux = incident_flux(), light = reflected_intensity(*make_basis("bins24"));
   const std::vector<double> even(kSweepBins, 1.0);
   const std::vector<double> arriving = flux * std::span<const double>(even);
@@ -125,7 +125,7 @@ struct Room {
 };
 
 // The series E (1 + a + a^2 + ...) of a furnace, with one term a bounce.
-TEST(Bounce, AFurnaceGlowsByItsClosedForm) {
+TEST(Bounce, AFurnaceMatchesItsClosedForm) {
   for (const float albedo : {0.2f, 0.8f}) {
     const Room room(albedo);
     const double one = room.lit(Bounces::one), bounces = kFurtherBounces + 3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cascades: nested round the camera, on whole cells.
+// Cascades: nested grids about the camera, on whole cells.
 #include "pipeline/cascade.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@
 namespace clpv::cascade_test {
 namespace {
 
-TEST(Cascade, EachIsTwiceTheOneBeforeAndHoldsIt) {
+TEST(Cascade, EachIsTwiceTheFinerAndContainsIt) {
   const auto grids = cascade_grids({1.3f, -2.7f, 40.1f}, 4, 12.5, 32);
   ASSERT_EQ(grids.size(), 4u);
   for (std::size_t c = 0; c + 1 < grids.size(); ++c) {
@@ -59,13 +59,13 @@ Scene floor_of(float edge) {
   return scene;
 }
 
-TEST(Cascade, TheUsualSizeIsLeftWhereItSuits) {
+TEST(Cascade, TheDefaultSizeIsKeptWhereItFits) {
   for (const float edge : {10.0f, 20.0f, 37.0f})
     EXPECT_EQ(fitting_cascade_size(floor_of(edge), 3, 12.5), 12.5) << edge;
   EXPECT_EQ(fitting_cascade_size(Scene{}, 3, 12.5), 12.5) << "nothing to hold";
 }
 
-TEST(Cascade, TheCoarsestIsMadeToHoldWhatIsSeen) {
+TEST(Cascade, TheCoarsestIsFittedToTheScene) {
   for (const float edge : {0.01f, 1.0f, 5.0f, 45.0f, 700.0f}) {
     const double size = fitting_cascade_size(floor_of(edge), 3, 12.5);
     EXPECT_NEAR(4 * size, edge * 32 / 24, 1e-4 * edge) << edge;
@@ -107,8 +107,8 @@ TEST_F(WideModel, IsLitIndirectly) {
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("cascades of"));
   EXPECT_THAT(outcome.err, ::testing::Not(::testing::HasSubstr("nothing of the scene")));
   double injected = 0;
-  const nlohmann::json told = nlohmann::json::parse(test::read_file(stats()));
-  for (const auto& cascade : told["energy"]) injected += cascade["injected"][0].get<double>();
+  const nlohmann::json document = nlohmann::json::parse(test::read_file(stats()));
+  for (const auto& cascade : document["energy"]) injected += cascade["injected"][0].get<double>();
   EXPECT_GT(injected, 0);
 }
 

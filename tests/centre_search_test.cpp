@@ -49,7 +49,7 @@ TEST(LambdaOfEachCentre, GramMatrixIsThatOfTheFunctions) {
   }
 }
 
-TEST(LobeAims, LeastErrorsAreThoseOfTheHarmonics) {
+TEST(LobeAims, MinimumErrorsAreThoseOfTheHarmonics) {
   // No 4 functions are better than sh2, no 9 than sh3, no 8 than sh2 with four of the next five.
   for (const auto& [functions, name] : {std::pair{4, "sh2"}, {9, "sh3"}}) {
     EXPECT_NEAR(minimum_error(functions), error_over(*make_basis(name), all_directions()), 1e-9);
@@ -121,7 +121,7 @@ TEST(SearchCentres, FindsTheSameSetForTheSameSeed) {
   EXPECT_NE(search_centres(search).set.centres, one.set.centres);
 }
 
-TEST(SearchCentres, IsBetterThanTheNamedSetsAndNeverBeatsTheLeastError) {
+TEST(SearchCentres, IsBetterThanTheNamedSetsAndWithinTheBound) {
   const CentreSearchResult found = search_centres(quick(8));
   const auto basis = basis_of(found.set);
   EXPECT_NEAR(found.error, error_over(*basis, all_directions()), kSpiral);
@@ -150,7 +150,7 @@ TEST(SearchCentres, RejectsWithTheBound) {
   rejected([](CentreSearch& s) { s.centres = 65; }, "--search: found 65, allowed: 1 to 64");
   rejected([](CentreSearch& s) { s.centres = 0; }, "--search: found 0");
   rejected([](CentreSearch& s) { s.lambda = 1; }, "lambda: found 1");
-  rejected([](CentreSearch& s) { s.most_condition = 1e8; }, "1e+07");
+  rejected([](CentreSearch& s) { s.max_condition = 1e8; }, "1e+07");
 }
 
 TEST(SearchCentres, WritesAFileThatIsABasis) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program as a process: its exit codes, what it says before any command runs, and what its streams take. All else runs in the
-// tests' own process (support/run_here.hpp).
+// The program as a process: exit codes, help and errors of its output streams. Other tests run commands in their own process
+// (support/run_here.hpp).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ test::Outcome clpv(const std::string& arguments) {
   return test::run(CLPV_PROGRAM " " + arguments);
 }
 
-TEST(CommandLine, NothingGivenIsAQuestionForHelp) {
+TEST(CommandLine, WithoutArgumentsItPrintsHelp) {
   const test::Outcome bare = clpv(""), help = clpv("--help");
   EXPECT_EQ(bare.exit_code, 0);
   EXPECT_EQ(bare.out, help.out);
@@ -42,8 +42,8 @@ TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
               AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));
 }
 
-TEST(CommandLine, AReaderThatIsGone) {
-  // As any program: the signal of the pipe ends it, with nothing said.
+TEST(CommandLine, AClosedPipeEndsTheProgram) {
+  // SIGPIPE ends the program without a message, like any other.
   const test::TemporaryFolder folder;
   const test::Outcome outcome =
       test::run("{ " CLPV_PROGRAM " basis; echo $? >" + (folder / "code").string() + "; } | exec true");
@@ -52,7 +52,7 @@ TEST(CommandLine, AReaderThatIsGone) {
   EXPECT_TRUE(code == "141\n" || code == "0\n") << code;  // 0: it was done before
 }
 
-TEST(CommandLine, DataThatDoesNotFitIsNotLostUnsaid) {
+TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
   const test::Outcome outcome = clpv("devices --json >/dev/full");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Figures of the comparison against hand-made images whose errors are known, and the command around them.
+// Error measures on images with known errors, and the command `clpv compare`.
 #include "image/compare.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(Compare, OnePixelOneChannel) {
   EXPECT_FALSE(c.identical);
 }
 
-TEST(Compare, AlphaIsNotComparedAndTellsWhichPixelsAreValid) {
+TEST(Compare, AlphaIsNotComparedButMarksValidPixels) {
   Image a = plain(4, 2, 1, 1, 1), b = plain(4, 2, 2, 2, 2);
   for (int y = 0; y < 2; ++y) {
     a.at(0, y, 3) = 0;  // background in A only, where A is bright
@@ -93,7 +93,7 @@ TEST(Compare, AlphaIsNotComparedAndTellsWhichPixelsAreValid) {
   EXPECT_TRUE(compare(clear, "a", b, "b").identical);
 }
 
-TEST(Compare, BestGainLeavesTheErrorThatNoGainMends) {
+TEST(Compare, BestGainLeavesTheErrorThatNoGainRemoves) {
   // A constant, B of two values 1 and 3: g A = 2 everywhere, error 1 against a root mean square of sqrt 5.
   Image a = plain(2, 1, 1, 1, 1), b = plain(2, 1, 1, 1, 1);
   for (int c = 0; c < 3; ++c) b.at(1, 0, c) = 3;
@@ -110,7 +110,7 @@ TEST(Compare, ABlackReferenceHasNoRelativeError) {
   EXPECT_TRUE(black.identical);
 }
 
-TEST(Compare, PerceptualTestSeesAPatchAndForgivesATrace) {
+TEST(Compare, PerceptualTestFindsAPatchAndIgnoresSmallErrors) {
   const Image b = plain(128, 128, 0.5f, 0.5f, 0.5f);
   Image patch = b, trace = b;
   for (int y = 40; y < 80; ++y) {

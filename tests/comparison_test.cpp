@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one comparison of results with the CPU reference, and its report as test cases.
+// Comparison of results with the CPU reference, and its JUnit report.
 #include "verify/comparison.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-TEST(Comparison, TellsTheWorstAndItsPlace) {
+TEST(Comparison, ReportsTheLargestErrorAndItsPlace) {
   std::vector<double> expected(2 * 8, 0.5);
   std::vector<float> found(expected.begin(), expected.end());
   EXPECT_EQ(compare_volumes(found, expected, 2).worst, 0);
@@ -45,7 +45,7 @@ TEST(Comparison, AReferenceOfNothingAllowsNothing) {
   EXPECT_FALSE(compare_volumes(found, expected, 2).worst <= 1);  // 0 / 0 does not pass
 }
 
-TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
+TEST(Comparison, EitherOfTwoNearlyEqualBlockersIsRight) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const std::vector<double> up = basis->clamped_cosine({0, 1, 0}), along = basis->clamped_cosine({1, 0, 0});
   Volume a(2, basis->size(), 1), b = a;
@@ -64,7 +64,7 @@ TEST(Comparison, OfSurfacesThatBlockAlmostAlikeEitherIsRight) {
   }
 }
 
-TEST(Junit, TellsStagesCasesAndWhatFailed) {
+TEST(Junit, ListsStagesCasesAndFailures) {
   const std::string xml = junit({{"inject", "sh2", 1e-7, 1e-6, ""},
                                  {"gather", "a<b", 0.5, 1e-6, "cell \"1\" & more"},
                                  {"gather", "nan", NAN, 1e-6, "cell 2"}},

@@ -36,7 +36,7 @@ std::vector<double> joined(const std::vector<std::vector<double>>& parts) {
   return all;
 }
 
-TEST(Curve, StandsStillBeforeTheFirstKeyAndAfterTheLast) {
+TEST(Curve, IsConstantBeforeTheFirstKeyAndAfterTheLast) {
   for (const Interpolation interpolation : {Interpolation::linear, Interpolation::step}) {
     const Curve curve{interpolation, 2, {1, 3}, {5, 6, 9, 10}};
     for (const double early : {-1e6, 0.0, 1.0}) EXPECT_THAT(at(curve, early), ElementsAre(5, 6));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Skins and morph targets against closed forms, still and animated.
+// Skins and morph targets against closed forms, static and animated.
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"
@@ -41,7 +41,7 @@ struct SkinTest : AnimationTest {
   }
 };
 
-TEST_F(SkinTest, VerticesGoWithTheirJoints) {
+TEST_F(SkinTest, VerticesFollowTheirJoints) {
   model.document["nodes"][0]["translation"] = {50, 50, 50};  // of no account: the joints place it
   model.document["nodes"][1]["translation"] = {0, 0, 4};
   model.document["nodes"][2]["translation"] = {2, 10, 0};
@@ -102,7 +102,7 @@ TEST_F(MorphTest, TargetsAddUpByTheWeightsOfTheNodeElseTheMesh) {
   model.document["nodes"][0]["weights"] = {1, 0};
   const Scene of_node = load_scene(model.write(folder));
   EXPECT_THAT(position(of_node, 0, 2), IsNear(glm::vec3(0, 1, 2), kNear));
-  EXPECT_THAT(normal(of_node, 0, 0), IsNear(face_normal(of_node, 0), kNear)) << "flat ones are made anew";
+  EXPECT_THAT(normal(of_node, 0, 0), IsNear(face_normal(of_node, 0), kNear)) << "flat normals are recomputed";
   EXPECT_TRUE(of_node.moving.empty());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Listing and choosing devices, on lists made up here and on this machine's own.
+// Listing and choosing devices, on synthetic lists and on this machine's list.
 #include "device/device.hpp"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ Device made_up(int index, int platform, int in_platform, const std::string& name
   return device;
 }
 
-/// Platform 1 has no device, so numbers of platforms and of devices part ways.
+/// Platform 1 has no device, so indices of platforms and of devices differ.
 std::vector<Device> three_devices() {
   std::vector<Device> devices = {made_up(0, 0, 0, "Small CPU"), made_up(1, 2, 0, "Big GPU"),
                                  made_up(2, 2, 1, "Old GPU")};
@@ -95,7 +95,7 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
                         "int64_atomics", "fp64", "profiling_valid", "supported", "missing"));
 }
 
-TEST(DevicesCommand, WithoutAnyDriverIsAnEmptyListAndAWord) {
+TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
   const test::TemporaryFolder empty;
   const std::string none = "OCL_ICD_VENDORS=" + empty.path().string() + " ";
   const auto listed = test::run(none + CLPV_PROGRAM " devices --json");

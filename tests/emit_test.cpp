@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Emissive surfaces: how much light leaves them, from where, and what it does in a frame.
+// Emissive surfaces: flux and positions of their virtual point lights, and the light in a frame.
 #include "pipeline/emit.hpp"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
 }
 
 // A spot of some texels anywhere on a texture far finer than the points are apart: neither missed nor counted twice.
-TEST(Emit, ASmallBrightSpotCountsOnceWhereverItIs) {
+TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
   for (const unsigned at : {3u, 517u, 1020u}) {
     Scene scene;
     Texture spot{.width = 1024, .height = 1024, .rgba = {}, .name = "spot"};
@@ -92,7 +92,7 @@ TEST(Emit, ASmallBrightSpotCountsOnceWhereverItIs) {
   }
 }
 
-TEST(Emit, HolesDoNotGlow) {
+TEST(Emit, HolesDoNotEmit) {
   Scene scene;
   scene.textures.push_back({.width = 2,
                             .height = 1,
@@ -134,7 +134,7 @@ TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
   EXPECT_LT(plan.points, 60'000u);
 }
 
-TEST(Emit, PointsAreBoundedBeforeTheyAreMade) {
+TEST(Emit, TheNumberOfPointsIsBounded) {
   Scene scene;
   const unsigned lamp = add_lamp_material(scene, glm::vec3(1));
   add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, lamp);
@@ -150,7 +150,7 @@ TEST(Emit, PointsAreBoundedBeforeTheyAreMade) {
   EXPECT_EQ(plan_of(scene, grids).points, all.points);
 }
 
-TEST(Emit, WhatIsMostIsWhatOneCellOrTheWholeSends) {
+TEST(Emit, MaximumFluxIsThatOfACellOrTheTotal) {
   Scene scene;
   add_quad(scene, {0, 0, 0}, {0, 0, 1}, {2, 0, 0}, add_lamp_material(scene, {3, 1, 1}));
   const std::vector<std::uint32_t> triangles = emissive_triangles(scene);
@@ -226,14 +226,14 @@ TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   frame.scene_moved();
   EXPECT_EQ(passes(frame, camera), std::pair(1, 2));
   const std::vector<float> moved = frame.read(Show::irradiance);
-  Frame anew(test_session(), scene, small_frame());
-  anew.render(camera);
-  EXPECT_TRUE(anew.read(Show::irradiance) == moved);
+  Frame fresh(test_session(), scene, small_frame());
+  fresh.render(camera);
+  EXPECT_TRUE(fresh.read(Show::irradiance) == moved);
   camera.eye.x += 0.2f;  // cells of 1/8 and 1/4 m, and the lamp as near as before
   EXPECT_EQ(passes(frame, camera).first, 0);
 }
 
-TEST(EmissiveFrame, AtRestItsPointsDoNotDependOnWhatElseMoves) {
+TEST(EmissiveFrame, StaticEmittersKeepTheirPoints) {
   Scene scene = lamp_over_floor();
   scene.moving = {{0, 4, 0, 2}};  // the floor
   Frame frame(test_session(), scene, small_frame());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The walk through an EXR's headers, against files that OpenEXR wrote and against headers put together here, byte by byte.
+// Parser of EXR headers, on files that OpenEXR wrote and on headers built byte by byte.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -83,7 +83,7 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
   EXPECT_GE(images, 7);
 }
 
-TEST(ExrHeader, SeveralPartsAreWalkedAndTheFirstIsTold) {
+TEST(ExrHeader, TheFirstOfSeveralPartsIsReturned) {
   std::string bytes = test::read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/two_parts");
   const DeclaredImage declared = walked(bytes);
   EXPECT_EQ(declared.width, 5);

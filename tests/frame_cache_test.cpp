@@ -18,7 +18,7 @@ TEST(Cached, IsComputedForAnotherKey) {
   Cached cached;
   int computed = 0;
   for (const CacheKey key : {0, 0, 7, 7, 0}) cached.update(key, [&] { ++computed; });
-  EXPECT_EQ(computed, 3) << "it holds what was computed last";
+  EXPECT_EQ(computed, 3) << "it holds the last result";
 }
 
 TEST(Cached, HoldsNothingAfterAFailure) {
@@ -86,9 +86,9 @@ class CachedFrame : public ::testing::Test {
     Passes passes;
     for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);
     Frame alone(session_, scene_, options_);
-    const Found anew = rendered(session_, alone, camera);
-    EXPECT_EQ(kept.size(), anew.size());
-    for (std::size_t i = 0; i < anew.size(); ++i) EXPECT_TRUE(kept[i] == anew[i]) << i;
+    const Found fresh = rendered(session_, alone, camera);
+    EXPECT_EQ(kept.size(), fresh.size());
+    for (std::size_t i = 0; i < fresh.size(); ++i) EXPECT_TRUE(kept[i] == fresh[i]) << i;
     return passes;
   }
 
@@ -108,7 +108,7 @@ Passes with(Passes passes, const Passes& more) {
 const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light, Pass::propagate};
 const Passes kOfCells{Pass::blockers, Pass::visibility, Pass::reflectors};
 
-TEST_F(CachedFrame, MakesWhatChanged) {
+TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
   Instants at;
   const Passes all = with(with(kOfEveryFrame, kOfLight), kOfCells);
   EXPECT_EQ(passes(at), all);
@@ -142,16 +142,16 @@ TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
   }
 }
 
-TEST_F(CachedFrame, MakesAnewWhatItIsToldToForget) {
+TEST_F(CachedFrame, RecomputesInvalidatedResults) {
   const Instants at;
   passes(at);
-  frame_.forget_light();
+  frame_.invalidate_light();
   EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
   frame_.invalidate();
   EXPECT_EQ(passes(at), with(with(kOfEveryFrame, kOfLight), kOfCells));
 }
 
-TEST_F(CachedFrame, AnObserverSeesWhatCascadesShare) {
+TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
   const Instants at;
   using Seen = std::vector<std::vector<float>>;
   const auto observed = [&] {
@@ -162,10 +162,10 @@ TEST_F(CachedFrame, AnObserverSeesWhatCascadesShare) {
     });
     return seen;
   };
-  const Seen anew = observed();
-  ASSERT_EQ(anew.size(), 4u);
-  EXPECT_FALSE(anew[0] == anew[2]) << "a cascade's own";
-  EXPECT_TRUE(observed() == anew);
+  const Seen recomputed = observed();
+  ASSERT_EQ(recomputed.size(), 4u);
+  EXPECT_FALSE(recomputed[0] == recomputed[2]) << "a cascade's own";
+  EXPECT_TRUE(observed() == recomputed);
 }
 
 /// Surfels that the camera sees are blockers: what depends on them changes with the view.
@@ -180,7 +180,7 @@ class CachedPublishedFrame : public CachedFrame {
         }) {}
 };
 
-TEST_F(CachedPublishedFrame, MakesWhatChanged) {
+TEST_F(CachedPublishedFrame, RecomputesOnlyWhatChanged) {
   const Passes of_view{Pass::inject_geometry, Pass::propagate};
   Instants at;
   const Passes all = with(with(kOfEveryFrame, kOfLight), of_view);
@@ -192,7 +192,7 @@ TEST_F(CachedPublishedFrame, MakesWhatChanged) {
   EXPECT_EQ(passes(at), all);
   at.wall = 0.6;
   EXPECT_EQ(passes(at), all);
-  frame_.forget_light();
+  frame_.invalidate_light();
   EXPECT_EQ(passes(at), all);
   for (int i = 0; i < 5; ++i) {
     at.eye += glm::vec3(0.6f, 0.0f, -0.55f) * kCell;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whole frames: the scenes of this project against what they must show, whatever the numbers inside.
+// Whole frames against golden images and known properties of the scenes.
 #include "pipeline/frame.hpp"
 
 #include <gtest/gtest.h>
@@ -76,17 +76,17 @@ void expect_golden(const Image& image, const std::string& name) {
 static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructible_v<Frame> &&
               !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
 
-TEST(Frame, AtriumLooksAsItDid) {
+TEST(Frame, AtriumEqualsItsGoldenImage) {
   const Scene scene = load_scene(scene_path("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");
 }
 
-TEST(Frame, CornellBoxLooksAsItDid) {
+TEST(Frame, CornellBoxEqualsItsGoldenImage) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "cornell");
 }
 
-TEST(Frame, SponzaLooksAsItDid) {
+TEST(Frame, SponzaEqualsItsGoldenImage) {
   if (!fs::exists(sponza_model())) GTEST_SKIP() << "the Crytek Sponza is not at " << sponza_model();
   const Scene scene = load_scene(scene_path("sponza.json"), {sponza_model()});
   expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
@@ -236,7 +236,7 @@ TEST(LightScale, AFullCellIsAThousandthOfTheRange) {
   }
 }
 
-TEST(LightScale, LampsCountWithAllTheySend) {
+TEST(LightScale, LampsCountWithTheirTotalFlux) {
   const float scale = light_scale(kHalf, {test::point_light({0, 1, 0}, glm::vec3(100))}, 0.4f);
   EXPECT_LE(100 * 4 * scale, 257);
 }

@@ -280,7 +280,7 @@ Walled walled(const Basis& basis) {
           reference::occlude(wall, grid_of(0)).lower};
 }
 
-TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
+TEST(Gather, HiddenCellsDoNotLightASurface) {
   const auto basis = make_basis("sh2");
   const Walled scene = walled(*basis);
   const double lit = 4 * 2.0 / (kCell * kCell);
@@ -298,7 +298,7 @@ TEST(Gather, OfCellsBehindAWallNothingIsSeenIfAsked) {
   expect_all(on_wall(1, Gathering::all), is((1 - own) * lit), 3 * lit);
 }
 
-TEST(Gather, WhereNothingIsSeenAllCellsCount) {
+TEST(Gather, AllCellsCountWhereNoneIsVisible) {
   const auto basis = make_basis("sh2");
   const SurfaceImage image = walk({-1, 0.1, 0.3}, {1, -0.2, 0.1}, kTilted);
   const std::vector<std::uint8_t> nothing(CellVisibility::bytes(kGrid), 0xff);
@@ -307,7 +307,7 @@ TEST(Gather, WhereNothingIsSeenAllCellsCount) {
   expect_all(found, 4 * 1.75 / (kCell * kCell));
 }
 
-TEST(Gather, LightIsContinuousWhereCellsGoOutOfSight) {
+TEST(Gather, LightIsContinuousWhereCellsBecomeHidden) {
   const auto basis = make_basis("sh2");
   Scene wall;  // ends within the grid: behind its edge cells come into sight
   add_quad(wall, {0, -9, -9}, {0, 9, 0}, {0, 0, 20}, add_material(wall));

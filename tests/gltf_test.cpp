@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and looks at what comes
-// out in world space.
+// glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and checks the scene
+// in world space.
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"
@@ -50,7 +50,7 @@ TEST_F(GltfTest, OnlyTheDefaultSceneIsShown) {
   EXPECT_THAT(position(second, 0, 0), IsNear(glm::vec3(5, 0, 0), kClose));
 }
 
-TEST_F(GltfTest, AMeshStandsWhereverANodeSays) {
+TEST_F(GltfTest, EachNodePlacesItsMesh) {
   model.triangle();
   for (int i = 1; i <= 2; ++i) model.add("nodes", {{"mesh", 0}, {"translation", {i, 0, 0}}});
   const Scene scene = load();
@@ -61,7 +61,7 @@ TEST_F(GltfTest, AMeshStandsWhereverANodeSays) {
   }
 }
 
-TEST_F(GltfTest, AMirroredMeshKeepsItsOutsideOutside) {
+TEST_F(GltfTest, AMirroredMeshKeepsItsFront) {
   const int position = model.accessor<float>("VEC3", {0, 0, 1, 1, 0, 1, 0, 1, 1});
   const int normals = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
   model.mesh({{"POSITION", position}, {"NORMAL", normals}});

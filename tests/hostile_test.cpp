@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Invalid command lines, row by row: bad arguments (exit code 2, before a scene is read or a device is opened), devices that do
 // not exist (4), outputs that cannot be written (1, before the work), files that cannot be read (3).
-// The message names option or file and what is allowed, in clpv's own words; nothing may be left behind.
+// The message names option or file and the allowed values. No file may remain.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -32,7 +32,7 @@ struct HostileInput {
   int exit_code;
   std::vector<std::string> words;                            ///< on stderr
   std::vector<std::pair<std::string, std::string>> files{};  ///< made in the folder: name, bytes
-  std::function<void(const TemporaryFolder&)> prepare{};     ///< what is no plain file
+  std::function<void(const TemporaryFolder&)> prepare{};     ///< creates anything but regular files
   /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the shell; without, the command
   /// runs in this process.
   std::string surroundings{};
@@ -117,7 +117,7 @@ TEST(HostileCommandLines, OfCommands) {
   const std::string film = "sequence " + kCornell + " -o @/out ", quality = "quality " + kCornell + " ",
                     truth = "pathtrace " + kCornell + " ";
   expect_usage("", {
-                       {"render -o @/out.exr", {"scene"}},
+                       {"render -o @/out.exr", {"SCENE"}},
                        {"render " + kCornell, {"--output"}},
                        {"render " + kCornell + " " + kCornell + " -o @/out.exr", {"cornell.json"}},
                        {"render " + kCornell + " -o @/out.bmp", {"'.bmp'", ".exr, .png"}},
@@ -126,6 +126,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {"--quiet renderr " + kCornell, {"'renderr'", "did you mean render?"}},
                        {"reference scene.json -o a.exr", {"now 'pathtrace'"}},
                        {"qualtiy", {"did you mean quality?"}},
+                       {"basis --search 4 --most-condition 9", {"now '--max-condition'"}},
                        {"--quiet", {"subcommand"}},
                        {"--device 99 devices2", {"devices"}},
                        {"devices check", {"check"}},

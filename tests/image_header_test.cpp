@@ -30,7 +30,7 @@ std::string chunk(const std::string& type, const std::string& bytes) {
 
 constexpr std::size_t kHeaderEnd = 33;  // of the signature and IHDR
 
-TEST(ImageHeader, TellsSizes) {
+TEST(ImageHeader, ReturnsSizes) {
   const std::string png = test::decode_base64(test::kPngRgba2x2),
                     jpeg = test::decode_base64(test::kJpegRed8x8);
   const auto png_header = read_image_header(bytes_in(png)), jpeg_header = read_image_header(bytes_in(jpeg));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Injection against closed forms: where light goes and how much, what walls block, merging, repeatability; and the
+// Injection against closed forms: position and flux of light, blockers, several surfaces, repeatability; and the
 // kernels against their CPU reference.
 #include "pipeline/inject.hpp"
 
@@ -213,7 +213,7 @@ TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
   EXPECT_NEAR(basis->value(blocked.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding) << "half a square";
 }
 
-TEST(Inject, AreasAreWhatIsCoveredOfEachFace) {
+TEST(Inject, AreasAreTheCoveredShareOfEachFace) {
   const auto basis = make_basis("sh2");
   const InjectOptions areas{.blocking = Blocking::areas};
   const Injection wall = geometry_of(*basis, {plane(from_above(32, 32, 1.0f / 16), 0.55f)}, areas);

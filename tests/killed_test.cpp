@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs that are ended from outside: killed at moments drawn with a fixed seed, after which there is no half file and the
-// next run is right; interrupted, told what is kept.
+// Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or none, and the next run is
+// right. Interrupted, they report which results exist.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -124,7 +124,7 @@ TEST_F(Killed, WhileItRenders) {
       });
 }
 
-TEST_F(Killed, WhileItJudges) {
+TEST_F(Killed, WhileQualityMeasures) {
   const fs::path json = folder_ / "q.json";
   kill_at_moments("quality " + kTiny + kSmall +
                       "--basis sh2 --gather all --blockers seen --vary transport=sampled,exact --width 24 "
@@ -148,7 +148,7 @@ std::string sequence(const fs::path& folder) {
          kSmall + "--basis sh2 --transport sampled --gather all --blockers seen -o " + folder.string();
 }
 
-TEST_F(Killed, AnInterruptIsTold) {
+TEST_F(Killed, AnInterruptIsReported) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path film = folder_ / ("film" + std::to_string(signal)), said = folder_ / "said";
     Child child(CLPV_PROGRAM " " + sequence(film), said);
@@ -157,7 +157,7 @@ TEST_F(Killed, AnInterruptIsTold) {
     EXPECT_EQ(child.end(signal), 128 + signal);
     EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; "));
     EXPECT_THAT(read_file(said),
-                HasSubstr(" of 1000 frames are in " + film.string() + "; the same command goes on"));
+                HasSubstr(" of 1000 frames are in " + film.string() + "; the same command resumes"));
     EXPECT_TRUE(nlohmann::json::accept(read_file(film / "times.json")));
     for (const auto& entry : fs::directory_iterator(film)) {
       EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
@@ -181,7 +181,7 @@ TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
   EXPECT_FALSE(fs::exists(image));
 }
 
-TEST_F(Killed, AFolderThatGoesAwayIsTold) {
+TEST_F(Killed, AFolderThatDisappearsIsReported) {
   const fs::path film = folder_ / "film", said = folder_ / "said";
   Child child(CLPV_PROGRAM " " + sequence(film), said);
   for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i) std::this_thread::sleep_for(100ms);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The paper's look-up tables on the device, and lobes that the propagation kernel computes from them. clpv check compares such
-// lobes with the CPU reference; here is what it does not have.
+// lobes with the CPU reference; these tests cover the rest.
 #include "pipeline/lookup_table.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 using test::test_session;
 using ::testing::HasSubstr;
 
-TEST(LookupTable, RejectsImagesThatTheDeviceHasNot) {
+TEST(LookupTable, RejectsImagesThatTheDeviceLacks) {
   Device without = choose_device();
   without.images = false;
   Session other(without);
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(LookupTable, EachStorage,
                          });
 
 // A new stage creates its table again. Memory freed by the tables of former stages must not be this table's.
-TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersComeAndGo) {
+TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersAreFreed) {
   if (GetParam() == TableStorage::image && !test_session().device().images)
     GTEST_SKIP() << "the device has no images";
   const auto basis = make_basis("srbf8v2");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The options of a frame: each goes from text to a value and back, invalid values are rejected with the valid ones, presets set
-// what they say, and every enumeration of a choice has a name for each value.
+// Options of a frame: conversion from text to a value and back, errors for invalid values, presets, and a name for each value of
+// each enumeration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ std::vector<std::string> choices_in(const std::string& allowed) {
   return choices;
 }
 
-TEST(Options, EveryOneGoesFromTextToAValueAndBack) {
+TEST(Options, EachConvertsFromTextToValueAndBack) {
   const std::map<std::string, std::string> numbers_and_files = {
       {"centres", "mine.json"}, {"lambda", "0.375"}, {"table-size", "99"},     {"iterations", "3"},
       {"grid", "17"},           {"cascades", "2"},   {"cascade-size", "6.25"}, {"rsm-size", "64"},
@@ -61,7 +61,7 @@ TEST(Options, EveryOneGoesFromTextToAValueAndBack) {
   }
 }
 
-TEST(Options, TheirDefaultsAreTextsTheyTake) {
+TEST(Options, DefaultsAreValidValues) {
   RenderOptions options;
   for (const OptionDescription& info : list_options(RenderOptions{})) {
     if (info.name != "centres") set_option(options, info.name, info.value);
@@ -69,7 +69,7 @@ TEST(Options, TheirDefaultsAreTextsTheyTake) {
   EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
 }
 
-TEST(Options, WhatIsMisspeltIsRejectedWithTheValueAndWhatIsAllowed) {
+TEST(Options, InvalidValuesAreRejectedWithTheAllowedOnes) {
   for (const OptionDescription& info : list_options(RenderOptions{})) {
     SCOPED_TRACE(info.name);
     for (const std::string& bad : {info.value + "x", std::string()}) {
@@ -91,7 +91,7 @@ TEST(Options, ABasisReplacesAFileOfCentres) {
   EXPECT_EQ(options.centres, "");
 }
 
-TEST(Options, StagesAreToldWhatWasChosen) {
+TEST(Options, StageOptionsMatchTheChoice) {
   RenderOptions options;
   apply_preset(options, PresetName::paper);
   options.table = TableStorage::image, options.grid = 11, options.state = State::fluxes;
@@ -119,7 +119,7 @@ class EachNamedEnum : public ::testing::Test {};
 using NamedEnums = ::testing::Types<Show, ToneMap, LightKind, Stage, Pass>;
 TYPED_TEST_SUITE(EachNamedEnum, NamedEnums);
 
-TYPED_TEST(EachNamedEnum, HasANameOfItsOwnForEachValueAndReadsItBack) {
+TYPED_TEST(EachNamedEnum, HasAUniqueNameForEachValue) {
   const auto values = values_of<TypeParam>();
   ASSERT_GE(values.size(), 2u);
   std::set<std::string> names;
@@ -153,7 +153,7 @@ TEST(Presets, PaperIsThePublishedScheme) {
   for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
 }
 
-TEST(Presets, LeaveAloneWhatTheyDoNotSet) {
+TEST(Presets, KeepOptionsThatTheyDoNotSet) {
   RenderOptions options;
   set_option(options, "width", "77");
   set_option(options, "cascade-size", "3.5");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Output is whole or not there; volumes written for others' tools say what they should.
+// Output files are complete or absent; headers of .npy and .vti files.
 #include "support/output_file.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST_F(OutputFile, CheckLeavesNothingAndKeepsWhatIsThere) {
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(OutputFile, RejectsPlacesThatTakeNoFileAndNamesThem) {
+TEST_F(OutputFile, RejectsPathsThatCannotBeFiles) {
   write_file(folder_ / "file", std::string_view("x"));
   for (const fs::path& path : {folder_ / "none/a.exr", folder_, fs::path(), folder_ / "",
                                folder_ / "file/a.exr", fs::path("/dev/null")}) {
@@ -133,7 +133,7 @@ TEST_F(OutputFile, VtiDescribesTheGridAndItsBytes) {
   EXPECT_EQ(std::memcmp(file.data() + start + offset + 8, second.data(), second.size() * 4), 0);
 }
 
-TEST(ProgressLine, TellsShareAndTimeLeft) {
+TEST(ProgressLine, ShowsShareAndTimeLeft) {
   EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200), "tracing [..............................]   0 % ");
   EXPECT_EQ(progress_line("tracing", 5, 10, 90, 200),
             "tracing [###############...............]  50 % 1:30 left");
@@ -142,7 +142,7 @@ TEST(ProgressLine, TellsShareAndTimeLeft) {
   EXPECT_EQ(progress_line("tracing", 5, 10, 90, 10).size(), 10u);
 }
 
-TEST(ProgressWords, TellCountsShareAndTimeLeft) {
+TEST(ProgressWords, ShowCountsShareAndTimeLeft) {
   EXPECT_EQ(progress_words("quality", 118, 360, 65), "quality: 118 of 360, 33 %, 2:13 left");
 }
 

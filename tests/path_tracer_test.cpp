@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The path tracer against closed forms: what the pipeline is held against has to be right itself.
+// The path tracer against closed forms.
 #include "pathtracer/path_tracer.hpp"
 
 #include <gtest/gtest.h>
@@ -73,10 +73,10 @@ double received(const std::function<void(Scene&, unsigned material)>& add_lamp, 
                 unsigned flags, int samples, glm::vec3 eye = {0, 0.5f, 0}, float half = 0.5f) {
   Scene scene;
   scene.path = "lamp";
-  const unsigned black = add_grey(scene, 0), glowing = add_material(scene, glm::vec3(0), flags);
-  for (float& e : scene.materials[glowing].emissive) e = radiance;
+  const unsigned black = add_grey(scene, 0), emissive = add_material(scene, glm::vec3(0), flags);
+  for (float& e : scene.materials[emissive].emissive) e = radiance;
   add_quad(scene, {-0.5f, 0, -0.5f}, {0, 0, 1}, {1, 0, 0}, black);
-  add_lamp(scene, glowing);
+  add_lamp(scene, emissive);
   ClpvView view = view_of(eye, {0, -1, 0}, {0, 0, -1}, half, 16, 16);
   view.orthographic = 1;
   PathTracerOptions options;
@@ -106,8 +106,8 @@ TEST(PathTracer, EmissiveSquaresLightByTheirFormFactors) {
   EXPECT_NEAR(received(add_ceiling, 3, 0, 256, {0, 0.5f, 0}, 1e-3f), 3 * pi * patch, 0.002 * 3 * pi * patch);
 }
 
-// Few samples, many runs: no path is counted twice between those that look for light and those that meet it.
-TEST(PathTracer, EmissionIsCountedOnceWhetherMetOrLookedFor) {
+// Few samples, many runs: no light is counted twice by direct sampling and by hits.
+TEST(PathTracer, EmissionIsCountedOnceByBothSamplers) {
   for (const float height : {0.02f, 0.2f, 3.0f}) {  // light is met, either, looked for
     const auto add = [&](Scene& scene, unsigned material) {
       add_quad(scene, {-0.5f, height, -0.5f}, {1, 0, 0}, {0, 0, 1}, material);

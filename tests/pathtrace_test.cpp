@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ground truth: what `clpv pathtrace` writes; and images that `clpv quality` keeps, which are traced again only when anything
-// they depend on changes or their file is damaged.
+// Ground truth: the files of `clpv pathtrace`; and cached images of `clpv quality`, which are traced again only when an input
+// changes or their file is damaged.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
-#include "quality/cached_reference.hpp"
+#include "quality/ground_truth.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
@@ -70,9 +70,9 @@ TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
 }
 
 namespace fs = std::filesystem;
-using reference::cached_reference;
+using reference::cached_ground_truth;
+using reference::GroundTruth;
 using reference::PathTracerOptions;
-using reference::Reference;
 
 class CachedReference : public ::testing::Test {
  protected:
@@ -87,8 +87,8 @@ class CachedReference : public ::testing::Test {
     options_.samples = 4;
   }
 
-  Reference get(int width = 12) const {
-    return cached_reference(folder_, scene_, camera_, width, 8, options_);
+  GroundTruth get(int width = 12) const {
+    return cached_ground_truth(folder_, scene_, camera_, width, 8, options_);
   }
 
   test::TemporaryFolder temporary_;
@@ -99,7 +99,7 @@ class CachedReference : public ::testing::Test {
 };
 
 TEST_F(CachedReference, IsTracedOnce) {
-  const Reference first = get(), second = get();
+  const GroundTruth first = get(), second = get();
   EXPECT_TRUE(first.traced);
   EXPECT_FALSE(second.traced);
   EXPECT_EQ(first.image.channels.size(), 28u) << "seven views of RGBA";
@@ -112,7 +112,7 @@ TEST_F(CachedReference, IsTracedOnce) {
   EXPECT_EQ(first.file.parent_path(), folder_) << "a slash in a scene's name leads nowhere";
 }
 
-TEST_F(CachedReference, DependsOnAllThatShapesIt) {
+TEST_F(CachedReference, KeyDependsOnEveryInput) {
   get();
   EXPECT_TRUE(get(13).traced);
   camera_.eye.x += 0.01f;
@@ -134,16 +134,16 @@ TEST_F(CachedReference, DependsOnAllThatShapesIt) {
   EXPECT_FALSE(get().traced) << "neither of these changes the image";
 }
 
-TEST_F(CachedReference, DamagedFilesAreTracedAnew) {
+TEST_F(CachedReference, DamagedFilesAreTracedAgain) {
   const fs::path file = get().file;
   fs::resize_file(file, fs::file_size(file) / 2);
-  const Reference again = get();
+  const GroundTruth again = get();
   EXPECT_TRUE(again.traced);
   EXPECT_EQ(again.file, file);
   EXPECT_FALSE(get().traced);
 }
 
-TEST_F(CachedReference, AFolderThatCannotBeIsToldBeforeTracing) {
+TEST_F(CachedReference, AnImpossibleFolderIsReportedBeforeTracing) {
   temporary_.write("references", "a file where the folder should be");
   test::error_of(ExitCode::run_time, [&] { get(); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled programs kept on disk: what is stored comes back, and whatever else a file holds never does.
+// Cache of compiled programs on disk: it returns what was stored, and rejects any other content.
 #include "device/program_cache.hpp"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ class ProgramCacheTest : public ::testing::Test {
   ProgramCache cache_{folder_.path() / "made" / "on demand"};
 };
 
-TEST_F(ProgramCacheTest, GivesBackWhatWasStored) {
+TEST_F(ProgramCacheTest, ReturnsStoredPrograms) {
   EXPECT_FALSE(cache_.load("key").has_value());
   const Binary binary = {0, 1, 255, '\n', 0};
   EXPECT_TRUE(cache_.store("key", binary));
@@ -47,7 +47,7 @@ TEST_F(ProgramCacheTest, GivesBackWhatWasStored) {
   EXPECT_FALSE(cache_.load("key").has_value());
 }
 
-TEST_F(ProgramCacheTest, KeyTellsEverythingApart) {
+TEST_F(ProgramCacheTest, KeyDependsOnEveryInput) {
   Device device;
   device.platform = "p", device.name = "n", device.driver = "d", device.version = "v";
   const std::string key = ProgramCache::key(device, "options", "text");
@@ -92,7 +92,7 @@ TEST_F(ProgramCacheTest, FolderThatCannotBeMadeIsNoFailure) {
   EXPECT_FALSE(cache.load("key").has_value());
 }
 
-TEST_F(ProgramCacheTest, DropsWhatWasUsedLongestAgo) {
+TEST_F(ProgramCacheTest, DropsTheLeastRecentlyUsed) {
   const ProgramCache cache(folder_.path(), 2500);
   const Binary binary(1000, 1);
   const auto now = fs::file_time_type::clock::now();
@@ -146,7 +146,7 @@ TEST_F(ProgramCacheTest, ManyProcessesAtOnceNeverReadATornFile) {
   EXPECT_EQ(file_count(cache_.folder()), 1u);
 }
 
-/// A session's program out of the cache, told from a compiled one by what the kernel writes.
+/// A session's program from the cache; its kernel writes another value than a compiled one.
 class CachedSession : public ProgramCacheTest {
  protected:
   CachedSession() {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kernel text: embedded files, includes, the folder that overrides them, and what is said when one does not
-// build.
+// Kernel text: embedded files, includes, the folder that overrides them, and build errors.
 #include "device/program.hpp"
 
 #include <gmock/gmock.h>

@@ -82,7 +82,7 @@ TEST(Propagate, UnclampedExactTransportConservesEnergyOfEveryBasis) {
   }
 }
 
-TEST(Propagate, UniformIsotropicFieldStaysAsItIsAwayFromTheBorder) {
+TEST(Propagate, AUniformFieldIsConstantAwayFromTheBorder) {
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
   reference::Volume light(9, basis->size());
@@ -114,7 +114,7 @@ TEST(Propagate, LittleLightArrivesBehindAWallOfFullBlockers) {
   EXPECT_LT(behind(&blockers), 0.10 * behind(nullptr));
 }
 
-TEST(Propagate, WhatIsLostIsWhatLeavesTheGrid) {
+TEST(Propagate, OnlyLightThatLeavesTheGridIsLost) {
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
   // Isotropic light is never clamped: before = after + lost.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light at points that no camera sees: the frame's own where it does see them; files of points, good and bad; `clpv query`.
+// Light at points: equal to the frame's where the camera sees them; valid and invalid files of points; `clpv query`.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -37,7 +37,7 @@ struct PixelOfFrame {
   glm::dvec3 position, normal, irradiance;
 };
 
-/// Every seventh surface that the frame's camera sees, as its images tell.
+/// Every seventh surface in the frame's images.
 std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
   const int width = frame.options().width, height = frame.options().height;
   const ClpvView view = camera_view(camera, width, height);
@@ -56,7 +56,7 @@ std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
   return pixels;
 }
 
-TEST(LightField, IsWhatTheCameraSeesWhereItSees) {
+TEST(LightField, EqualsTheCamerasIrradiance) {
   const Scene scene = load_scene(kCornell);
   const Camera& camera = scene.camera("");
   for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {

@@ -68,7 +68,7 @@ std::size_t covered(const std::vector<float>& depth) {
   return static_cast<std::size_t>(std::count_if(depth.begin(), depth.end(), [](float d) { return d != 0; }));
 }
 
-/// A wall across the camera's view, 4 m before it, larger than what it sees.
+/// A wall 4 m before the camera, larger than its view.
 Scene wall(float distance = 4) {
   Scene scene;
   add_quad(scene, {-20, -20, -distance}, {40, 0, 0}, {0, 40, 0}, add_material(scene, {0.25f, 0.5f, 0.75f}));
@@ -243,7 +243,7 @@ TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
   for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.y, 1);
 }
 
-TEST(Rasterize, ATileOfMoreTrianglesThanALoopMayTurn) {
+TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
   Scene scene;
   const unsigned material = add_material(scene);
   const auto wall_at = [&](float depth) {
@@ -274,7 +274,7 @@ TEST(Rasterize, FluxOfAWhitePlaneIsIrradianceTimesArea) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], (c + 1) * area, 1e-6 * area * (c + 1));
 }
 
-TEST(Rasterize, FluxInAWhiteRoomIsAllThatAPointLightSends) {
+TEST(Rasterize, FluxInAWhiteRoomIsThatOfThePointLight) {
   Scene scene;  // a cube about the light, seen from inside
   const unsigned material = add_material(scene);
   for (int axis = 0; axis < 3; ++axis) {
@@ -314,13 +314,13 @@ TEST(Rasterize, PaperFormatKeepsEightBits) {
   }
 }
 
-TEST(Rasterize, DrawnInSeveralGoesItIsTheSame) {
+TEST(Rasterize, SeveralLaunchesDrawTheSame) {
   const Scene scene = jittered_plane(20, 5, 4, 0);
   const ClpvView view = small_camera(160, 90);
   const SurfaceImage whole = camera_image(scene, view);
   Session& session = test_session();
-  for (const std::size_t most_listed : {1, 100, 700}) {  // of about 2000
-    Rasterizer rasterizer(session, upload_scene(session, scene), most_listed);
+  for (const std::size_t max_listed : {1, 100, 700}) {  // of about 2000
+    Rasterizer rasterizer(session, upload_scene(session, scene), max_listed);
     Surface surface = make_surface(session, view, RsmFormat::float32, false);
     rasterizer.rasterize_camera(surface);
     const SurfaceImage parts = read_surface(session, surface);
@@ -329,7 +329,7 @@ TEST(Rasterize, DrawnInSeveralGoesItIsTheSame) {
   }
 }
 
-TEST(Rasterize, ScenesThatDoNotHoldTogetherAreRejected) {
+TEST(Rasterize, InconsistentScenesAreRejected) {
   const std::vector<std::function<void(Scene&)>> faults = {
       [](Scene& scene) { scene.triangles[1].vertex[2] = 4; },
       [](Scene& scene) { scene.triangles[0].material = 1; },

@@ -25,7 +25,7 @@ Texture checker() {
   return texture;
 }
 
-TEST(RayScene, MaskedHolesLetLightAndSightThrough) {
+TEST(RayScene, MaskedHolesAreTransparent) {
   Scene scene = floor_scene(0.5);
   scene.textures = {checker()};
   Material& masked =

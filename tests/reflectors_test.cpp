@@ -44,7 +44,7 @@ Areas reflected(const Scene& scene) {
   return {reflector.reflectors(0).read(test_session())};
 }
 
-TEST(Reflect, AWallReflectsByItsAlbedoInTheCellsBeforeAndBehindIt) {
+TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {
   Scene scene;
   add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {0.8f, 0.5f, 0.25f}));
   const Areas areas = reflected(scene);
@@ -60,7 +60,7 @@ TEST(Reflect, AWallReflectsByItsAlbedoInTheCellsBeforeAndBehindIt) {
   }
 }
 
-TEST(Reflect, PartOfAFaceCountsByItsAreaAndWallsBehindEachOtherAreOne) {
+TEST(Reflectors, AlbedoIsWeightedByCoveredArea) {
   Scene scene;
   const unsigned material = add_material(scene, glm::vec3(0.5f));
   add_quad(scene, {2, 1.2f, 1}, {0.5f, 0, 0}, {0, 0, -0.25f}, material);
@@ -72,7 +72,7 @@ TEST(Reflect, PartOfAFaceCountsByItsAreaAndWallsBehindEachOtherAreOne) {
 }
 
 // A wall at 45 degrees is split into two areas, which together reflect as much light.
-TEST(Reflect, ASlantedWallReflectsItsOwnAreaAboutItsNormal) {
+TEST(Reflectors, ASlantedWallSplitsIntoAreasPerAxis) {
   Scene scene;
   add_quad(scene, {1.5f, 1.0f, 1}, {1, 1, 0}, {0, 0, 1},
            add_material(scene, glm::vec3(0.5f)));  // towards (1, -1, 0)
@@ -86,7 +86,7 @@ TEST(Reflect, ASlantedWallReflectsItsOwnAreaAboutItsNormal) {
   EXPECT_EQ(areas.sum(4) + areas.sum(5), 0);
 }
 
-TEST(Reflect, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
+TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
   Scene scene;
   scene.textures.push_back(
       {.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 0, 0, 0, 0}, .name = "white, and a black hole"});
@@ -99,10 +99,10 @@ TEST(Reflect, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
   EXPECT_NEAR(tinted.sum(2, 1), 0.5f * tinted.sum(2, 0), 2 * kColour);
   scene.materials[material].flags = CLPV_MATERIAL_MASKED;
   scene.materials[material].alpha_cutoff = 0.5f;
-  EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.06f) << "what is black was all hole";
+  EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.06f) << "black texels are holes";
 }
 
-TEST(Reflect, SidesAcrossEachOtherLoseWhatASweepTakesThroughTheirEdgeOnce) {
+TEST(Reflectors, AdjacentFacesDoNotCountLightTwice) {
   Scene scene;
   const unsigned material = add_material(scene);
   add_quad(scene, {-9, 0.6f, -9}, {0, 0, 20}, {20, 0, 0}, material);  // a floor
@@ -115,7 +115,7 @@ TEST(Reflect, SidesAcrossEachOtherLoseWhatASweepTakesThroughTheirEdgeOnce) {
   EXPECT_NEAR(areas.at(2, 3, 1, 2), 1, kColour);
 }
 
-TEST(Reflect, NoAlbedoReflectsMoreThanAll) {
+TEST(Reflectors, AlbedoIsAtMostOne) {
   Scene scene;
   add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {3, -1, 0.5f}));
   const Areas areas = reflected(scene);
@@ -123,13 +123,13 @@ TEST(Reflect, NoAlbedoReflectsMoreThanAll) {
   EXPECT_EQ(areas.at(0, 2, 1, 1, 1), 0);
 }
 
-TEST(Reflect, ATriangleBeyondTheHorizonReflectsInEveryCell) {
+TEST(Reflectors, AHugeTriangleReflectsInEveryCell) {
   Scene scene;
   add_triangle(scene, {-3e7f, 2, -1e7f}, {0, 2, 5e7f}, {3e7f, 2, -1e7f}, add_material(scene));
   EXPECT_NEAR(reflected(scene).sum(2), kGrid * kGrid, 0.01f);
 }
 
-TEST(Reflect, KernelsAgreeWithTheReference) {
+TEST(Reflectors, KernelsAgreeWithTheReference) {
   expect_passed(reference::check(Stage::reflectors, test_session()), 2);
 }
 

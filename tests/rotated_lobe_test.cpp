@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's lobes: the one towards +z, rotated, with and without the table; and direction bins' integrals.
+// The paper's rotated lobes, with and without the table; and integrals of direction bins.
 #include "basis/rotated_lobe.hpp"
 
 #include <gmock/gmock.h>
@@ -84,7 +84,7 @@ TEST(Lobes, BandThreeOfSh4IsZero) {
   }
 }
 
-TEST(RotatedLobes, AreTheLobeTowardsZTurned) {
+TEST(RotatedLobes, EqualTheRotatedLobeTowardsZ) {
   // (R c)_i = Int b_i(w) f(Rot^-1 w) dw.
   const glm::dmat3 back = glm::transpose(rotation_to(kOblique));
   const std::vector<double> lambdas{.2, .3, .25, .4, .33, .21};
@@ -219,7 +219,7 @@ TEST(DirectionBins, CosineIntegralsAreNearTheIntegrals) {
   }
 }
 
-TEST(DirectionBins, ShareWhatLiesBetweenThem) {
+TEST(DirectionBins, SplitDirectionsOnTheirEdges) {
   const auto basis = make_basis("bins24");
   const auto shares = [&](const glm::dvec3& w) {
     std::vector<double> b = basis->evaluate(glm::normalize(w));

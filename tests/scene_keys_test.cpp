@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras and lights of scene files that move by keys: where they are at an instant.
+// Cameras and lights of scene files that move by keys.
 #include "scene/scene_keys.hpp"
 
 #include <cmath>
@@ -74,7 +74,7 @@ TEST_F(SceneKeysTest, ASunCrossesTheSkyAlongAGreatCircle) {
   EXPECT_THAT(light.intensity, ElementsAre(5, FloatNear(5.0f / 3, kClose), 0));
 }
 
-TEST_F(SceneKeysTest, InstantsAtWhichAWayLeavesWhatIsAllowed) {
+TEST_F(SceneKeysTest, CurvesThatLeaveTheAllowedRange) {
   MovingScene through(file(camera(R"("target": [0, 0, 0], "keys": [
       {"time": 0, "eye": [0, 0, 1]}, {"time": 2, "eye": [0, 0, -1]}])")));
   MovingScene over(file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "interpolation": "smooth", "keys": [

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: what they say, what they replace, what is added where nothing is given; and Sponza as a whole.
+// Scene files: their keys, what they replace in the model, and defaults; and Sponza as a whole.
 #include "scene/scene.hpp"
 
 #include <glm/gtc/constants.hpp>
@@ -61,7 +61,7 @@ struct SceneTest : ::testing::Test {
   }
 };
 
-TEST_F(SceneTest, EverythingASceneFileSays) {
+TEST_F(SceneTest, AllKeysOfASceneFile) {
   const Scene scene = load(kFull);
   EXPECT_EQ(scene.name, "test");
   EXPECT_EQ(scene.exposure, -1.5f);
@@ -114,7 +114,7 @@ TEST_F(SceneTest, CamerasAreFoundByName) {
               AllOf(HasSubstr("'c'"), HasSubstr("a, b")));
 }
 
-TEST_F(SceneTest, WithoutItsOwnTheModelsCamerasAndLightsServe) {
+TEST_F(SceneTest, TheModelsCamerasAndLightsAreTheDefault) {
   const Scene scene = load(R"({"model": "models/model.gltf", "metres_per_unit": 2})");
   ASSERT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.cameras[0].name, "own");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scenes made for this project: their generators write the committed files byte by byte, which load as their cards say.
+// This project's scenes: their generators reproduce the committed files, which match their descriptions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ const fs::path kScenes = fs::path(CLPV_SOURCE_DIR) / "scenes";
 
 class Generator : public testing::TestWithParam<const char*> {};
 
-TEST_P(Generator, WritesTheFilesThatAreThere) {
+TEST_P(Generator, ReproducesTheCommittedFiles) {
   if (test::run("python3 -c 'import sys; sys.exit(sys.version_info < (3, 9))'").exit_code != 0) {
     GTEST_SKIP() << "needs python3, 3.9 or later";
   }
@@ -46,7 +46,7 @@ struct Card {
   std::vector<std::string> cameras;
 };
 
-TEST(Scenes, AreWhatTheirCardsSay) {
+TEST(Scenes, MatchTheirDescriptions) {
   const Card cards[] = {
       {"atrium.json", 266672, 1, {30, 10, 14.15f}, {"nave", "curtains", "gallery"}},
       {"cornell.json", 48, 2, {0.716f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `clpv sequence`: its frames are those rendered alone, a run goes on where one ended, and films are made through ffmpeg.
+// `clpv sequence`: its frames are those rendered alone, a run resumes where another ended, and ffmpeg writes films.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -43,7 +43,7 @@ struct SequenceTest : ::testing::Test {
   }
   json written(const std::string& file) const { return json::parse(read_file(folder / ("out/" + file))); }
 
-  /// A folder of an ffmpeg that writes what it is fed and told into its output.
+  /// A folder with an ffmpeg that copies its input and arguments to its output.
   std::string fake_ffmpeg(const std::string& script) const {
     const fs::path path = folder.write("bin/ffmpeg", "#!/bin/sh\n" + script);
     fs::permissions(path, fs::perms::owner_all);
@@ -64,7 +64,7 @@ TEST_F(SequenceTest, EveryFrameIsTheOneRenderedAlone) {
   EXPECT_NE(read_image(frame(0)).pixels, read_image(frame(1)).pixels) << "something moves";
 }
 
-TEST_F(SequenceTest, ARunGoesOnWhereOneEnded) {
+TEST_F(SequenceTest, ARunResumesWhereAnotherEnded) {
   ASSERT_EQ(sequence("--frames 3 --fps 10").exit_code, 0);
   const std::string second = read_file(frame(1));
   const auto time = fs::last_write_time(frame(0));
@@ -72,23 +72,22 @@ TEST_F(SequenceTest, ARunGoesOnWhereOneEnded) {
   folder.write("out/frame-0002.exr", read_file(frame(2)).substr(0, 300));
   const Outcome again = sequence("--frames 4 --fps 10");
   ASSERT_EQ(again.exit_code, 0);
-  EXPECT_THAT(again.err, AllOf(HasSubstr("1 of 4 frames were there"), HasSubstr("frame-0002.exr"),
+  EXPECT_THAT(again.err, AllOf(HasSubstr("1 of 4 frames existed"), HasSubstr("frame-0002.exr"),
                                HasSubstr("rendered again"), HasSubstr("3 frames in")));
   EXPECT_EQ(fs::last_write_time(frame(0)), time) << "not rendered again";
   EXPECT_EQ(read_file(frame(1)), second) << "the same bytes";
-  const json told = written("times.json");
-  ASSERT_EQ(told["frames"].size(), 4u) << "what was there has its times of then";
-  EXPECT_EQ(told["frames"][3]["frame"], 3);
-  EXPECT_DOUBLE_EQ(told["frames"][3]["time"].get<double>(), 0.3);
-  EXPECT_EQ(told["summary"]["frames"], 2) << "the first frame of each run aside";
+  const json times = written("times.json");
+  ASSERT_EQ(times["frames"].size(), 4u) << "existing frames keep their times";
+  EXPECT_EQ(times["frames"][3]["frame"], 3);
+  EXPECT_DOUBLE_EQ(times["frames"][3]["time"].get<double>(), 0.3);
+  EXPECT_EQ(times["summary"]["frames"], 2) << "the first frame of each run aside";
   folder.write("out/times.json", "{\"frames\": [3]}");
   const Outcome damaged = sequence("--frames 4 --fps 10");
   EXPECT_EQ(damaged.exit_code, 0);
-  EXPECT_THAT(damaged.err,
-              AllOf(HasSubstr("4 of 4 frames were there"), HasSubstr("times.json: the times of")));
+  EXPECT_THAT(damaged.err, AllOf(HasSubstr("4 of 4 frames existed"), HasSubstr("times.json: times of")));
 }
 
-TEST_F(SequenceTest, FramesOfSomethingElseAreRenderedAgain) {
+TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
   ASSERT_EQ(sequence("--frames 2 --fps 10 --format png").exit_code, 0);
   for (const std::string other : {"--fps 5", "--fps 10 --from 3", "--fps 10 --iterations 3",
                                   "--fps 10 --exposure 1", "--fps 10 --view albedo"}) {
@@ -107,17 +106,17 @@ TEST_F(SequenceTest, FramesOfSomethingElseAreRenderedAgain) {
 
 TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
   ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
-  const json told = written("times.json");
-  EXPECT_EQ(told["schema"], 1);
-  EXPECT_EQ(told["fps"], 10);
-  EXPECT_EQ(told["options"]["grid"], 16);
-  EXPECT_TRUE(told["frames"][0]["first"].get<bool>());
-  ASSERT_EQ(told["summary"]["frames"], 3);
-  const json& stages = told["summary"]["stages"];
-  ASSERT_EQ(stages.size(), told["frames"][1]["stages"].size());
+  const json times = written("times.json");
+  EXPECT_EQ(times["schema"], 1);
+  EXPECT_EQ(times["fps"], 10);
+  EXPECT_EQ(times["options"]["grid"], 16);
+  EXPECT_TRUE(times["frames"][0]["first"].get<bool>());
+  ASSERT_EQ(times["summary"]["frames"], 3);
+  const json& stages = times["summary"]["stages"];
+  ASSERT_EQ(stages.size(), times["frames"][1]["stages"].size());
   for (std::size_t s = 0; s < stages.size(); ++s) {
     std::vector<double> ms;
-    for (int i = 1; i < 4; ++i) ms.push_back(told["frames"][i]["stages"][s]["ms"]);
+    for (int i = 1; i < 4; ++i) ms.push_back(times["frames"][i]["stages"][s]["ms"]);
     std::ranges::sort(ms);
     EXPECT_DOUBLE_EQ(stages[s]["median_ms"].get<double>(), ms[1]) << stages[s];
     EXPECT_DOUBLE_EQ(stages[s]["worst_ms"].get<double>(), ms[2]) << stages[s];
@@ -143,27 +142,27 @@ TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
   const Path path("/nowhere");
   const Outcome outcome = sequence("--frames 3 --fps 25 --video film.mp4");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("--video needs ffmpeg, which is not in the path (Debian: ffmpeg)"));
+  EXPECT_THAT(outcome.err, HasSubstr("--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)"));
   EXPECT_FALSE(fs::exists(frame(0)));
 }
 
-TEST_F(SequenceTest, StabilityIsToldOfEachFrameButTheFirst) {
+TEST_F(SequenceTest, StabilityCoversAllFramesButTheFirst) {
   ASSERT_EQ(sequence("--frames 3 --fps 10 --stability --traced 4").exit_code, 0);
-  const json told = written("stability.json");
-  EXPECT_EQ(told["schema"], 1);
-  EXPECT_EQ(told["options"]["grid"], 16);
-  ASSERT_EQ(told["frames"].size(), 2u);
-  for (const json& frame : told["frames"]) {
+  const json stability = written("stability.json");
+  EXPECT_EQ(stability["schema"], 1);
+  EXPECT_EQ(stability["options"]["grid"], 16);
+  ASSERT_EQ(stability["frames"].size(), 2u);
+  for (const json& frame : stability["frames"]) {
     EXPECT_FALSE(frame["still"].get<bool>()) << "a sun moves";
     EXPECT_GT(frame["change"].get<double>(), 0);
     EXPECT_GT(frame["seen"].get<double>(), 0.3);
     EXPECT_LE(frame["seen"].get<double>(), 1);
     EXPECT_GT(frame["traced"].get<double>(), 0);
   }
-  EXPECT_EQ(told["summary"]["across_cells"]["frames"], 0) << "of what stands still";
+  EXPECT_EQ(stability["summary"]["across_cells"]["frames"], 0) << "no cascade moved";
 }
 
-TEST_F(SequenceTest, AStillSceneIsToldOf) {
+TEST_F(SequenceTest, AStaticSceneIsReported) {
   GltfBuilder still;
   still.triangle();
   still.finish("still.bin");

@@ -17,7 +17,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(Session, RejectsABufferTheDeviceCannotHoldAndSaysWhatFits) {
+TEST(Session, RejectsABufferTheDeviceCannotHoldWithItsLimit) {
   Device device = choose_device();
   device.max_alloc_bytes = 4u << 20;
   device.memory_bytes = 6u << 20;
@@ -26,7 +26,7 @@ TEST(Session, RejectsABufferTheDeviceCannotHoldAndSaysWhatFits) {
   EXPECT_EQ(session.largest_buffer(), 2u << 20);
   EXPECT_THAT(test::error_of(ExitCode::run_time, [&] { session.buffer(3u << 20, "light volume"); }),
               AllOf(HasSubstr("light volume needs 3.0 MiB"), HasSubstr("at most 2.0 MiB")));
-  EXPECT_EQ(session.device_bytes(), 4u << 20) << "what was rejected does not count";
+  EXPECT_EQ(session.device_bytes(), 4u << 20) << "rejected buffers do not count";
 }
 
 TEST(Session, WhatWasEnqueuedIsDoneWhenItEnds) {
@@ -41,7 +41,7 @@ TEST(Session, WhatWasEnqueuedIsDoneWhenItEnds) {
     EXPECT_EQ(event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>(), CL_COMPLETE);
 }
 
-TEST(Session, MemoryIsGivenBackWhenABufferGoes) {
+TEST(Session, FreedBuffersReleaseMemory) {
   Device device = choose_device();
   device.memory_bytes = 6u << 20;
   Session session(device);
@@ -77,7 +77,7 @@ TEST(Session, MemoryMayOutliveItsSession) {
   EXPECT_EQ(buffer.bytes(), 4u);
 }
 
-TEST(Kernel, MissingArgumentsAreToldByName) {
+TEST(Kernel, MissingArgumentsAreReported) {
   Session session(choose_device());
   const Buffer bytes = session.buffer(1024, "sizes");
   Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
@@ -87,7 +87,7 @@ TEST(Kernel, MissingArgumentsAreToldByName) {
               ThrowsMessage<Error>(HasSubstr("kernel 'sizes' was given 0 of its 1 arguments")));
 }
 
-TEST(Kernel, WhatIsDescribedAndStillWantedIsBuiltOnce) {
+TEST(Kernel, ADescribedProgramIsBuiltOnce) {
   Session session(choose_device());
   { const Kernel gone(session, {"sizes.cl", Literals().flag("CLPV_GONE", true), {}}, "sizes"); }
   session.build_described();

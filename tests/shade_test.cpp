@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shading against closed forms: Lambert's law for every kind of light, what each view shows, shadows
+// Shading against closed forms: Lambert's law for every kind of light, views, shadows
 // of known outline, surfaces that must not shadow themselves. And the kernels against the CPU reference.
 #include "pipeline/shade.hpp"
 
@@ -128,7 +128,7 @@ double roof(const glm::dvec3& o, const glm::dvec3& d) {
   return t > 0 && (o + t * d).x < 0 ? t : 0;
 }
 
-TEST(Shadow, ShadowFallsWhereTheRoofStands) {
+TEST(Shadow, ShadowLiesBelowTheRoof) {
   for (const double slant : {0.0, 0.6, -1.1}) {
     const SurfaceImage image = floor_image();
     const glm::dvec3 direction = glm::normalize(glm::dvec3(slant, -1, 0.1));

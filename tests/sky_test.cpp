@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light from beyond a scene: maps of the sky, what of them light is swept from, and what it does to surfaces.
+// Skies: maps, their mean radiance per direction, and the light on surfaces.
 #include "scene/sky.hpp"
 
 #include <gmock/gmock.h>
@@ -43,7 +43,7 @@ Sky map_of(int width, int height, const std::function<float(int x, int y)>& radi
   return sky;
 }
 
-TEST(Sky, TheMiddleOfAMapLooksAheadAndItsRightIsOurs) {
+TEST(Sky, TheCentreOfAMapLooksAlongMinusZ) {
   Sky sky = map_of(8, 4, [](int x, int y) { return static_cast<float>(10 * y + x); });
   const double edge = 1e-3;
   EXPECT_NEAR(glm::length(sky.direction(4, 2) - glm::dvec3(0, 0, -1)), 0, 1e-12);
@@ -52,7 +52,7 @@ TEST(Sky, TheMiddleOfAMapLooksAheadAndItsRightIsOurs) {
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(edge, edge, -1))).x, 14);
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(-edge, -edge, -1))).x, 23);
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(edge, -1, -2 * edge))).x, 30 + 4);
-  sky.rotation = pi / 2;  // what was ahead is to the right
+  sky.rotation = pi / 2;  // the former centre is to the right
   EXPECT_EQ(sky.radiance(glm::normalize(glm::dvec3(1, edge, edge))).x, 14);
   for (const auto& [x, y] : {std::pair{0.3, 0.4}, {7.9, 3.7}, {4.1, 1.2}}) {
     const auto at = static_cast<std::size_t>(static_cast<int>(y) * 8 + static_cast<int>(x));
@@ -80,7 +80,7 @@ TEST(SkyLight, EachDirectionLiesInItsOwnPart) {
   }
 }
 
-TEST(SkyLight, MeansKeepAllThatAMapSends) {
+TEST(SkyLight, MeansKeepTheFluxOfAMap) {
   Sky sky = map_of(37, 19, [](int x, int y) { return static_cast<float>((x * 7 + y * 13) % 11); });
   sky.texels[200] = glm::vec3(5000);  // a small sun
   sky.rotation = 0.3;
@@ -174,7 +174,7 @@ TEST(SkyFrame, ABrightHalfOfTheSkyLightsHalfAsMuch) {
 
 // A long wall of height h at a distance d leaves (1 + cos(atan(h / d))) / 2 of an even sky.
 TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
-  for (const float distance : {0.5f, 1.5f}) {  // the wall, as any, lets a third through on diagonal ways
+  for (const float distance : {0.5f, 1.5f}) {  // the wall transmits about 1/3 along diagonal links
     Scene scene = under(constant_sky(glm::vec3(1)));
     add_black_wall(scene, distance, 1.5f);
     const double wanted = pi / 2 * (1 + std::cos(std::atan(1.5 / double{distance})));
@@ -192,7 +192,7 @@ TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
   EXPECT_NEAR(traced(under(sky), 1, 256), wanted, 0.003 * wanted);
 }
 
-TEST(PathTracer, TheSkyIsPickedByWhatItSends) {
+TEST(PathTracer, TheSkyIsSampledByItsRadiance) {
   const Sky sky = map_of(7, 5, [](int x, int y) { return static_cast<float>((x + y) % 3); });
   const reference::SkySampler sampler(&sky);
   double share = 0, whole = 0;
@@ -212,7 +212,7 @@ TEST(PathTracer, TheSkyIsPickedByWhatItSends) {
 }
 
 // Light from the floor to a wall and from the wall to the floor: the same paths for as many bounces.
-TEST(SkyFrame, TheSkyIsCarriedAsTheFirstBounceIs) {
+TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
   Scene scene = under(constant_sky(glm::vec3(1)));
   for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;
   add_black_wall(scene, 1, 1.5f);
@@ -289,7 +289,7 @@ TEST_F(SkyFile, IsFoundFromTheFolderThatItLiesIn) {
   std::filesystem::current_path(before);
 }
 
-TEST_F(SkyFile, RejectsWhatCannotShine) {
+TEST_F(SkyFile, RejectsInvalidSkies) {
   const std::pair<std::string, std::string> members[] = {
       {"{}", "/sky: found neither radiance nor map"},
       {R"({"map": "map.exr", "radiance": [1, 1, 1]})", "/sky: found radiance and map"},

@@ -16,7 +16,7 @@ const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
 
 constexpr double kFlat = 1.01;  // over frames()
 
-/// More by CLPV_SOAK_FRAMES (500 for docs/security.md).
+/// CLPV_SOAK_FRAMES sets another number.
 int frames() {
   const char* wish = std::getenv("CLPV_SOAK_FRAMES");
   return wish != nullptr ? std::atoi(wish) : 20;
@@ -56,13 +56,13 @@ TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
   };
   // Programs stay built, and allocators need a few rounds to level out; a leak never does.
   render_some();
-  constexpr int kMostRounds = 6;
+  constexpr int kMaxRounds = 6;
   std::vector<double> resident{resident_bytes()};
   const std::size_t device_before = session.device_bytes(), most_before = session.peak_device_bytes();
   do {
     render_some();
     resident.push_back(resident_bytes());
-  } while (resident.back() > kFlat * resident.end()[-2] && resident.size() <= kMostRounds);
+  } while (resident.back() > kFlat * resident.end()[-2] && resident.size() <= kMaxRounds);
   EXPECT_LE(resident.back(), kFlat * resident.end()[-2]) << testing::PrintToString(resident);
   EXPECT_EQ(session.device_bytes(), device_before);
   EXPECT_EQ(session.peak_device_bytes(), most_before);

@@ -57,7 +57,7 @@ Keys in_runs(std::size_t texels, cl_uint cells, unsigned longest, unsigned seed 
   return keys;
 }
 
-TEST(SortByCell, CellsOfNoneOneAndMany) {
+TEST(SortByCell, CellsOfNoOneAndManyTexels) {
   expect_sorted(Keys(1000, CLPV_NO_CELL), 512);
   expect_sorted({32767}, 32768);
   for (const std::size_t texels : {15u, 16u, 17u, 255u, 257u, 5000u}) expect_sorted(Keys(texels, 4912), 4913);

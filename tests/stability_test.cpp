@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How steady light is: closed cases of the measure, and frames of a camera that moves.
+// Stability of light: closed cases of the measure, and frames of a moving camera.
 #include "quality/stability.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ std::size_t count(const std::vector<bool>& counted) {
   return static_cast<std::size_t>(std::count(counted.begin(), counted.end(), true));
 }
 
-TEST(Stability, APlaneIsStillSeenWhereBothViewsHaveIt) {
+TEST(Stability, APlaneIsComparedWhereBothViewsShowIt) {
   const SurfaceImage here = view_of_floor({0, 2, 3});
   const std::size_t all = count(still_seen(here, here));
   EXPECT_EQ(all, static_cast<std::size_t>(kWidth * kHeight));
@@ -57,7 +57,7 @@ TEST(Stability, APlaneIsStillSeenWhereBothViewsHaveIt) {
   EXPECT_EQ(count(still_seen(here, view_of_floor({5000, 2, 3}))), 0u);
 }
 
-TEST(Stability, WhatMovedOrIsHiddenIsNot) {
+TEST(Stability, MovedAndHiddenSurfacesAreNotCompared) {
   const SurfaceImage with = view_of_floor({0, 2, 3}, 0.3), without = view_of_floor({0.1f, 2, 3});
   const std::vector<bool> seen = still_seen(with, without);
   std::size_t on_box = 0;

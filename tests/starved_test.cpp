@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Devices and disks that give out in mid-work: every allocation, enqueue and build of a frame failing in turn (by a shim of
-// the OpenCL loader, tests/starved/opencl_shim.cpp), and no room for what is written. Each ends with a word and exit code
-// 1, leaves no device memory behind and no file.
+// Failing devices and full disks: allocations, enqueues and builds of a frame fail in turn (by a shim of the OpenCL loader,
+// tests/starved/opencl_shim.cpp). Each run ends with a message and exit code 1, and leaves no device memory and no file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +33,7 @@ class Starved : public ::testing::Test {
   }
   static void TearDownTestSuite() { delete cache_; }
 
-  /// Programs are compiled once for all tests, each in a process of its own; the cache lies beside the program.
+  /// Programs are compiled once for all tests, each in its process; the cache lies beside the program.
   static fs::path compiled() { return fs::path(CLPV_PROGRAM).parent_path() / "starved_cache"; }
 
   /// `timeout` goes first: the shim is for the program alone.
@@ -55,7 +54,7 @@ class Starved : public ::testing::Test {
   }
 
   /// A frame whose n-th call fails with a code, whose name must be said.
-  void expect_told(const std::string& call, long n, const std::string& code, const std::string& name) {
+  void expect_reported(const std::string& call, long n, const std::string& code, const std::string& name) {
     SCOPED_TRACE(call + " " + std::to_string(n));
     const fs::path image = folder_ / "a.exr";
     const Outcome outcome = run("CLPV_SHIM=" + call + ":" + std::to_string(n) + ":" + code + " " + program() +
@@ -68,8 +67,8 @@ class Starved : public ::testing::Test {
   }
 
   /// Each `step`th call of a frame in turn, or as CLPV_STARVED_STEP says (1: every one).
-  void expect_told_at_some(const std::string& call, long step, const std::string& code,
-                           const std::string& name) {
+  void expect_reported_at_some(const std::string& call, long step, const std::string& code,
+                               const std::string& name) {
     const Outcome sound = run(program() + kTiny + "-o " + (folder_ / "sound.exr").string());
     ASSERT_EQ(sound.exit_code, 0) << sound.err;
     ASSERT_EQ(report()["live"], 0);
@@ -77,7 +76,7 @@ class Starved : public ::testing::Test {
     ASSERT_GT(count, 1);
     if (const char* wish = std::getenv("CLPV_STARVED_STEP")) step = std::max(1, std::atoi(wish));
     // The first asks whether the clock of events is to be trusted (device.cpp); its failure is an answer.
-    for (long n = 2; n <= count; n += step) expect_told(call, n, code, name);
+    for (long n = 2; n <= count; n += step) expect_reported(call, n, code, name);
   }
 
   TemporaryFolder folder_;
@@ -87,15 +86,15 @@ class Starved : public ::testing::Test {
 TemporaryFolder* Starved::cache_ = nullptr;
 
 TEST_F(Starved, OfDeviceMemoryAtSomeAllocations) {
-  expect_told_at_some("memory", 23, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
+  expect_reported_at_some("memory", 23, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
 }
 
 TEST_F(Starved, OfItsDeviceAtSomeEnqueues) {
-  expect_told_at_some("enqueue", 151, "-2", "CL_DEVICE_NOT_AVAILABLE");
+  expect_reported_at_some("enqueue", 151, "-2", "CL_DEVICE_NOT_AVAILABLE");
 }
 
 TEST_F(Starved, OfItsDeviceAtTheStart) {
-  expect_told("context", 2, "-2", "CL_DEVICE_NOT_AVAILABLE");
+  expect_reported("context", 2, "-2", "CL_DEVICE_NOT_AVAILABLE");
 }
 
 TEST_F(Starved, OfACompiler) {

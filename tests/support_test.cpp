@@ -20,7 +20,7 @@ TEST(Printable, TextStaysAsItIs) {
     EXPECT_EQ(printable(text), text);
 }
 
-TEST(Printable, ControlCharactersBecomeMarks) {
+TEST(Printable, ControlCharactersBecomeQuestionMarks) {
   EXPECT_EQ(printable("\x1b[31mred\x1b[0m\r\b\x7f"), "?[31mred?[0m???");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a?b");
   EXPECT_EQ(printable("\u0080a\u009bb\u009f"), "?a?b?");  // C1, of two bytes each
@@ -38,7 +38,7 @@ std::string of(const std::vector<std::string>& pieces) {
   return print.hex();
 }
 
-TEST(Fingerprint, TellsPiecesApart) {
+TEST(Fingerprint, DependsOnTheBoundariesOfItsInputs) {
   EXPECT_EQ(of({"ab", "c"}), of({"ab", "c"}));
   const std::set<std::string> names = {of({}),          of({""}),        of({"", ""}),    of({"abc"}),
                                        of({"ab", "c"}), of({"a", "bc"}), of({"abc", ""}), of({"acb"})};
@@ -46,7 +46,7 @@ TEST(Fingerprint, TellsPiecesApart) {
   for (const std::string& name : names) EXPECT_EQ(name.size(), 16u);
 }
 
-TEST(Fingerprint, SeesEveryBit) {
+TEST(Fingerprint, DependsOnEveryBit) {
   std::vector<std::uint32_t> values(1000, 0);
   std::set<std::string> names = {Fingerprint().add(values).hex()};
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -59,7 +59,7 @@ TEST(Fingerprint, SeesEveryBit) {
 
 using ::testing::HasSubstr;
 
-TEST(Process, TellsWhatWasSaidAndHowItEnded) {
+TEST(Process, ReturnsOutputAndExitCode) {
   const Process::Result ended = Process("/bin/sh", {"-c", "echo out; echo err >&2; exit 7"}).end();
   EXPECT_EQ(ended.code, 7);
   EXPECT_EQ(ended.output, "out\nerr\n");

@@ -106,7 +106,7 @@ TEST(Sweep, HarmonicsKeptAreTheProjectionOfTheBins) {
   }
 }
 
-TEST(Sweep, CoarserPartsHoldFinerOnes) {
+TEST(Sweep, CoarserPartsContainFinerOnes) {
   EXPECT_EQ(coarser_part(3, 2, 2), 3);
   for (int part = 0; part < 9; ++part) EXPECT_EQ(coarser_part(part, 3, 1), 0);
   EXPECT_EQ(coarser_part(0, 4, 2), 0);
@@ -188,7 +188,7 @@ TEST(Sweep, EveryPlaneCarriesAllLightUntilTheBorder) {
 }
 
 // A wall blocks sum_a |k_a| / |k| of what passes it k cells aside: all along its axis, and what it should of the rest.
-TEST(Sweep, AWallLetsThroughWhatItsWaysDo) {
+TEST(Sweep, AWallTransmitsThroughItsLinks) {
   constexpr int kGrid = 11, kWall = 6;
   for (const int distance : {1, 3}) {  // from the source on, the first cell's way included
     for (int axis = 0; axis < 3; ++axis) {

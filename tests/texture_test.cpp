@@ -48,7 +48,7 @@ TEST(MipChain, OddSizesLoseNothing) {
   }
 }
 
-TEST(MipChain, HolesDoNotTintWhatStays) {
+TEST(MipChain, HolesDoNotTintOpaqueTexels) {
   const Texture leaf = texture(2, 1, {200, 100, 50, 255, 0, 0, 255, 0});
   EXPECT_EQ(mip_chain(leaf, true)[1].rgba, (std::vector<std::uint8_t>{200, 100, 50, 128}));
   EXPECT_NE(mip_chain(leaf, false)[1].rgba[2], 50);
@@ -149,7 +149,7 @@ TEST(Texture, SmallTexelsAreAveragedByMipLevels) {
     EXPECT_NEAR(colour.x, 0.5, 0.003);
 }
 
-TEST(Texture, HolesLetThroughWhatIsBehind) {
+TEST(Texture, HolesShowTheSurfaceBehind) {
   Scene scene = textured(texture(2, 1, {255, 0, 0, 255, 255, 0, 0, 0}), CLPV_MATERIAL_MASKED);
   scene.textures[0].wrap_u = CLPV_WRAP_CLAMP;
   const unsigned green = add_material(scene, {0, 1, 0});

@@ -47,7 +47,7 @@ reference::Volume geometry_of(int numbers, const Blockers& blockers) {
   return volume;
 }
 
-/// Expects each cell to let through `expected` by each link. The checks of propagation and of the sweep hold the kernels
+/// Expects each cell to transmit `expected` along each link. The checks of propagation and of the sweep hold the kernels
 /// against the same reference.
 void expect_all(const Transport& transport, const reference::Volume& geometry,
                 const std::function<double(const glm::ivec3& cell, const Link& link)>& expected,
@@ -86,7 +86,7 @@ TEST_P(EachTransport, NothingBlocksNothing) {
 
 // In sh2, whose constant is exactly 1: blockers that grow from corner to corner are averaged over the side that light
 // enters by, and B is clamped to [0, 1].
-TEST_P(EachTransport, BlockersAreAveragedOverTheSideOfTheWay) {
+TEST_P(EachTransport, BlockersAreAveragedOverTheLinksFace) {
   const auto basis = make_basis("sh2");
   const glm::dvec3 slope(0.21, -0.13, 0.17);
   const auto blocked = [&](const glm::dvec3& corner) { return 0.4 + glm::dot(slope, corner); };

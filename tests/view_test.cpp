@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The views a frame is rasterised from: what they cover, and that a moving cascade moves by whole texels.
+// Views of a frame: the space they cover, and steps of whole texels as a cascade moves.
 #include "pipeline/view.hpp"
 
 #include <gtest/gtest.h>
@@ -158,7 +158,7 @@ TEST(View, PointViewsSeeEveryDirectionOnce) {
   }
 }
 
-TEST(View, BoxesAreOutOfSightWhereNothingOfThemIsOnTheScreen) {
+TEST(View, BoxesOutsideTheScreenAreNotVisible) {
   std::vector<ClpvView> views = {camera_view({}, 64, 32)};
   const auto six = point_views(point_light({1, 2, 3}), kSize, kBounds);
   views.insert(views.end(), six.begin(), six.end());
@@ -169,7 +169,7 @@ TEST(View, BoxesAreOutOfSightWhereNothingOfThemIsOnTheScreen) {
       for (const float size : {0.1f, 2.0f}) {
         const glm::vec3 middle = 7.0f * direction;
         const Bounds box{middle - size, middle + size};
-        const bool may_be = may_be_in_sight(view, box);
+        const bool may_be = may_be_visible(view, box);
         left_out += may_be ? 0 : 1;
         for (const glm::dvec3& corner : corners(glm::dvec3(box.lower), glm::dvec3(box.upper))) {
           const bool on = on_screen(view, corner) && project(view, corner).depth < view.far_depth;

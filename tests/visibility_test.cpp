@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Visibility between cells against closed forms: walls hide the cells behind them, from every point, and no others.
+// Visibility between cells against closed forms: walls hide exactly the cells behind them.
 #include "pipeline/visibility.hpp"
 
 #include <gtest/gtest.h>
@@ -22,9 +22,10 @@ const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
 /// Bytes of all points, by the kernel, which check_visibility holds against the CPU reference.
 std::vector<std::uint8_t> occluded(const Scene& scene, const ClpvGrid& grid = kCells) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  CellVisibility sight(test_session(), buffers, static_cast<int>(grid.n), 1);
-  sight.update(0, grid);
-  return test_session().read<std::uint8_t>(sight.occluded(), CellVisibility::bytes(static_cast<int>(grid.n)));
+  CellVisibility visibility(test_session(), buffers, static_cast<int>(grid.n), 1);
+  visibility.update(0, grid);
+  return test_session().read<std::uint8_t>(visibility.occluded(),
+                                           CellVisibility::bytes(static_cast<int>(grid.n)));
 }
 
 /// Cube and point of a byte.
@@ -43,7 +44,7 @@ bool between_centres(std::size_t at) {
 
 constexpr unsigned kCornersWithX = 0b10101010;
 
-TEST(See, AWallHidesTheCellsBehindItFromEveryPointAndNoOthers) {
+TEST(Visibility, AWallHidesExactlyTheCellsBehindIt) {
   Scene scene;
   add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
            add_material(scene));  // between centres at 1.5 and 2.5
@@ -56,13 +57,13 @@ TEST(See, AWallHidesTheCellsBehindItFromEveryPointAndNoOthers) {
   }
 }
 
-TEST(See, AWallThroughCentresHidesNothing) {
+TEST(Visibility, AWallThroughCentresHidesNothing) {
   Scene scene;
   add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
   for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
-TEST(See, ASpeckHidesWhatLiesBehindItAlone) {
+TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
   Scene scene;
   // On the way from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along each axis.
   add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
@@ -72,7 +73,7 @@ TEST(See, ASpeckHidesWhatLiesBehindItAlone) {
   for (std::size_t at = 64; at < found.size(); ++at) ASSERT_EQ(found[at], 0) << at;
 }
 
-TEST(See, TrianglesOfOneSurfaceLeaveNoGap) {
+TEST(Visibility, TrianglesOfOneSurfaceLeaveNoGap) {
   Scene scene;
   const unsigned material = add_material(scene);
   for (int i = 0; i < 40; ++i) {
@@ -84,20 +85,20 @@ TEST(See, TrianglesOfOneSurfaceLeaveNoGap) {
   EXPECT_EQ(occluded(scene), occluded(whole));
 }
 
-TEST(See, MaskedMaterialsHideNothing) {
+TEST(Visibility, MaskedMaterialsHideNothing) {
   Scene scene;
   add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
            add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
   for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
-TEST(See, NothingIsHiddenInAGridOfOneCell) {
+TEST(Visibility, NothingIsHiddenInAGridOfOneCell) {
   Scene scene;
   add_quad(scene, {0.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
   for (const std::uint8_t bits : occluded(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
 }
 
-TEST(See, TheKernelAgreesWithTheReference) {
+TEST(Visibility, TheKernelAgreesWithTheReference) {
   expect_passed(reference::check(Stage::visibility, test_session()), 1);
 }
 

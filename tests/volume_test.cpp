@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volumes in every layout and storage: what is written is read back, sums end where they should, what a device lacks is said,
-// and a work-item may have one cell or eight.
+// Volumes in every layout and storage: writing and reading, accumulation, errors of the device, and work-items of one or eight
+// cells.
 #include "volume/volume.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(Volume, ReadsBackWhatWasWritten) {
   }
 }
 
-TEST(Volume, WhatADeviceLacksIsSaid) {
+TEST(Volume, MissingDeviceFeaturesAreReported) {
   Device device = test_session().device();
   const VolumeFormat image{Layout::image, Storage::float16};
   device.image3d_writes = false;
@@ -104,7 +104,7 @@ TEST(Volume, BuffersBeyondWhatKernelsAddressAreUnsupported) {
 
 constexpr VolumeShape kShape{5, 6, 3};
 
-TEST(Accumulator, TakesTheMemoryItSays) {
+TEST(Accumulator, UsesTheReportedMemory) {
   Session& session = test_session();
   for (const VolumeFormat& format : formats(kShape)) {
     SCOPED_TRACE(format_name(format));

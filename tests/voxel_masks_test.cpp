@@ -66,23 +66,23 @@ struct Left {
 class Stages {
  public:
   explicit Stages(const SceneBuffers& buffers)
-      : sight_(test_session(), buffers, kGrid, 2),
+      : visibility_(test_session(), buffers, kGrid, 2),
         blocker_(test_session(), buffers, kGrid, 2, {}),
         reflector_(test_session(), buffers, kGrid, 1, {}) {}
 
   Left bring(const ClpvGrid& grid) {
-    sight_.update(1, grid);
+    visibility_.update(1, grid);
     blocker_.voxelize(1, grid, geometry_);
     reflector_.voxelize(0, grid);
     const std::size_t bytes = CellVisibility::bytes(kGrid);
-    const auto occluded = test_session().read<std::uint8_t>(sight_.occluded(), 2 * bytes);
+    const auto occluded = test_session().read<std::uint8_t>(visibility_.occluded(), 2 * bytes);
     return {{occluded.begin() + static_cast<std::ptrdiff_t>(bytes), occluded.end()},
             geometry_.read(test_session()),
             reflector_.reflectors(0).read(test_session())};
   }
 
  private:
-  CellVisibility sight_;
+  CellVisibility visibility_;
   BlockerVoxelizer blocker_;
   ReflectorVoxelizer reflector_;
   Volume geometry_{test_session(), {kGrid + 1, 3, 1}, "test: geometry"};
@@ -92,7 +92,7 @@ Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
   return Stages(upload_scene(test_session(), scene)).bring(grid);
 }
 
-TEST(VoxelMasks, WalkWithACascade) {
+TEST(VoxelMasks, MoveWithACascade) {
   const Scene scene = soup();
   Stages kept(upload_scene(test_session(), scene));
   // A cell, several along two and three axes, back, farther than the grid is wide, past a base (32 cells apart), and nowhere.
@@ -113,7 +113,7 @@ TEST(VoxelMasks, DoNotDependOnTheOrderOfTriangles) {
   EXPECT_TRUE(from_nothing(scene, grid_at({-4, -4, -4})) == before);
 }
 
-TEST(VoxelMasks, OfNoTrianglesOrAwkwardOnesThereAreNone) {
+TEST(VoxelMasks, DegenerateTrianglesSetNoBits) {
   Scene scene;
   const auto expect_none = [&] {
     const Left left = from_nothing(scene, grid_at({0, 0, 0}));
@@ -129,7 +129,7 @@ TEST(VoxelMasks, OfNoTrianglesOrAwkwardOnesThereAreNone) {
   expect_none();
 }
 
-TEST(VoxelMasks, FollowWhatMoves) {
+TEST(VoxelMasks, FollowMovingObjects) {
   Scene scene = soup();
   SceneBuffers buffers = upload_scene(test_session(), scene);
   Stages kept(buffers);

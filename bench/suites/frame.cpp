@@ -73,7 +73,7 @@ struct FrameSequence {
   void invalidate() {
     switch (recompute) {
       case Recompute::light:
-        return frame.forget_light();
+        return frame.invalidate_light();
       case Recompute::everything:
         return frame.invalidate();
       case Recompute::nothing:

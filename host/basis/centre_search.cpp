@@ -152,8 +152,8 @@ void require(const CentreSearch& search) {
   if (!(search.lambda > 0 && search.lambda < 1)) {
     throw Error(ExitCode::usage, "lambda: found {}, allowed: greater than 0 and less than 1", search.lambda);
   }
-  if (!(search.most_condition >= 1 && search.most_condition <= kMaxCondition)) {
-    throw Error(ExitCode::usage, "--most-condition: found {}, allowed: 1 to {:.0e}", search.most_condition,
+  if (!(search.max_condition >= 1 && search.max_condition <= kMaxCondition)) {
+    throw Error(ExitCode::usage, "--max-condition: found {}, allowed: 1 to {:.0e}", search.max_condition,
                 kMaxCondition);
   }
 }
@@ -162,7 +162,7 @@ void require(const CentreSearch& search) {
 
 CentreSearchResult search_centres(const CentreSearch& search, const std::function<void()>& after_start) {
   require(search);
-  Problem problem{{search}, CentreObjective(search.aims), std::log(search.most_condition)};
+  Problem problem{{search}, CentreObjective(search.aims), std::log(search.max_condition)};
   std::mt19937_64 random(search.seed);
   std::optional<CentreSearchResult> best;
   double smallest_excess = std::numeric_limits<double>::infinity();
@@ -182,9 +182,9 @@ CentreSearchResult search_centres(const CentreSearch& search, const std::functio
     throw Error(ExitCode::usage,
                 "--search {}: none of {} starts found a set with a condition number of at most {:.3g}; "
                 "smallest bound "
-                "found: {:.3g}; use a larger lambda, fewer centres or a larger --most-condition",
-                search.centres, search.starts, search.most_condition,
-                search.most_condition * std::exp(std::min(smallest_excess, kNoCondition)));
+                "found: {:.3g}; use a larger lambda, fewer centres or a larger --max-condition",
+                search.centres, search.starts, search.max_condition,
+                search.max_condition * std::exp(std::min(smallest_excess, kNoCondition)));
   }
   best->valid = valid;
   return *best;

@@ -22,7 +22,7 @@ struct CentreSearch {
   SearchedLambdas lambdas = SearchedLambdas::one;
   double lambda = kDefaultLambda;  ///< lambda of all centres, or the start value if lambdas are optimised
   /// Bound on the condition number. Rounding errors grow with its root; half precision tolerates srbf14's 1.8e4.
-  double most_condition = 2e4;
+  double max_condition = 2e4;
   int starts = 64;  ///< number of descents from random centres
   std::uint64_t seed = 1;
 };

@@ -54,7 +54,7 @@ void run(const Options& options) {
     return;
   }
   const BasisView view{options.lobes, unit_axis(options.axis)};
-  if (options.search.centres) return search_and_tell(options.search, options.lambda, view, options.json);
+  if (options.search.centres) return print_search(options.search, options.lambda, view, options.json);
   nlohmann::json bases = nlohmann::json::array();
   for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, view));
   if (options.json) {
@@ -78,7 +78,8 @@ void add_basis(CLI::App& app, Shared&) {
       ->excludes(name);
   command
       ->add_option("--lambda", options->lambda,
-                   "bandwidth of the SRBF kernels, between 0 and 1; a lambda in --centres overrides it")
+                   "parameter of the SRBF kernels, between 0 and 1, narrower with larger values; a lambda in "
+                   "--centres overrides it")
       ->capture_default_str();
   add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
   add_choice(
@@ -91,7 +92,7 @@ void add_basis(CLI::App& app, Shared&) {
   add_search_options(*command, options->search);
   CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
   add(*command, "--figures", "DIR", options->figures,
-      "output folder for the paper's figures 2, 3 and 6 instead: spherical plots of kernels and lobes")
+      "output folder for the paper's figures 2, 3 and 6, in place of the report")
       ->excludes(json);
   command->callback([options] { run(*options); });
 }

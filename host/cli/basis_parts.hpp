@@ -43,7 +43,7 @@ struct BasisSearchOptions {
 void add_search_options(CLI::App& command, BasisSearchOptions& options);
 /// `clpv basis --search N`: finds the centres with the smallest clamped-cosine error. Writes the file for --centres,
 /// and prints the set's metrics and those of the named sets.
-void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json);
+void print_search(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json);
 
 struct BasisFigures {
   std::vector<std::unique_ptr<Basis>> bases;  ///< bases of Figures 3 and 6; empty: the paper's

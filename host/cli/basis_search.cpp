@@ -14,7 +14,7 @@
 namespace clpv {
 namespace {
 
-constexpr const char* kBeside[] = {"srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "sh2", "sh3"};
+constexpr const char* kNamedSets[] = {"srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "sh2", "sh3"};
 
 LobeAims aims_of(const BasisSearchOptions& options) {
   if (!options.weights.empty()) return load_aims(options.weights);
@@ -45,9 +45,10 @@ nlohmann::json described(const Basis& basis, const BasisView& view, const LobeAi
 }
 
 /// The found set, and the named sets for comparison.
-nlohmann::json beside_others(const Basis& found, double lambda, const BasisView& view, const LobeAims& aims) {
+nlohmann::json with_named_sets(const Basis& found, double lambda, const BasisView& view,
+                               const LobeAims& aims) {
   nlohmann::json bases = nlohmann::json::array({described(found, view, aims)});
-  for (const char* name : kBeside) bases.push_back(described(*make_basis(name, lambda), view, aims));
+  for (const char* name : kNamedSets) bases.push_back(described(*make_basis(name, lambda), view, aims));
   return bases;
 }
 
@@ -56,8 +57,8 @@ nlohmann::json beside_others(const Basis& found, double lambda, const BasisView&
 void add_search_options(CLI::App& command, BasisSearchOptions& options) {
   CLI::Option* search =
       add(command, "--search", "N", options.centres,
-          "number of centres to search for: minimises the clamped-cosine error by descent from many "
-          "starts; the same seed gives the same set")
+          "number of centres of a set to search for, with minimum clamped-cosine error; the same seed gives "
+          "the same set")
           ->excludes("name")
           ->excludes("--centres");
   command.add_option("--seed", options.search.seed, "seed of the random starts of a search")
@@ -76,17 +77,17 @@ void add_search_options(CLI::App& command, BasisSearchOptions& options) {
       ->needs(search)
       ->excludes(over);
   add_choice(command, "--lambdas", options.search.lambdas,
-             "lambdas that a search optimises: none, one for all centres, or one per centre")
+             "lambdas that the search optimises: none, one for all centres, or one per centre")
       ->needs(search);
   command
-      .add_option("--most-condition", options.search.most_condition,
+      .add_option("--max-condition", options.search.max_condition,
                   "maximum condition number of the Gram matrix of a search result")
       ->needs(search)
       ->capture_default_str();
   add(command, "-o,--output", "FILE.json", options.output, "output file of the found set")->needs(search);
 }
 
-void search_and_tell(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {
+void print_search(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json) {
   if (!options.output.empty()) check_writable(options.output);
   CentreSearch search = options.search;
   search.centres = *options.centres;
@@ -96,24 +97,24 @@ void search_and_tell(const BasisSearchOptions& options, double lambda, const Bas
   const CentreSearchResult found = search_centres(search, [&] { progress.advance(); });
   const auto basis = make_basis_from_centres(name_of(options), found.set.centres, found.set.lambdas);
   if (!options.output.empty()) write_file(options.output, file_of(*basis).dump(1) + "\n");
-  const nlohmann::json bases = beside_others(*basis, lambda, view, search.aims);
+  const nlohmann::json bases = with_named_sets(*basis, lambda, view, search.aims);
   if (json) {
     const nlohmann::json of_search{{"centres", search.centres},
                                    {"over", search.aims.name},
                                    {"lambdas", name_of(search.lambdas)},
-                                   {"most_condition", search.most_condition},
+                                   {"max_condition", search.max_condition},
                                    {"starts", search.starts},
                                    {"valid", found.valid},
                                    {"seed", search.seed},
                                    {"error", found.error},
-                                   {"least_error_over_all", minimum_error(search.centres)}};
+                                   {"error_bound", minimum_error(search.centres)}};
     fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"search", of_search}, {"bases", bases}}.dump(2));
     return;
   }
   fmt::print(
-      "{}\naimed: root of the mean squared relative L2 error over {}; {} of {} starts ended within the "
+      "{}\nobjective: root mean square of the relative L2 error over {}; {} of {} starts ended within the "
       "bounds.\n"
-      "Over all directions no {} functions of any kind have less than {:.4f}.\n",
+      "Minimum over all directions of any {} functions: {:.4f}.\n",
       table_of(bases), search.aims.name, found.valid, search.starts, search.centres,
       minimum_error(search.centres));
   for (std::size_t i = 0; i < basis->centres().size(); ++i) {

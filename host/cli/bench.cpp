@@ -86,13 +86,13 @@ std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
   return drawing;
 }
 
-/// Returns the given scene, or the suite's default scene.
-void take_scene(Options& options, const bench::Suite& suite) {
+/// Loads the scene of --scene, or the default scene of the suite, into the options.
+void load_suite_scene(Options& options, const bench::Suite& suite) {
   if (options.scene.empty() && !options.model.empty())
     throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
   if (options.scene.empty() && suite.default_scene.empty()) return;
   if (options.scene.empty() && !std::filesystem::exists(suite.default_scene)) {
-    spdlog::warn("{} is not here: {} works on the hall in its place", suite.default_scene, suite.name);
+    spdlog::warn("{} does not exist: {} uses the generated hall", suite.default_scene, suite.name);
     return;
   }
   const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
@@ -102,13 +102,13 @@ void take_scene(Options& options, const bench::Suite& suite) {
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
 }
 
-/// Reports failed rows. Exit code 5 if an output was wrong.
-void judge(const std::vector<bench::Row>& rows) {
+/// Throws Error(validation) if an output was wrong.
+void require_right_results(const std::vector<bench::Row>& rows) {
   const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
   if (wrong == 0) return;
   const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
-  throw Error(ExitCode::validation, "{} of {} rows computed something wrong; {}: {:.3g} > {:.0e} at {}",
-              wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
+  throw Error(ExitCode::validation, "{} of {} rows have wrong results; {}: {:.3g} > {:.0e} at {}", wrong,
+              rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
 }
 
 void write(const Options& options, const std::string& text) {
@@ -127,7 +127,7 @@ void run(Options options, const Shared& shared) {
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
-  take_scene(options, suite);
+  load_suite_scene(options, suite);
   // Cached programs have no build time.
   Session session(choose_device(shared.device),
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
@@ -145,7 +145,7 @@ void run(Options options, const Shared& shared) {
     plot->draw(options.plot);
   }
   session.store_programs();
-  judge(results.rows);
+  require_right_results(results.rows);
 }
 
 }  // namespace bench_command
@@ -155,20 +155,20 @@ void add_bench(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("bench", "Time stages and frames on this device, and check their outputs");
   auto options = std::make_shared<bench_command::Options>();
-  std::string suites = "what to time:";
+  std::string suites = "suite to run:";
   for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
-  command->add_option("suite", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
+  command->add_option("SUITE", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
   add(*command, "--scene", "SCENE", options->scene,
       "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");
   add(*command, "--camera", "NAME", options->bench.suite.camera,
       "name of the camera (default: the scene's first)");
   add(*command, "--basis", "NAME", options->bench.suite.bases,
-      "comma-separated bases; table1 adds them to its own")
+      "comma-separated bases (default: those of the suite); table1 adds them to its own")
       ->delimiter(',');
   add(*command, "--filter", "REGEX", options->filter,
       "regular expression for the names of rows to run (default: all)");
-  command->add_option("--repetitions", options->bench.repetitions, "number of timed runs per row")
+  command->add_option("--repetitions", options->bench.repetitions, "timed runs per row")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMaxRepetitions));
   command
@@ -179,10 +179,10 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->capture_default_str()
       ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
   add(*command, "--log", "FILE.jsonl", options->log,
-      "log of row starts and ends, one JSON line each; shows the row of a crash or a hanging kernel");
+      "log of row starts and ends, one JSON line each; after a crash its last line names the row");
   add(*command, "-o,--out", "FILE", options->out, "output file (default: stdout)");
   add(*command, "--compare", "OLD.json", options->compare,
-      "JSON of an earlier run; prints the changes and their spread");
+      "JSON of an earlier run, for a table of changes and their spread");
   add(*command, "--plot", "DIR", options->plot, "output folder for SVG and PNG charts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }

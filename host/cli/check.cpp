@@ -77,12 +77,10 @@ void run(const Options& options, const Shared& shared) {
   Progress progress("check", values_of<Stage>().size());
   for (const Stage stage : values_of<Stage>()) {
     progress.advance();
-    stop_if_interrupted(
-        fmt::format("{} comparisons were made, {} of them failed", all.size(), failures(all)));
+    stop_if_interrupted(fmt::format("{} comparisons, {} failed", all.size(), failures(all)));
     if (!options.only.empty() && std::ranges::count(options.only, stage) == 0) continue;
     const reference::CheckResults results = reference::check(stage, session, {.thorough = options.thorough});
-    if (results.empty())
-      throw Error(ExitCode::validation, "stage {} was not compared at all", name_of(stage));
+    if (results.empty()) throw Error(ExitCode::validation, "no comparison of stage {}", name_of(stage));
     if (!options.json) print(name_of(stage), results);
     all.insert(all.end(), results.begin(), results.end());
   }

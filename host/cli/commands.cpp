@@ -22,7 +22,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kMostEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
+constexpr std::size_t kMaxEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
 
 /// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.
 void set_log(const Shared& shared) {
@@ -34,7 +34,7 @@ void set_log(const Shared& shared) {
 }
 
 /// Commands that distribute work over ranks; each rank would repeat all work of any other command.
-void reject_ranks_but_to(CLI::App& app, const std::vector<std::string>& names) {
+void reject_ranks_except(CLI::App& app, const std::vector<std::string>& names) {
   for (CLI::App* command : app.get_subcommands({})) {
     const std::string name = command->get_name();
     if (std::ranges::count(names, name) > 0) continue;
@@ -75,9 +75,17 @@ void reject_misspelt_command(const CLI::App& app) {
     throw Error(ExitCode::usage, "{}", renamed);
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
-  if (edits(*word, *nearest) <= kMostEdits)
+  if (edits(*word, *nearest) <= kMaxEdits)
     throw Error(ExitCode::usage, "'{}' is no command; did you mean {}?", *word, *nearest);
   throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));
+}
+
+/// Throws Error(usage) that names the successor of a renamed option.
+void reject_renamed_options(int argc, const char* const* argv) {
+  for (const std::string word : std::span(argv, static_cast<std::size_t>(argc))) {
+    const std::string renamed = word.starts_with("--") ? reject_old_name(word.substr(0, word.find('='))) : "";
+    if (!renamed.empty()) throw Error(ExitCode::usage, "{}", renamed);
+  }
 }
 
 /// Reports write errors of stdout, such as a full disk.
@@ -87,13 +95,13 @@ void flush_data() {
 }
 
 /// Returns a message prefix like "rank 3 on node7: " if there are several ranks.
-std::string who(const Shared& shared) {
+std::string rank_prefix(const Shared& shared) {
   return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
 }
 
 /// Logs the error and aborts the other ranks.
-int ended(const Shared& shared, ExitCode code, const char* words) {
-  std::cerr << "clpv: " << who(shared) << words << std::endl;
+int report_failure(const Shared& shared, ExitCode code, const char* message) {
+  std::cerr << "clpv: " << rank_prefix(shared) << message << std::endl;
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }
@@ -118,17 +126,19 @@ std::span<const Command> all_commands() {
 void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
   app.name("clpv");
-  app.set_version_flag("--version", "clpv " + version());
+  app.set_version_flag("--version", "clpv " + version(), "version of the program");
+  app.set_help_flag("-h,--help", "this help");
   app.set_help_all_flag("--help-all", "help of all commands");
   add(app, "--device", "DEVICE", shared.device,
-      "OpenCL device: index, PLATFORM:DEVICE or part of a name (also CLPV_DEVICE)");
-  app.add_flag("-q,--quiet", shared.quiet, "only data and errors");
+      "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the first "
+      "supported)");
+  app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
   app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more");
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
   for (const Command& command : commands) command.add(app, shared);
-  reject_ranks_but_to(app, {"quality", "sequence", "pathtrace"});
+  reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
       "image file;\n"
@@ -137,6 +147,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  reject_renamed_options(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError&) {
@@ -161,17 +172,17 @@ int run_program(int argc, const char* const* argv) {
     app.exit(error, std::cout, std::cerr);
     return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const Interrupted& interrupted) {
-    std::cerr << "clpv: " << who(shared) << "interrupted; " << interrupted.what() << std::endl;
+    std::cerr << "clpv: " << rank_prefix(shared) << "interrupted; " << interrupted.what() << std::endl;
     end_as_interrupted();
   } catch (const Error& error) {
-    return ended(shared, error.code(), error.what());
+    return report_failure(shared, error.code(), error.what());
   } catch (const cl::Error& error) {
     const Error named = cl_error(error);
-    return ended(shared, named.code(), named.what());
+    return report_failure(shared, named.code(), named.what());
   } catch (const std::bad_alloc&) {
-    return ended(shared, ExitCode::run_time, "out of memory");
+    return report_failure(shared, ExitCode::run_time, "out of memory");
   } catch (const std::exception& error) {
-    return ended(shared, ExitCode::run_time, error.what());
+    return report_failure(shared, ExitCode::run_time, error.what());
   }
 }
 

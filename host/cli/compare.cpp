@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv compare: error metrics of an image against its reference.
+// clpv compare: error metrics of an image against a ground truth.
 #include "image/compare.hpp"
 
 #include <fmt/format.h>
@@ -54,10 +54,10 @@ void run(const CompareOptions& options) {
 
 void add_compare(CLI::App& app, Shared&) {
   CLI::App* command =
-      app.add_subcommand("compare", "Compare image A with its reference B; metrics as JSON on stdout");
+      app.add_subcommand("compare", "Errors of image A against ground truth B, as JSON on stdout");
   auto options = std::make_shared<CompareOptions>();
   command->add_option("A", options->a, "image: .exr, .png or .hdr")->required();
-  command->add_option("B", options->b, "reference image of the same size")->required();
+  command->add_option("B", options->b, "ground truth of the same size")->required();
   add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()

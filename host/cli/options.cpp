@@ -45,8 +45,11 @@ CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
 }  // namespace
 
 std::string reject_old_name(const std::string& name) {
-  static const std::map<std::string, std::string> kRenamed{
-      {"reference", "pathtrace"}, {"block", "blockers"}, {"reflect", "reflectors"}, {"see", "visibility"}};
+  static const std::map<std::string, std::string> kRenamed{{"reference", "pathtrace"},
+                                                           {"block", "blockers"},
+                                                           {"reflect", "reflectors"},
+                                                           {"see", "visibility"},
+                                                           {"--most-condition", "--max-condition"}};
   const auto found = kRenamed.find(name);
   return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
 }
@@ -55,7 +58,7 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, double& valu
                         const NumberRange& range) {
   const auto take = [&value, name, range](const std::string& text) {
     const auto found = parse_number<double>(text);
-    if (!found || !(*found >= range.least && *found <= range.most))  // NaN is in no range
+    if (!found || !(*found >= range.minimum && *found <= range.maximum))  // NaN is in no range
       throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, text, range.allowed);
     value = *found;
   };
@@ -176,7 +179,7 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
       ->group(kGroup);
 }
 
-reference::TraceProgress shown_on(Progress& progress) {
+reference::TraceProgress trace_progress(Progress& progress) {
   return [&progress](double share) { progress.reach(static_cast<std::uint64_t>(share * kTraceSteps)); };
 }
 

@@ -42,7 +42,8 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member,
       ->default_str(std::string(name_of(member)));
 }
 
-/// Returns an error that names the successor if a command or choice has been renamed since the last release, else "".
+/// Returns an error that names the successor if a command, option or choice has been renamed since the last release,
+/// else "".
 std::string reject_old_name(const std::string& name);
 
 /// Adds an option that takes several values of an enumeration, separated by commas.
@@ -60,7 +61,7 @@ CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vect
 }
 
 struct NumberRange {
-  double least, most;
+  double minimum, maximum;
   std::string allowed;  ///< "0..1 m"
 };
 
@@ -110,7 +111,7 @@ struct TracingOptions {
 void add_tracing_options(CLI::App& command, TracingOptions& options);
 
 /// Returns a callback that shows the progress of trace_paths on a bar.
-reference::TraceProgress shown_on(Progress& progress);
+reference::TraceProgress trace_progress(Progress& progress);
 inline constexpr std::uint64_t kTraceSteps = 10000;  ///< steps of that bar
 
 }  // namespace clpv

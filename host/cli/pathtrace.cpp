@@ -95,26 +95,28 @@ void run(const Options& options, Shared& shared) {
   Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
-      shown_on(progress), ranks);
+      trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
-    spdlog::warn("noise {:.4f} after {} paths a pixel, the most there may be; asked for {}", traced.noise,
+    spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
                  traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, camera, traced, seconds);
   const std::string noise = std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
-  spdlog::info("{} paths a pixel, {}{:.1f} s", traced.samples, noise, seconds);
+  spdlog::info("{} paths per pixel, {}{:.1f} s", traced.samples, noise, seconds);
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene, "scene file (.json), or a bare .gltf or .glb")->required();
-  add(command, "-o,--output", "FILE.exr", options.output, "linear EXR; one layer per view if several")
+  command.add_option("SCENE", options.scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  add(command, "-o,--output", "FILE.exr", options.output,
+      "output image, linear EXR; one layer per view if several")
       ->required();
   add(command, "--model", "PATH", options.model, "model file instead of the scene file's");
   add(command, "--camera", "NAME", options.camera, "name of the camera (default: the scene's first)");
-  add_seconds(command, "--time", options.time, "time of the frame [s]");
-  add_choices(command, "--view", options.views, "views to write; several become layers")->default_str("full");
+  add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
+  add_choices(command, "--view", options.views, "views to write; several become layers of the EXR")
+      ->default_str("full");
   command.add_option("--width", options.width, "image width [pixels]")
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();

@@ -47,7 +47,7 @@ std::vector<Variant> variants_of(const Options& options) {
   for (const std::string& text : options.varied) {
     varied.push_back(parse_varied(text));
     if (varied.back().name == "width" || varied.back().name == "height") {
-      throw Error(ExitCode::usage, "--vary {}: a reference has one size; fix it by --width and --height",
+      throw Error(ExitCode::usage, "--vary {}: all variants have one size; allowed: --width and --height",
                   text);
     }
   }
@@ -97,20 +97,20 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
   const auto started = std::chrono::steady_clock::now();
   QualityCell cell;
   try {
-    double made_s = 0;
+    double setup_s = 0;
     if (!frame) {
       frame = std::make_unique<Frame>(session, group.subject.scene, group.options);
-      made_s = seconds_since(started);
+      setup_s = seconds_since(started);
     }
     cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera], options.view,
                    options.frames);
-    cell.made_s = made_s;
+    cell.setup_s = setup_s;
   } catch (const Error& error) {
     // An incompatible basis and transport, or an unsuitable grid, is a valid result.
     if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
     cell.rejected = error.what();
   }
-  cell.measured_s = seconds_since(started) - cell.made_s;
+  cell.measured_s = seconds_since(started) - cell.setup_s;
   cell.scene = group.subject.scene.name;
   cell.camera = group.subject.cameras[camera].name;
   return cell;
@@ -133,7 +133,8 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
   std::map<std::size_t, nlohmann::json> cells;  // cells of this rank, by number
   Progress progress("quality", mine);
   each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
-    stop_if_interrupted(fmt::format("{} of {} cells are kept; the same command goes on", cells.size(), mine));
+    stop_if_interrupted(
+        fmt::format("{} of {} cells are finished; the same command resumes", cells.size(), mine));
     const std::string key = quality_key(group.subject.truths[camera], session.device(), group.options,
                                         options.view, options.frames);
     std::optional<QualityCell> cell;
@@ -145,8 +146,8 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
     cells[number] = to_json(*cell);
     progress.advance();
   });
-  for (const std::string& told : ranks.gather(nlohmann::json(cells).dump()))
-    cells.merge(nlohmann::json::parse(told).get<std::map<std::size_t, nlohmann::json>>());
+  for (const std::string& gathered : ranks.gather(nlohmann::json(cells).dump()))
+    cells.merge(nlohmann::json::parse(gathered).get<std::map<std::size_t, nlohmann::json>>());
   std::vector<QualityCell> all;
   for (const auto& [number, cell] : cells) all.push_back(cell_from_json(cell));
   return all;
@@ -163,12 +164,12 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
                          {"given", options.given}};
   for (const Subject& subject : subjects) {
     for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
-      const reference::Reference& truth = subject.truths[view];
-      json["references"].push_back({{"scene", subject.scene.name},
-                                    {"camera", subject.cameras[view].name},
-                                    {"file", truth.file.string()},
-                                    {"spp", truth.samples},
-                                    {"noise", truth.noise}});
+      const reference::GroundTruth& truth = subject.truths[view];
+      json["ground_truths"].push_back({{"scene", subject.scene.name},
+                                       {"camera", subject.cameras[view].name},
+                                       {"file", truth.file.string()},
+                                       {"spp", truth.samples},
+                                       {"noise", truth.noise}});
     }
   }
   for (const QualityCell& cell : cells) json["cells"].push_back(to_json(cell));
@@ -203,30 +204,30 @@ void run(const Options& options, Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.subjects.scenes, "scene files (.json), or bare .gltf or .glb")
+  command.add_option("SCENE", options.subjects.scenes, "scene files (.json) or models (.gltf, .glb)")
       ->required();
   add_subject_options(command, options.subjects);
   add(command, "--vary", "OPTION=a,b,c", options.varied,
       "render option and its values, repeatable; each combination is a variant. Default: all bases\n"
       "and transports, unless --preset, --basis, --centres, --transport or --vary sets them");
-  add_choice(command, "--view", options.view, "what is compared");
+  add_choice(command, "--view", options.view, "view to compare");
   command
       .add_option("--frames", options.frames,
-                  "timed frames per cell, after a warm-up frame; reports the medians")
+                  "number of timed frames per cell, after a warm-up frame; the results have their medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
   add(command, "--cache", "DIR", options.cache,
-      "folder for cached references and cells (default: the user's cache)");
-  command.add_flag("--fresh", options.fresh, "measure all cells again; uses cached references");
-  command.add_option("--format", options.format, "format of stdout")
+      "folder for cached ground truths and cells (default: $XDG_CACHE_HOME/clpv/quality)");
+  command.add_flag("--fresh", options.fresh, "new measurement of all cells, against cached ground truths");
+  command.add_option("--format", options.format, "format of the results on stdout")
       ->check(CLI::IsMember({"table", "json", "csv"}))
       ->capture_default_str();
   add(command, "--json", "FILE", options.json, "output file for the results as JSON");
   add(command, "--csv", "FILE", options.csv, "output file for the results as CSV");
   add_frame_options(command, options.given);
   for (const auto& [name, size] : {std::pair{"width", "240"}, {"height", "135"}}) {
-    options.given[name] = size;  // references of a frame's default size take hours
+    options.given[name] = size;  // ground truths of a frame's default size take hours
     command.get_option(fmt::format("--{}", name))->default_str(size);
   }
 }
@@ -240,7 +241,7 @@ void add_quality(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<quality_command::Options>();
   add_options(*command, *options);
   command->footer(
-      "nrmse: root mean square error over the reference's root mean square, over the valid pixels; best "
+      "nrmse: root mean square error over the ground truth's, over the valid pixels; best "
       "gain: after the\n"
       "single factor that minimises it; energy: ratio of sums; perceptual: share of pixels that fail Yee's "
       "test (1999).\n"

@@ -35,7 +35,7 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
       "model file instead of the scene file's; for several scenes: STEM=PATH, repeatable");
   add(command, "--camera", "NAME", subjects.cameras,
       "name of a camera, repeatable (default: all cameras of all scenes)");
-  add_seconds(command, "--time", subjects.time, "time of the frame [s]");
+  add_seconds(command, "--time", subjects.time, "time in the scene's animation [s]");
 }
 
 std::filesystem::path quality_cache(const std::string& given) {
@@ -74,11 +74,11 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
                   const std::filesystem::path& folder, Ranks& ranks) {
   for (const Camera& camera : subject.cameras) {
-    Progress progress(fmt::format("reference {} {}", subject.scene.name, camera.name), kTraceSteps);
-    subject.truths.push_back(reference::cached_reference(folder, subject.scene, camera, width, height,
-                                                         options, shown_on(progress), ranks));
-    const reference::Reference& truth = subject.truths.back();
-    spdlog::debug("{}: {} paths a pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
+    Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name), kTraceSteps);
+    subject.truths.push_back(reference::cached_ground_truth(folder, subject.scene, camera, width, height,
+                                                            options, trace_progress(progress), ranks));
+    const reference::GroundTruth& truth = subject.truths.back();
+    spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "quality/cached_reference.hpp"
+#include "quality/ground_truth.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -27,7 +27,7 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects);
 struct Subject {
   Scene scene;
   std::vector<Camera> cameras;
-  std::vector<reference::Reference> truths;  ///< one per camera, after tracing
+  std::vector<reference::GroundTruth> truths;  ///< one per camera, after tracing
 };
 
 /// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is empty. Throws

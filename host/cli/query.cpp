@@ -45,7 +45,7 @@ void run(const Options& options, const Shared& shared) {
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, moving.scene());
   const Camera& camera = moving.scene().camera(request.camera);
-  tell_of_scene(moving.scene(), camera, resolved);
+  log_scene(moving.scene(), camera, resolved);
   Session session(choose_device(shared.device), ProgramCache::of_user());
   Frame frame(session, moving.scene(), resolved);
   frame.render(camera);
@@ -68,8 +68,8 @@ void add_query(CLI::App& app, Shared& shared) {
   add(*command, "--points", "FILE.csv", options->points,
       "input points, lines of x,y,z,nx,ny,nz: world position [m] and surface normal")
       ->required();
-  add(*command, "-o,--output", "FILE.csv", options->output, "output table (default: stdout)");
-  add_seconds(*command, "--time", options->time, "time of the frame [s]");
+  add(*command, "-o,--output", "FILE.csv", options->output, "output table, as CSV (default: stdout)");
+  add_seconds(*command, "--time", options->time, "time in the scene's animation [s]");
   add_render_request(*command, options->request);
   command->footer(
       "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], like "

@@ -96,7 +96,7 @@ void run(const Options& options, const Shared& shared) {
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, scene);
   const Camera& camera = scene.camera(request.camera);
-  tell_of_scene(scene, camera, resolved);
+  log_scene(scene, camera, resolved);
   progress.advance();
 
   stats.begin_startup();
@@ -116,7 +116,7 @@ void run(const Options& options, const Shared& shared) {
   progress.advance();
   for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
     stop_if_interrupted();
-    frame.forget_light();
+    frame.invalidate_light();
     stats.begin_frame();
     frame.render(camera);
     stats.end_frame(session);
@@ -143,7 +143,7 @@ void add_render(CLI::App& app, Shared& shared) {
   add(*command, "-o,--output", "FILE", options->output,
       "output image: .exr (linear) or .png (tone-mapped, sRGB); its metadata holds the options")
       ->required();
-  add_seconds(*command, "--time", options->time, "time of the frame [s]");
+  add_seconds(*command, "--time", options->time, "time in the scene's animation [s]");
   add_choices(*command, "--view", options->views,
               "views to write; several become layers of one EXR, or FILE.VIEW.png")
       ->default_str("full");
@@ -151,7 +151,7 @@ void add_render(CLI::App& app, Shared& shared) {
       "output file for stage times of frames that recompute all lighting, options and energies, as JSON");
   command
       ->add_option("--frames", options->frames,
-                   "timed frames of --stats, after a warm-up frame; reports the medians")
+                   "number of timed frames for --stats, after a warm-up frame; it has their medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add(*command, "--dump-volume", "DIR", options->dump,

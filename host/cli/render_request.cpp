@@ -12,7 +12,7 @@
 namespace clpv {
 
 void add_render_request(CLI::App& command, RenderRequest& request) {
-  command.add_option("scene", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
   add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)");
   add_frame_options(command, request.frame);
@@ -23,7 +23,7 @@ void add_shown_options(CLI::App& command, RenderRequest& request) {
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 
-void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {

@@ -32,7 +32,7 @@ void add_render_request(CLI::App& command, RenderRequest& request);
 void add_shown_options(CLI::App& command, RenderRequest& request);
 
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
-void tell_of_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);
+void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);
 
 /// Returns all inputs of an image of `shown` at a time [s], by name.
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,

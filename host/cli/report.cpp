@@ -37,13 +37,13 @@ struct Options {
 };
 
 /// Render variants of the page. The most important comes last; only it has as many bounces as the ground truth.
-struct Way {
+struct PageVariant {
   const char* title;
   OptionValues given;
 };
-std::vector<Way> ways(const Options& options) {
+std::vector<PageVariant> page_variants(const Options& options) {
   return {{"published scheme (sh2)", {{"preset", "paper"}, {"basis", "sh2"}}},
-          {"the paper (srbf8v2)", {{"preset", "paper"}}},
+          {"published scheme (srbf8v2)", {{"preset", "paper"}}},
           {"clpv", {{"preset", "best"}, {"bounces", options.tracing.bounces}}}};
 }
 
@@ -98,8 +98,8 @@ nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const 
 }
 
 Image render_indirect(Session& session, const Subject& subject, const Camera& camera, const Options& options,
-                      const Way& way) {
-  Frame frame(session, subject.scene, resolve_options(sized(options, way.given), subject.scene));
+                      const PageVariant& variant) {
+  Frame frame(session, subject.scene, resolve_options(sized(options, variant.given), subject.scene));
   frame.render(camera);
   return view_image(frame, Show::indirect);
 }
@@ -108,15 +108,15 @@ Image render_indirect(Session& session, const Subject& subject, const Camera& ca
 nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
                     const Drawing& drawing, const std::string& stem, Progress& progress) {
   const Camera& camera = subject.cameras[index];
-  const reference::Reference& traced = subject.truths[index];
+  const reference::GroundTruth& traced = subject.truths[index];
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
   const float exposure = exposure_of(truth);
   nlohmann::json shots = nlohmann::json::array();
-  for (const Way& way : ways(options)) {
-    const Image image = render_indirect(session, subject, camera, options, way);
-    nlohmann::json shot = to_json(compare(image, way.title, truth, "truth"));
+  for (const PageVariant& variant : page_variants(options)) {
+    const Image image = render_indirect(session, subject, camera, options, variant);
+    nlohmann::json shot = to_json(compare(image, variant.title, truth, "truth"));
     shot.update(add_image(drawing, fmt::format("{}-{}", stem, shots.size()), image, exposure));
-    shot.update({{"title", way.title}, {"options", as_arguments(way.given)}});
+    shot.update({{"title", variant.title}, {"options", as_arguments(variant.given)}});
     shots.push_back(std::move(shot));
     progress.advance();
   }
@@ -132,7 +132,7 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
                  quality_cache(options.cache) / "references");
-    Progress progress("report", subject.cameras.size() * ways(options).size());
+    Progress progress("report", subject.cameras.size() * page_variants(options).size());
     for (std::size_t i = 0; i < subject.cameras.size(); ++i)
       all.push_back(view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
   }
@@ -175,12 +175,11 @@ void add_report(CLI::App& app, Shared& shared) {
   add(*command, "--quality", "FILE.json", options->quality, "results of clpv quality --json, repeatable");
   add(*command, "--bench", "FILE.json", options->benchmarks,
       "results of clpv bench table1 or layouts --format json, repeatable");
-  command->add_option("--width", options->width, "width of views and references [pixels]")
-      ->capture_default_str();
-  command->add_option("--height", options->height, "height of views and references [pixels]")
-      ->capture_default_str();
+  command->add_option("--width", options->width, "width of the images [pixels]")->capture_default_str();
+  command->add_option("--height", options->height, "height of the images [pixels]")->capture_default_str();
   add_tracing_options(*command, options->tracing);
-  add(*command, "--cache", "DIR", options->cache, "folder for cached references (default: the user's cache)");
+  add(*command, "--cache", "DIR", options->cache,
+      "folder for cached ground truths (default: $XDG_CACHE_HOME/clpv/quality)");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -16,7 +16,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame_stats.hpp"
 #include "pipeline/view.hpp"
-#include "quality/cached_reference.hpp"
+#include "quality/ground_truth.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -38,9 +38,9 @@ namespace sequence_command {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostFrames = 1000000;
-constexpr double kMostFramesPerSecond = 1000;
-constexpr const char* kKey = "made_of";          // metadata: the key of a frame
+constexpr int kMaxFrames = 1000000;
+constexpr double kMaxFramesPerSecond = 1000;
+constexpr const char* kKey = "frame_key";        // metadata: the key of a frame
 constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.json
 
 /// Frame i shows `from` + i / `frames_per_second` [s].
@@ -54,7 +54,7 @@ struct Options {
   bool stability = false;
   std::uint32_t traced = 0;
 
-  double instant(int frame) const { return from + frame / frames_per_second; }
+  double time_of(int frame) const { return from + frame / frames_per_second; }
   fs::path file(int frame) const {
     return fs::path(output) / fmt::format("frame-{:04}.{}", frame, name_of(format));
   }
@@ -87,9 +87,8 @@ class Sequence {
         moving_(options.request.scene, options.request.model),
         resolved_(resolve_options(options.request.frame, moving_.scene())),
         device_(ranks.device(shared.device)) {
-    tell_of_scene(moving_.scene(), camera(), resolved_);
-    if (!moving_.moves())
-      spdlog::warn("{}: nothing moves in it: all frames are alike", options.request.scene);
+    log_scene(moving_.scene(), camera(), resolved_);
+    if (!moving_.moves()) spdlog::warn("{}: nothing moves: all frames are equal", options.request.scene);
     Fingerprint print;
     print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
     still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
@@ -107,17 +106,18 @@ class Sequence {
       if (!ranks_.takes(static_cast<std::size_t>(i))) continue;
       if (interrupted()) {
         write_times();
-        throw Interrupted(fmt::format("{} of {} frames are in {}; the same command goes on", rendered + there,
+        throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes", rendered + there,
                                       mine, options_.output));
       }
       (render(i) ? rendered : there) += 1;
       progress.advance();
     }
     ranks_.sum(counts);
-    if (there > 0) spdlog::info("{} of {} frames were there already", there, options_.frames);
+    if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
     if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
-    for (const std::string& told : ranks_.gather(nlohmann::json(times_).dump()))
-      for (auto& [number, frame] : nlohmann::json::parse(told).get<SequenceTimes>()) times_[number] = frame;
+    for (const std::string& gathered : ranks_.gather(nlohmann::json(times_).dump()))
+      for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>())
+        times_[number] = frame;
     write_times();
     if (renderer_) renderer_->session.store_programs();
     renderer_.reset();
@@ -127,21 +127,21 @@ class Sequence {
   void measure_stability() {
     Renderer renderer(device_, moving_.scene(), resolved_);
     Stability stability(renderer.session, renderer.frame, options_.traced);
-    for_all_frames("stability", "their stability is not told", [&](int i) {
-      moving_.pose(options_.instant(i));
+    for_all_frames("stability", "stability.json is not written", [&](int i) {
+      moving_.pose(options_.time_of(i));
       renderer.frame.scene_moved();
       renderer.frame.render(camera());
-      stability.add(i, options_.instant(i), moving_.scene(), camera());
+      stability.add(i, options_.time_of(i), moving_.scene(), camera());
     });
-    nlohmann::json all = about();
+    nlohmann::json all = header_json();
     all["traced_spp"] = options_.traced;
     write_file(fs::path(options_.output) / "stability.json",
                stability_json(all, stability.steps()).dump(1) + "\n");
   }
 
   /// Writes the video from the files of all frames, on one rank.
-  void film(Video& video) {
-    for_all_frames("film", "the film is not made", [&](int i) {
+  void write_video(Video& video) {
+    for_all_frames("video", "the video is not written", [&](int i) {
       const Image image = read_image(options_.file(i));
       video.add(image.encoding == Encoding::srgb ? image : displayed(image));
     });
@@ -192,7 +192,7 @@ class Sequence {
 
   /// Returns true if the frame was missing.
   bool render(int number) {
-    const double seconds = options_.instant(number);
+    const double seconds = options_.time_of(number);
     Clock::time_point started = Clock::now();
     moving_.pose(seconds);
     double pose_ms = milliseconds_since(started);
@@ -232,7 +232,7 @@ class Sequence {
     write_png(options_.file(number), displayed(image));
   }
 
-  nlohmann::json about() const {
+  nlohmann::json header_json() const {
     nlohmann::json options = described(options_.from);
     options.erase("time");
     return {{"device", to_json(device_)},
@@ -243,7 +243,7 @@ class Sequence {
 
   void write_times() {
     if (!ranks_.is_root()) return;
-    write_file(times_file(), times_json(about(), times_).dump(1) + "\n");
+    write_file(times_file(), times_json(header_json(), times_).dump(1) + "\n");
     times_written_ = Clock::now();
   }
 
@@ -260,18 +260,17 @@ class Sequence {
 
 /// Checks the options before the scene is read.
 void check_outputs(const Options& options) {
-  if (const double last = options.instant(options.frames - 1); last > bounds::kSeconds) {
+  if (const double last = options.time_of(options.frames - 1); last > bounds::kSeconds) {
     throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
                 last, bounds::kSeconds);
   }
   if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
   if (options.traced > 0 && !options.stability)
-    throw Error(ExitCode::usage, "--traced {}: found no --stability, whose noise it tells of; allowed: both",
-                options.traced);
+    throw Error(ExitCode::usage, "--traced {}: needs --stability", options.traced);
   std::error_code failed;
   const fs::path folder = options.output;
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
-    throw Error(ExitCode::run_time, "--output {}: what is there is not a folder", options.output);
+    throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.output);
   create_folder("--output", folder);
   check_writable(options.file(0));
   check_writable(folder / "times.json");
@@ -287,7 +286,7 @@ void run(const Options& options, Shared& shared) {
   sequence.render();
   if (!ranks.is_root()) return;
   if (options.stability) sequence.measure_stability();
-  if (video) sequence.film(*video);
+  if (video) sequence.write_video(*video);
 }
 
 }  // namespace sequence_command
@@ -300,16 +299,18 @@ void add_sequence(CLI::App& app, Shared& shared) {
       "output folder for frame-0000.exr, ... and times.json; created if missing")
       ->required();
   add(*command, "--frames", "N", options->frames, "number of frames")
-      ->check(CLI::Range(1, kMostFrames))
+      ->check(CLI::Range(1, kMaxFrames))
       ->required();
-  add_number(*command, "--fps", options->frames_per_second, "frames a second of the scene's time",
-             {std::numeric_limits<double>::min(), kMostFramesPerSecond,
-              fmt::format("more than 0, up to {}", kMostFramesPerSecond)})
+  add_number(*command, "--fps", options->frames_per_second,
+             "frame rate [frames per second of the scene's time]",
+             {std::numeric_limits<double>::min(), kMaxFramesPerSecond,
+              fmt::format("more than 0, up to {}", kMaxFramesPerSecond)})
       ->required()
       ->type_name("RATE");
   add_seconds(*command, "--from", options->from, "time of the first frame [s]");
-  add_choice(*command, "--view", options->view, "what frames show");
-  add_choice(*command, "--format", options->format, "of frames: linear, or tone-mapped sRGB");
+  add_choice(*command, "--view", options->view, "view of the frames");
+  add_choice(*command, "--format", options->format,
+             "file format of the frames: linear EXR, or tone-mapped sRGB PNG");
   add(*command, "--video", "FILE.mp4", options->video, "output video of all frames; needs ffmpeg");
   command->add_flag("--stability", options->stability,
                     "write stability.json: change of light between frames on static surfaces");

@@ -68,7 +68,7 @@ SequenceTimes read_times(const std::filesystem::path& file, int frames) {
     }
     return times;
   } catch (const json::exception& error) {
-    spdlog::warn("{}: the times of frames that were there are left out: {}", file.string(), error.what());
+    spdlog::warn("{}: times of existing frames are left out: {}", file.string(), error.what());
     return {};
   }
 }

@@ -43,7 +43,7 @@ std::vector<std::string> words_of(const std::string& text) {
 Video::Video(fs::path file, double frames_per_second)
     : file_(std::move(file)), frames_per_second_(frames_per_second) {
   if (Process(kFfmpeg, {"-version"}).end().code < 0)
-    throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in the path (Debian: ffmpeg)");
+    throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
   check_writable(file_);
   part_ = file_.parent_path() / fmt::format(".{}.{}.part", file_.filename().string(), ::getpid());
 }

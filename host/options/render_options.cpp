@@ -22,7 +22,7 @@ constexpr int kMaxStride = 16;
 constexpr int kMaxEntries = 65536;  // minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
 
 struct Range {
-  double least, most;
+  double minimum, maximum;
   bool open = false;  ///< excludes both ends
 };
 
@@ -52,8 +52,8 @@ template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
   visit("preset", o.preset, preset_help(), Named{});
   visit("basis", o.basis, "basis of spherical functions (clpv basis describes each)", OneOf{basis_names()});
-  visit("centres", o.centres, "SRBF set of your own, replaces --basis", Path{"directions as JSON"});
-  visit("lambda", o.lambda, "bandwidth of the SRBF kernels", Range{0, 1, true});
+  visit("centres", o.centres, "custom SRBF set, replaces --basis", Path{"centres as JSON"});
+  visit("lambda", o.lambda, "parameter of the SRBF kernels, narrower with larger values", Range{0, 1, true});
   visit("lobe", o.lobe, "cosine lobes: each projected exactly, or the lobe along +z rotated through a table",
         Named{});
   visit("lobe-time", o.lobe_time,
@@ -66,7 +66,7 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
   visit("coarser-directions", o.coarser_directions, "number of sweep directions in all other cascades",
         Named{});
-  visit("bounces", o.bounces, "indirect bounces; more than 1 needs --transport sweep", Named{});
+  visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep", Named{});
   visit("state", o.state, "cell state between steps: the coefficients of the basis, or six face fluxes",
         Named{});
   visit("layout", o.layout,
@@ -93,7 +93,7 @@ void for_each_option(Options& o, Visit&& visit) {
         "paper)",
         Named{});
   visit("blocker-stride", o.blocker_stride,
-        "with --blockers seen: every Nth G-buffer pixel along x and y becomes a blocker",
+        "distance of the G-buffer's blockers along x and y [pixels], with --blockers seen",
         Range{1, kMaxStride});
   visit("gather", o.gather,
         "cells that light a surface, of the eight nearest: all, or only those that no triangle hides",
@@ -128,8 +128,8 @@ std::string allowed_text(const std::string&, const Path& path) {
   return fmt::format("a file of {}", path.content);
 }
 std::string allowed_text(double, const Range& range) {
-  return range.open ? fmt::format("greater than {} and less than {}", range.least, range.most)
-                    : fmt::format("{}..{}", range.least, range.most);
+  return range.open ? fmt::format("greater than {} and less than {}", range.minimum, range.maximum)
+                    : fmt::format("{}..{}", range.minimum, range.maximum);
 }
 
 template <NamedEnum E>
@@ -162,8 +162,8 @@ bool parse(std::string_view text, const Path&, std::string& out) {
 template <typename Number>
 bool parse(std::string_view text, const Range& range, Number& out) {
   const auto value = parse_number<Number>(text);
-  const bool inside = value && (range.open ? *value > range.least && *value < range.most
-                                           : *value >= range.least && *value <= range.most);
+  const bool inside = value && (range.open ? *value > range.minimum && *value < range.maximum
+                                           : *value >= range.minimum && *value <= range.maximum);
   if (inside) out = *value;
   return inside;
 }

@@ -7,7 +7,7 @@
 namespace clpv {
 namespace {
 
-constexpr unsigned kMostTriangles = 1u << 20;  // per launch
+constexpr unsigned kMaxBlockers = 1u << 20;  // per launch
 
 VoxelMaskShape shape_of(int grid, int cascades) {
   return {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)};
@@ -32,7 +32,7 @@ BlockerVoxelizer::BlockerVoxelizer(Session& session, const SceneBuffers& scene, 
                                    const VolumeFormat& format)
     : scene_(scene),
       grid_(grid),
-      masks_(session, scene, shape_of(grid, cascades), kMostTriangles, "masks of triangles that block"),
+      masks_(session, scene, shape_of(grid, cascades), kMaxBlockers, "masks of triangles that block"),
       triangles_(session, triangles_program(scene, grid), "voxelize_blockers"),
       shares_(session, shares_program(grid, format), "blocked_areas") {}
 

@@ -73,7 +73,7 @@ void Frame::scene_moved() {
 }
 
 void Frame::invalidate() {
-  forget_light();
+  invalidate_light();
   buffers_.clusters->invalidate();
 }
 

@@ -39,9 +39,9 @@ class Frame {
   /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
   void render(const Camera& camera, const CascadeObserver& observer = {});
 
-  /// For benchmarks. After forget_light() the next frame recomputes all lighting, including shadow maps. After
+  /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps. After
   /// invalidate() it recomputes everything, including blockers and visibility.
-  void forget_light() { lights_.invalidate(); }
+  void invalidate_light() { lights_.invalidate(); }
   void invalidate();
 
   /// Light of the last render; empty before the first one.

@@ -22,7 +22,7 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
           volumes(options.cascades, light_shape(options, swept ? *swept : basis), "accumulated light")),
       geometry_(volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
       links_(options.cascades),
-      seen_(options.cascades),
+      visible_cells_(options.cascades),
       reflected_(options.cascades),
       keys_(options.cascades) {
   if (swept) {
@@ -35,7 +35,8 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
     blocker_.emplace(session, buffers, options.grid, options.cascades, options.format());
   if (options.bounces != Bounces::one)
     reflector_.emplace(session, buffers, options.grid, options.cascades, options.format());
-  if (options.gather == Gathering::visible) sight_.emplace(session, buffers, options.grid, options.cascades);
+  if (options.gather == Gathering::visible)
+    visibility_.emplace(session, buffers, options.grid, options.cascades);
 }
 
 std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,
@@ -95,7 +96,7 @@ void FrameCascades::inject(int cascade) {
   });
 }
 
-void FrameCascades::block(int cascade) {
+void FrameCascades::update_blockers(int cascade) {
   if (geometry_.empty()) return;
   CachedVolume& geometry = of_cascade(geometry_, cascade);
   geometry.cached.update(keys_[cascade].geometry, [&] {
@@ -113,26 +114,26 @@ void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
   injector_.inject_geometry(*camera_, grids_[cascade], geometry, options_.blocker_stride);
 }
 
-void FrameCascades::let_through(int cascade) {
+void FrameCascades::update_links(int cascade) {
   if (const Volume* blockers = geometry(cascade))
     links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->set_blockers(cascade, *blockers); });
 }
 
-void FrameCascades::reflect(int cascade) {
+void FrameCascades::update_reflectors(int cascade) {
   if (!reflector_) return;
   reflected_[cascade].update(keys_[cascade].reflected, [&] {
     const StageScope scope(session_, {Pass::reflectors, cascade});
-    let_through(cascade);
+    update_links(cascade);
     reflector_->voxelize(cascade, grids_[cascade]);
     sweeper_->set_reflectors(cascade, reflector_->reflectors(cascade));
   });
 }
 
-void FrameCascades::see(int cascade) {
-  if (!sight_) return;
-  seen_[cascade].update(keys_[cascade].triangles, [&] {
+void FrameCascades::update_visibility(int cascade) {
+  if (!visibility_) return;
+  visible_cells_[cascade].update(keys_[cascade].triangles, [&] {
     const StageScope scope(session_, {Pass::visibility, cascade});
-    sight_->update(cascade, grids_[cascade]);
+    visibility_->update(cascade, grids_[cascade]);
   });
 }
 
@@ -140,29 +141,29 @@ void FrameCascades::propagate(int cascade) {
   Volume& accumulated = *accumulated_[cascade].volume;
   accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
     inject(cascade);
-    block(cascade);
-    reflect(cascade);
+    update_blockers(cascade);
+    update_reflectors(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
       return propagator_->propagate({injected, geometry(cascade), accumulated}, options_.iterations);
-    let_through(cascade);
+    update_links(cascade);
     sweeper_->sweep(cascade, grids_, injected, accumulated);
   });
 }
 
 void FrameCascades::update(int cascade, const CascadeObserver& observer) {
   propagate(cascade);
-  see(cascade);
+  update_visibility(cascade);
   if (!observer) return;
   inject(cascade);  // a shared volume may hold another cascade
-  block(cascade);
+  update_blockers(cascade);
   observer({cascade, grids_[cascade], *of_cascade(injected_, cascade).volume, geometry(cascade),
             *accumulated_[cascade].volume, lights_.scale()});
 }
 
 GatheredLight FrameCascades::light() const {
-  GatheredLight light{grids_, {}, sight_ ? &sight_->occluded() : nullptr, lights_.scale()};
+  GatheredLight light{grids_, {}, visibility_ ? &visibility_->occluded() : nullptr, lights_.scale()};
   for (const CachedVolume& accumulated : accumulated_) light.accumulated.push_back(accumulated.volume.get());
   return light;
 }

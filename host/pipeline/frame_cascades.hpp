@@ -77,11 +77,11 @@ class FrameCascades {
 
   /// Each function updates one result of a cascade, and first the inputs it depends on.
   void inject(int cascade);
-  void block(int cascade);
-  void let_through(int cascade);
-  void reflect(int cascade);
+  void update_blockers(int cascade);
+  void update_links(int cascade);
+  void update_reflectors(int cascade);
   void propagate(int cascade);
-  void see(int cascade);
+  void update_visibility(int cascade);
   void inject_geometry(int cascade, Volume& geometry);
   const Volume* geometry(int cascade);
 
@@ -95,11 +95,11 @@ class FrameCascades {
   std::optional<ReflectorVoxelizer> reflector_;  ///< none with one bounce
   std::optional<Propagator> propagator_;         ///< one of the two
   std::optional<Sweeper> sweeper_;
-  std::optional<CellVisibility> sight_;  ///< none: all cells light a surface
+  std::optional<CellVisibility> visibility_;  ///< none: all cells light a surface
   std::vector<CachedVolume> injected_, accumulated_;
   std::vector<CachedVolume> geometry_;  ///< none without occlusion
-  std::vector<Cached> links_, seen_,
-      reflected_;  ///< of the sweeper, the sight, the reflector and the sweeper
+  /// Contents of the sweeper (links and face albedos) and of `visibility_`, per cascade.
+  std::vector<Cached> links_, visible_cells_, reflected_;
   std::vector<ClpvGrid> grids_;
   std::vector<Keys> keys_;
   const Surface* camera_ = nullptr;

@@ -30,8 +30,8 @@ FrameEmission::FrameEmission(Session& session, const Scene& scene, const SceneBu
 
 double FrameEmission::most(double cell) {
   measured_.update(Fingerprint().add(cell).add(instant()).value(),
-                   [&] { most_ = max_emitted_flux(scene_, triangles_, cell); });
-  return most_;
+                   [&] { max_flux_ = max_emitted_flux(scene_, triangles_, cell); });
+  return max_flux_;
 }
 
 void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, float scale, unsigned epoch) {

@@ -40,7 +40,7 @@ class FrameEmission {
   Emitter emitter_;
   EmissionPlan plan_;
   Cached measured_, planned_, emitted_;
-  double most_ = 0;
+  double max_flux_ = 0;
   int coarsened_ = 0;  ///< last value logged
   float scale_ = 1;
   CacheKey key_ = 0;

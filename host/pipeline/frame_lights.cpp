@@ -12,11 +12,11 @@
 namespace clpv {
 namespace {
 
-constexpr double kFull = 256;         // [W/sr] stored in a full cell
-constexpr double kMostDoubling = 60;  // for a light so weak that float32 would overflow
+constexpr double kFull = 256;        // [W/sr] stored in a full cell
+constexpr double kMaxDoubling = 60;  // for a light so weak that float32 would overflow
 
 /// Returns the upper bound of the flux that a light sends through a cell [W].
-double most_flux(const ClpvLight& light, double cell) {
+double max_flux(const ClpvLight& light, double cell) {
   const double brightest = *std::max_element(light.intensity, light.intensity + 3);
   return brightest * (rsm_follows_cascade(light) ? cell * cell : 4 * std::numbers::pi);
 }
@@ -155,10 +155,10 @@ std::vector<ShadowedLight> FrameLights::shadowed() const {
 float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
                   double other) {
   double flux = other;
-  for (const ClpvLight& light : lights) flux += most_flux(light, static_cast<double>(coarsest_cell));
+  for (const ClpvLight& light : lights) flux += max_flux(light, static_cast<double>(coarsest_cell));
   if (format.storage != Storage::float16 || !(flux > 0)) return 1;
   const double doublings = std::floor(std::log2(kFull * std::numbers::pi / flux));
-  return std::exp2(std::clamp(doublings, -kMostDoubling, kMostDoubling));
+  return std::exp2(std::clamp(doublings, -kMaxDoubling, kMaxDoubling));
 }
 
 ClpvLight scaled(ClpvLight light, float scale) {

@@ -11,13 +11,13 @@ namespace {
 
 // Short segments give many work-items even if one wall fills the view. There are still few enough for one work-item to
 // join the segments of a cell.
-constexpr std::size_t kLeastSegment = 32, kMostBlocks = 16384;
+constexpr std::size_t kMinSegment = 32, kMaxBlocks = 16384;
 constexpr std::size_t kCpuStrip = 32;  // texels that a work-item assigns to cells; a CPU vectorises over them
 const cl::NDRange kSegments(16);  // few, long work-items: small groups spread them over all compute units
 
 std::size_t segment_length(std::size_t texels) {
-  std::size_t length = kLeastSegment;
-  while (length * kMostBlocks < texels) length *= 2;
+  std::size_t length = kMinSegment;
+  while (length * kMaxBlocks < texels) length *= 2;
   return length;
 }
 

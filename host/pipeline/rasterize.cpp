@@ -40,10 +40,10 @@ float largest_flux(const ClpvLight& light, const ClpvView& view) {
 
 }  // namespace
 
-Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed)
+Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed)
     : session_(session),
       scene_(scene),
-      most_listed_(most_listed),
+      max_listed_(max_listed),
       sum_slices_(session, kBin, "sum_slices"),
       scan_slices_(session, kBin, "scan_slices"),
       bin_entries_(session, kBin, "bin_entries"),
@@ -108,15 +108,15 @@ void Rasterizer::find_visible(const Pass& pass) {
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   session_.reserve(slice_counts_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
-  draw(pass, 0, list_runs(pass.view), true);
+  draw(pass, 0, list_clusters(pass.view), true);
 }
 
 /// Lists the triangle clusters that may be visible and returns their number.
-unsigned Rasterizer::list_runs(const ClpvView& view) {
-  const std::vector<cl_uint> in_sight =
-      scene_.clusters->which([&](const Bounds& run) { return may_be_in_sight(view, run); });
-  session_.write(clusters_, in_sight);
-  return in_sight.size();
+unsigned Rasterizer::list_clusters(const ClpvView& view) {
+  const std::vector<cl_uint> visible =
+      scene_.clusters->which([&](const Bounds& cluster) { return may_be_visible(view, cluster); });
+  session_.write(clusters_, visible);
+  return visible.size();
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
@@ -155,7 +155,7 @@ bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
     bin(pass.view);
     const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
     const std::size_t listed = counts[CLPV_LISTED], entered = counts[CLPV_ENTERED];
-    if (count > 1 && (counts[CLPV_ENTERED_TOO_MANY] > 0 || entered > most_listed_)) return false;
+    if (count > 1 && (counts[CLPV_ENTERED_TOO_MANY] > 0 || entered > max_listed_)) return false;
     if (listed <= list_room() && entered <= entry_room()) return true;
     reserve_list(listed);
     reserve_entries(entered);

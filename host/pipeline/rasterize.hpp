@@ -20,10 +20,10 @@ class Rasterizer {
  public:
   /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of screen-filling
   /// layers) are drawn in several passes of at least one triangle cluster each; the result is the same.
-  static constexpr std::size_t kMostListed = std::size_t{1} << 25;
+  static constexpr std::size_t kMaxListed = std::size_t{1} << 25;
 
   /// `scene` must not change while the rasteriser exists. Its handles are copied, not its contents.
-  Rasterizer(Session& session, const SceneBuffers& scene, std::size_t most_listed = kMostListed);
+  Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed = kMaxListed);
 
   /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface has it, emission.
   /// Culls back faces unless their material is double-sided. Filters textures trilinearly.
@@ -61,7 +61,7 @@ class Rasterizer {
   cl_uint entry_room() const;  ///< capacity in entries
   void clear(Surface& surface);
   void find_visible(const Pass& pass);
-  unsigned list_runs(const ClpvView& view);
+  unsigned list_clusters(const ClpvView& view);
   void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
   bool list(const Pass& pass, unsigned first, unsigned count);
   void set_up(const Pass& pass, unsigned first, unsigned count);
@@ -70,7 +70,7 @@ class Rasterizer {
 
   Session& session_;
   SceneBuffers scene_;
-  std::size_t most_listed_;
+  std::size_t max_listed_;
   std::map<bool, SetUp> set_up_;  ///< by whether the projection is orthographic
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;

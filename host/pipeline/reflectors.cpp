@@ -10,7 +10,7 @@ namespace {
 
 static_assert(kCellFaces == CLPV_CELL_FACES);
 
-constexpr unsigned kMostReflectors = 1u << 18;  // per launch
+constexpr unsigned kMaxReflectors = 1u << 18;  // per launch
 
 VoxelMaskShape shape_of(int grid) {
   return {grid, grid, CLPV_CELL_FACES * CLPV_FACE_WORDS, 1};
@@ -38,7 +38,7 @@ ReflectorVoxelizer::ReflectorVoxelizer(Session& session, const SceneBuffers& sce
                                        const VolumeFormat& format)
     : scene_(scene),
       grid_(grid),
-      sides_(session, scene, shape_of(grid), kMostReflectors, "sides of triangles that reflect"),
+      sides_(session, scene, shape_of(grid), kMaxReflectors, "sides of triangles that reflect"),
       triangles_(session, reflect_program(scene, grid), "voxelize_reflectors"),
       shares_(session, reflect_shares_program(grid, format), "face_albedo") {
   for (int c = 0; c < cascades; ++c) {

@@ -10,7 +10,7 @@ namespace clpv {
 namespace {
 
 constexpr std::size_t kShadeGroup = 64;  // pixels per work-group
-constexpr unsigned kLeastShadowTexels = CLPV_SHADOW_TAPS;
+constexpr unsigned kMinShadowTexels = CLPV_SHADOW_TAPS;
 
 const ProgramSource kShadeSource{"shade.cl", {}, {}};
 
@@ -24,9 +24,9 @@ void require_fit(const ShadowedLight& shadowed) {
                 shadowed.views.size());
   }
   for (const ClpvView& view : shadowed.views) {
-    if (view.width < kLeastShadowTexels || view.height < kLeastShadowTexels) {
+    if (view.width < kMinShadowTexels || view.height < kMinShadowTexels) {
       throw Error(ExitCode::run_time, "shade: shadow map of {} x {} texels; at least {} x {} allowed",
-                  view.width, view.height, kLeastShadowTexels, kLeastShadowTexels);
+                  view.width, view.height, kMinShadowTexels, kMinShadowTexels);
     }
   }
 }

@@ -13,11 +13,11 @@ namespace {
 
 static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
-constexpr std::size_t kMostTexels = std::size_t{1}
-                                    << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
+constexpr std::size_t kMaxTexels = std::size_t{1}
+                                   << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
 // Enough chunks to occupy a GPU, with a small table of counts. Each is long enough to amortise its column. A
 // work-item processes a chunk in one loop.
-constexpr std::size_t kMostChunks = 512, kLeastChunk = 256,
+constexpr std::size_t kMaxChunks = 512, kMinChunk = 256,
                       kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
 // Few, long work-items: small groups spread them over all compute units.
 const cl::NDRange kLocal(16);
@@ -41,9 +41,8 @@ CellSorter::CellSorter(Session& session)
       count_(session.buffer(sizeof(cl_uint), "sort by cell, count")) {}
 
 void CellSorter::reserve(std::size_t texels) {
-  if (texels > kMostTexels) {
-    throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels,
-                kMostTexels);
+  if (texels > kMaxTexels) {
+    throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels, kMaxTexels);
   }
   session_.reserve(keys_, texels * sizeof(cl_uint), "sort by cell, keys");
   session_.reserve(runs_, texels * sizeof(cl_uint2), "sort by cell, runs");
@@ -63,9 +62,8 @@ void CellSorter::add_up(const Buffer& count, cl_uint digits, cl_uint chunks) {
 void CellSorter::sort(std::size_t texels, std::size_t cells) {
   const cl_uint bits = std::bit_width(std::max<std::size_t>(cells, 2) - 1);
   const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits, high_digits = 1u << (bits - low_bits);
-  const cl_uint chunk =
-      std::min(kLongestChunk,
-               round_up(std::max(kLeastChunk, (texels + kMostChunks - 1) / kMostChunks), CLPV_LONGEST_RUN));
+  const cl_uint chunk = std::min(
+      kLongestChunk, round_up(std::max(kMinChunk, (texels + kMaxChunks - 1) / kMaxChunks), CLPV_LONGEST_RUN));
   const cl_uint count = texels;
   const cl_uint chunks = (count + chunk - 1) / chunk;
   reserve_counts(low_digits, chunks);

@@ -159,7 +159,7 @@ std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds
   return views;
 }
 
-bool may_be_in_sight(const ClpvView& view, const Bounds& bounds) {
+bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
   const glm::dvec3 lower(bounds.lower), upper(bounds.upper), half = 0.5 * (upper - lower);
   const glm::dvec3 centre = 0.5 * (lower + upper) - vector(view.eye);
   const double margin = kRounding * (glm::length(centre) + glm::length(half));

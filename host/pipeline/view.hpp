@@ -22,7 +22,7 @@ inline constexpr double kWidestSpotView = 1.0472;  // 60 degrees
 ClpvView camera_view(const Camera& camera, int width, int height);
 
 /// Returns false only if `bounds` lies outside one of the view's borders, by a margin for rounding.
-bool may_be_in_sight(const ClpvView& view, const Bounds& bounds);
+bool may_be_visible(const ClpvView& view, const Bounds& bounds);
 
 /// Returns a directional light's orthographic view of a cascade, with `size` texels along each side. It covers the
 /// cascade's cube plus half a cell, since virtual point lights move by as much, for any direction of the light.

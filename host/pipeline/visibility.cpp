@@ -4,8 +4,8 @@
 namespace clpv {
 namespace {
 
-constexpr unsigned kMostHiders = 1u << 20;  // per launch
-constexpr std::size_t kPoints = 64;         // points per cube between cell centres, one byte each
+constexpr unsigned kMaxOccluders = 1u << 20;  // per launch
+constexpr std::size_t kPoints = 64;           // points per cube between cell centres, one byte each
 
 ProgramSource program_of(int grid) {
   ProgramSource source{"visibility.cl", {}, {}};
@@ -25,7 +25,8 @@ std::size_t CellVisibility::bytes(int grid) {
 }
 
 CellVisibility::CellVisibility(Session& session, const SceneBuffers& scene, int grid, int cascades)
-    : occluded_(session, scene, occlusion_shape(grid, cascades), kMostHiders, "cells occluded by triangles"),
+    : occluded_(session, scene, occlusion_shape(grid, cascades), kMaxOccluders,
+                "cells occluded by triangles"),
       triangles_(session, program_of(grid), "occlude_cells") {}
 
 void CellVisibility::update(std::size_t cascade, const ClpvGrid& grid) {

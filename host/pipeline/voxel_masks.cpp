@@ -74,11 +74,11 @@ std::size_t VoxelMaskShape::words_a_cascade() const {
 }
 
 VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape,
-                       unsigned most, const std::string& what)
+                       unsigned max_triangles, const std::string& what)
     : session_(session),
       scene_(scene),
       shape_(shape),
-      most_(most),
+      max_triangles_(max_triangles),
       states_(shape.cascades),
       masks_(session.buffer(shape.bytes(), what)),
       clusters_(session.buffer(std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
@@ -98,11 +98,11 @@ cl_uint VoxelMasks::slot(std::size_t cascade) const {
 std::optional<ClpvRegion> VoxelMasks::prepare(std::size_t cascade, const ClpvGrid& grid) {
   std::optional<State>& state = states_[slot(cascade)];
   const ClpvRegion place = place_of(grid);
-  const ClpvRegion region = state ? stale(*state, place) : whole(place);
+  const ClpvRegion region = state ? stale_cells(*state, place) : whole(place);
   state.reset();  // in case the code below throws
   if (region.boxes > 0) {
     clear(cascade, region);
-    list_runs(region);
+    list_clusters(region);
   }
   state = State{place, scene_.clusters->instant()};
   return region.boxes > 0 ? std::optional(region) : std::nullopt;
@@ -116,7 +116,7 @@ ClpvRegion VoxelMasks::whole(ClpvRegion place) const {
 
 /// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if a grid moved
 /// and only one cascade is stored, or if more than one time step passed.
-ClpvRegion VoxelMasks::stale(const State& state, ClpvRegion place) const {
+ClpvRegion VoxelMasks::stale_cells(const State& state, ClpvRegion place) const {
   if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
   for (int a = 0; a < 3; ++a) {
     place.moved[a] = place.first[a] - state.place.first[a];
@@ -192,11 +192,12 @@ bool VoxelMasks::is_whole(const ClpvRegion& region) const {
 }
 
 /// Lists the clusters of triangles in or near the region.
-void VoxelMasks::list_runs(const ClpvRegion& region) {
+void VoxelMasks::list_clusters(const ClpvRegion& region) {
   std::vector<Bounds> reaches;
   for (unsigned b = 0; b < region.boxes; ++b) reaches.push_back(reach_of(region, region.box[b]));
-  const std::vector<cl_uint> near = scene_.clusters->which([&](const Bounds& run) {
-    return std::any_of(reaches.begin(), reaches.end(), [&](const Bounds& reach) { return meet(run, reach); });
+  const std::vector<cl_uint> near = scene_.clusters->which([&](const Bounds& cluster) {
+    return std::any_of(reaches.begin(), reaches.end(),
+                       [&](const Bounds& reach) { return meet(cluster, reach); });
   });
   near_ = near.size();
   session_.write(clusters_, near);

@@ -33,9 +33,9 @@ struct VoxelMaskShape {
 
 class VoxelMasks {
  public:
-  /// `scene` must not change except by upload_moving(). `most`: maximum number of triangles per launch, since larger
+  /// `scene` must not change except by upload_moving(). `max_triangles`: maximum number of triangles per launch, since larger
   /// launches take seconds on some devices. Throws Error(run_time) if device memory does not suffice.
-  VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape, unsigned most,
+  VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape, unsigned max_triangles,
              const std::string& what);
 
   /// Updates a cascade's masks for the position of `grid` and the current scene. `voxelize`: kernel that sets masks of
@@ -45,7 +45,7 @@ class VoxelMasks {
   void update(std::size_t cascade, const ClpvGrid& grid, Kernel& voxelize, const Rest&... rest) {
     const std::optional<ClpvRegion> region = prepare(cascade, grid);
     if (!region) return;
-    const unsigned step = std::max(most_ / CLPV_CLUSTER, 1u);
+    const unsigned step = std::max(max_triangles_ / CLPV_CLUSTER, 1u);
     for (unsigned first = 0; first < near_; first += step) {
       const cl_uint count = std::min(near_ - first, step);
       voxelize.set(*region, clusters_, cl_uint{first}, count, scene_.triangle_count, scene_.vertices,
@@ -65,19 +65,19 @@ class VoxelMasks {
     unsigned instant;
   };
   std::optional<ClpvRegion> prepare(std::size_t cascade, const ClpvGrid& grid);
-  ClpvRegion stale(const State& state, ClpvRegion place) const;
+  ClpvRegion stale_cells(const State& state, ClpvRegion place) const;
   void add_new_cells(ClpvRegion& region) const;
   void add_moved(ClpvRegion& region) const;
   void add_box(ClpvRegion& region, const ClpvBox& box) const;
   ClpvRegion whole(ClpvRegion place) const;
   bool is_whole(const ClpvRegion& region) const;
   void clear(std::size_t cascade, const ClpvRegion& region);
-  void list_runs(const ClpvRegion& region);
+  void list_clusters(const ClpvRegion& region);
 
   Session& session_;
   SceneBuffers scene_;
   VoxelMaskShape shape_;
-  unsigned most_, near_ = 0;  ///< near_: number of listed clusters
+  unsigned max_triangles_, near_ = 0;  ///< near_: number of listed clusters
   std::vector<std::optional<State>> states_;
   Buffer masks_, spare_, clusters_;
   Kernel move_, clear_;

@@ -16,7 +16,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 31;
 constexpr double kShortest = 1e-6;  // minimum length of a valid normal
 
 std::string_view trimmed(std::string_view text) {
@@ -76,7 +76,7 @@ SurfacePoint point_of(std::string_view line, const std::string& file, const std:
 
 std::vector<SurfacePoint> read_points(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const Bytes bytes = read_file(path, kMostBytes, file);
+  const Bytes bytes = read_file(path, kMaxBytes, file);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::vector<SurfacePoint> points;
   bool first = true;
@@ -86,8 +86,8 @@ std::vector<SurfacePoint> read_points(const std::filesystem::path& path) {
     const bool header = std::exchange(first, false) && is_header(line);
     if (header) continue;
     const std::string place = fmt::format("line {}", number);
-    if (points.size() == kMostPoints)
-      reject(file, place, "one more point", fmt::format("at most {}", kMostPoints));
+    if (points.size() == kMaxPoints)
+      reject(file, place, "one more point", fmt::format("at most {}", kMaxPoints));
     points.push_back(point_of(line, file, place));
   }
   return points;

@@ -31,7 +31,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-void fill_errors(QualityCell& cell, const Image& image, const reference::Reference& truth, Show show) {
+void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show) {
   const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
   const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
   cell.nrmse = c.nrmse_valid;
@@ -63,7 +63,7 @@ VariedOption parse_varied(const std::string& text) {
     RenderOptions probe;
     set_option(probe, varied.name, value);  // throws for an unknown option or a bad value
     if (std::ranges::count(varied.values, value) > 0) {
-      throw Error(ExitCode::usage, "vary {}: {} comes twice", text, value);
+      throw Error(ExitCode::usage, "vary {}: duplicate value {}", text, value);
     }
     varied.values.push_back(value);
   }
@@ -75,7 +75,7 @@ std::vector<Variant> combinations(const std::vector<VariedOption>& varied) {
   for (const VariedOption& option : varied) {
     const auto same = [&](const VariedOption& other) { return other.name == option.name; };
     if (std::ranges::count_if(varied, same) > 1) {
-      throw Error(ExitCode::usage, "vary {}: the option comes twice", option.name);
+      throw Error(ExitCode::usage, "vary {}: duplicate option", option.name);
     }
     std::vector<Variant> longer;
     for (const Variant& variant : all) {
@@ -96,14 +96,14 @@ std::string describe(const Variant& variant) {
   return text;
 }
 
-QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
+QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::GroundTruth& truth,
                     Show show, int frames) {
   QualityCell cell;
   cell.compute_units = session.device().compute_units;
   std::map<std::string, std::vector<double>> samples;
   std::vector<double> totals;
   for (int i = 0; i <= frames; ++i) {
-    frame.forget_light();
+    frame.invalidate_light();
     frame.render(camera);
     const Image image = view_image(frame, show);
     if (i == 0) continue;  // the first launch compiles kernels
@@ -120,8 +120,8 @@ QualityCell measure(Session& session, Frame& frame, const Camera& camera, const 
   return cell;
 }
 
-std::string quality_key(const reference::Reference& truth, const Device& device, const RenderOptions& options,
-                        Show show, int frames) {
+std::string quality_key(const reference::GroundTruth& truth, const Device& device,
+                        const RenderOptions& options, Show show, int frames) {
   static const std::string program = program_fingerprint();
   Fingerprint print;
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
@@ -151,7 +151,7 @@ std::optional<QualityCell> QualityStore::find(const std::string& key) const {
   try {
     return cell_from_json(nlohmann::json::parse(*kept));
   } catch (const nlohmann::json::exception& error) {
-    spdlog::warn("{}: {}; measured anew", file(key).string(), error.what());
+    spdlog::warn("{}: {}; measured again", file(key).string(), error.what());
     return std::nullopt;
   }
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pipeline/frame.hpp"
-#include "quality/cached_reference.hpp"
+#include "quality/ground_truth.hpp"
 
 namespace clpv {
 
@@ -39,27 +39,27 @@ struct QualityCell {
   std::string scene, camera;
   Variant variant;
   std::string rejected;         ///< reason if this variant cannot be rendered; else empty
-  std::optional<double> nrmse;  ///< RMSE / RMS of the reference, over the valid pixels
+  std::optional<double> nrmse;  ///< RMSE / RMS of the ground truth, over the valid pixels
   std::optional<double> best_gain, nrmse_best_gain;
-  std::optional<double> energy_ratio;      ///< sum of the frame / sum of the reference
+  std::optional<double> energy_ratio;      ///< sum of the frame / sum of the ground truth
   std::optional<double> perceptual;        ///< share of the valid pixels that fail the perceptual test (Yee)
   double frame_ms = 0;                     ///< all stages
   std::map<std::string, double> stage_ms;  ///< median over the timed frames; sum over cascades and lights
   bool from_events = true;                 ///< times from device events; false: wall time
   unsigned compute_units = 0;              ///< of the device or sub-device that was timed
-  double made_s = 0;                       ///< time to create the frame; 0 if reused from another view
+  double setup_s = 0;                      ///< time to create the frame; 0 if reused from another view
   double measured_s = 0;                   ///< total time of the measurement
 };
 
 /// Renders a warm-up frame and `frames` timed ones, and compares the view `show` of the last with the ground truth.
 /// Sets all fields except names and variant. Throws the errors of Frame and compare.
-QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::Reference& truth,
+QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::GroundTruth& truth,
                     Show show, int frames);
 
 /// Cache key over all inputs of a cell: ground truth, device (but not the number of its sub-devices), options, view,
 /// number of timed frames, kernels and program.
-std::string quality_key(const reference::Reference& truth, const Device& device, const RenderOptions& options,
-                        Show show, int frames);
+std::string quality_key(const reference::GroundTruth& truth, const Device& device,
+                        const RenderOptions& options, Show show, int frames);
 
 /// Cells cached on disk, so that an interrupted run can resume.
 class QualityStore {

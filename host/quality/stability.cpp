@@ -12,7 +12,7 @@ namespace clpv {
 namespace {
 
 // Maximum angle between normals of adjacent pixels on one surface, smooth ones included: 8 degrees.
-constexpr double kLeastCosine = 0.99;
+constexpr double kMinCosine = 0.99;
 // Maximum distance of a point from the nearest pixel's plane, in pixel edges; curved surfaces deviate by less.
 constexpr double kOffPlane = 0.1;
 // Maximum distance along the surface: half a pixel's diagonal across the view, more on slanted surfaces.
@@ -34,8 +34,8 @@ bool same_surface(const SurfaceImage& later, const glm::dvec3& point, const glm:
   const double edge = reference::pixel_edge(later.view, at.depth);
   const glm::dvec3 ray = glm::normalize(there - vector(later.view.eye));
   const double slope = std::max(std::abs(glm::dot(ray, there_normal)), 0.05);
-  return glm::dot(normal, there_normal) > kLeastCosine &&
-         std::abs(glm::dot(off, normal)) < kOffPlane * edge && glm::length(off) * slope < kApart * edge;
+  return glm::dot(normal, there_normal) > kMinCosine && std::abs(glm::dot(off, normal)) < kOffPlane * edge &&
+         glm::length(off) * slope < kApart * edge;
 }
 
 }  // namespace

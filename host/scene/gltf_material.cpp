@@ -114,7 +114,7 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
       mapping = own;
     } else if (!(own == mapping)) {
       notes.add(place +
-                "/emissiveTexture: uses the texture coordinates of baseColorTexture in place of its own");
+                "/emissiveTexture: uses the texture coordinates of baseColorTexture instead of its own");
     }
   }
   set.materials.push_back(made);

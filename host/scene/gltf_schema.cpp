@@ -195,8 +195,8 @@ void check_asset(const json& document, const std::string& file) {
   const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
   if (!version.starts_with("2.")) reject(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
   // A model of version 2.x can be read by readers of 2.0, unless minVersion is higher.
-  const std::string least = document["asset"].value("minVersion", "2.0");
-  if (least != "2.0") reject(file, "/asset/minVersion", "'" + least.substr(0, 60) + "'", "2.0");
+  const std::string minimum = document["asset"].value("minVersion", "2.0");
+  if (minimum != "2.0") reject(file, "/asset/minVersion", "'" + minimum.substr(0, 60) + "'", "2.0");
   if (!document.contains("extensionsRequired")) return;
   for (std::size_t i = 0; i < document["extensionsRequired"].size(); ++i) {
     const std::string& name = document["extensionsRequired"][i].get_ref<const std::string&>();

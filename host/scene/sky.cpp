@@ -105,7 +105,7 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
     const char* name = names[channel];
     const auto from = image.channel(name);
     if (!from)
-      throw Error(ExitCode::bad_input, "{}: no channel {}; a sky has R, G and B", path.string(), name);
+      throw Error(ExitCode::bad_input, "{}: found no channel {}; allowed: R, G and B", path.string(), name);
     for (std::size_t i = 0; i < sky.texels.size(); ++i) {
       const float value = image.pixels[i * image.channels.size() + *from];
       const double scaled = scale * double{value};

@@ -35,9 +35,9 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
   return bytes;
 }
 
-std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t most) {
+std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t max_bytes) {
   try {
-    const Bytes bytes = read_file(path, most, path.string());
+    const Bytes bytes = read_file(path, max_bytes, path.string());
     return std::string(bytes.begin(), bytes.end());
   } catch (const Error&) {
     return std::nullopt;

@@ -18,8 +18,8 @@ namespace rule {
 Rule object(std::string place) {
   return {std::move(place), Shape::object};
 }
-Rule list(std::string place, std::size_t least, std::size_t most) {
-  return {std::move(place), Shape::list, static_cast<double>(least), static_cast<double>(most)};
+Rule list(std::string place, std::size_t minimum, std::size_t maximum) {
+  return {std::move(place), Shape::list, static_cast<double>(minimum), static_cast<double>(maximum)};
 }
 Rule text(std::string place, std::vector<std::string> words) {
   Rule made{std::move(place), Shape::text};
@@ -29,19 +29,19 @@ Rule text(std::string place, std::vector<std::string> words) {
 Rule flag(std::string place) {
   return {std::move(place), Shape::flag};
 }
-Rule integer(std::string place, double least, double most) {
-  return {std::move(place), Shape::integer, least, most};
+Rule integer(std::string place, double minimum, double maximum) {
+  return {std::move(place), Shape::integer, minimum, maximum};
 }
 Rule choice(std::string place, std::vector<std::int64_t> choices) {
   Rule made{std::move(place), Shape::integer};
   made.choices = std::move(choices);
   return made;
 }
-Rule number(std::string place, double least, double most) {
-  return {std::move(place), Shape::number, least, most};
+Rule number(std::string place, double minimum, double maximum) {
+  return {std::move(place), Shape::number, minimum, maximum};
 }
-Rule vector(std::string place, std::size_t size, double least, double most) {
-  return {std::move(place), Shape::vector, least, most, size};
+Rule vector(std::string place, std::size_t size, double minimum, double maximum) {
+  return {std::move(place), Shape::vector, minimum, maximum, size};
 }
 Rule index(std::string place, std::string into) {
   Rule made{std::move(place), Shape::index};
@@ -62,19 +62,19 @@ std::string allowed_values(const Rule& rule, std::size_t into_size) {
     case Shape::object:
       return "an object";
     case Shape::list:
-      return fmt::format("an array of {} to {}", rule.least, rule.most);
+      return fmt::format("an array of {} to {}", rule.minimum, rule.maximum);
     case Shape::text:
       return rule.words.empty() ? std::string("a string")
                                 : fmt::format("one of {}", fmt::join(rule.words, ", "));
     case Shape::flag:
       return "true or false";
     case Shape::integer:
-      return rule.choices.empty() ? fmt::format("an integer from {} to {}", rule.least, rule.most)
+      return rule.choices.empty() ? fmt::format("an integer from {} to {}", rule.minimum, rule.maximum)
                                   : fmt::format("one of {}", fmt::join(rule.choices, ", "));
     case Shape::number:
-      return fmt::format("a number from {} to {}", rule.least, rule.most);
+      return fmt::format("a number from {} to {}", rule.minimum, rule.maximum);
     case Shape::vector:
-      return fmt::format("an array of {} numbers from {} to {}", rule.size, rule.least, rule.most);
+      return fmt::format("an array of {} numbers from {} to {}", rule.size, rule.minimum, rule.maximum);
     case Shape::index:
       return into_size == 0 ? fmt::format("none, since {} is empty", rule.into)
                             : fmt::format("an index into {}, 0 to {}", rule.into, into_size - 1);
@@ -83,10 +83,10 @@ std::string allowed_values(const Rule& rule, std::size_t into_size) {
 }
 
 bool in_range(const Rule& rule, const json& value) {
-  return value.is_number() && value.get<double>() >= rule.least && value.get<double>() <= rule.most;
+  return value.is_number() && value.get<double>() >= rule.minimum && value.get<double>() <= rule.maximum;
 }
 
-bool obeys(const Rule& rule, const json& value, std::size_t into_size) {
+bool matches(const Rule& rule, const json& value, std::size_t into_size) {
   const auto one_of = [](const auto& values, const auto& wanted) {
     return values.empty() || std::find(values.begin(), values.end(), wanted) != values.end();
   };
@@ -94,7 +94,7 @@ bool obeys(const Rule& rule, const json& value, std::size_t into_size) {
     case Shape::object:
       return value.is_object();
     case Shape::list:
-      return value.is_array() && value.size() >= rule.least && value.size() <= rule.most;
+      return value.is_array() && value.size() >= rule.minimum && value.size() <= rule.maximum;
     case Shape::text:
       return value.is_string() && one_of(rule.words, value.get_ref<const std::string&>());
     case Shape::flag:
@@ -172,7 +172,7 @@ class Checker {
   }
 
   void check(const json& value) const {
-    if (obeys(rule_, value, into_size_)) return;
+    if (matches(rule_, value, into_size_)) return;
     std::string found = quoted(value);
     if (rule_.shape == Shape::vector && value.is_array() && value.size() == rule_.size) {
       const auto wrong =

@@ -30,7 +30,7 @@ enum class Shape { object, list, text, flag, integer, number, vector, index };
 struct Rule {
   std::string place;  ///< JSON pointer; a segment "*" matches every element or member
   Shape shape;
-  double least = 0, most = 0;              ///< range of a number or vector component; of a list's length
+  double minimum = 0, maximum = 0;         ///< range of a number or vector component; of a list's length
   std::size_t size = 0;                    ///< length of a vector
   std::vector<std::int64_t> choices = {};  ///< allowed integers, if not empty
   std::vector<std::string> words = {};     ///< allowed strings, if not empty
@@ -45,13 +45,13 @@ struct Rule {
 
 namespace rule {
 Rule object(std::string place);
-Rule list(std::string place, std::size_t least, std::size_t most);
+Rule list(std::string place, std::size_t minimum, std::size_t maximum);
 Rule text(std::string place, std::vector<std::string> words = {});
 Rule flag(std::string place);
-Rule integer(std::string place, double least, double most);
+Rule integer(std::string place, double minimum, double maximum);
 Rule choice(std::string place, std::vector<std::int64_t> choices);
-Rule number(std::string place, double least, double most);
-Rule vector(std::string place, std::size_t size, double least, double most);
+Rule number(std::string place, double minimum, double maximum);
+Rule vector(std::string place, std::size_t size, double minimum, double maximum);
 Rule index(std::string place, std::string into);
 }  // namespace rule
 

@@ -19,7 +19,7 @@ constexpr unsigned kGrid = 4;
 constexpr float kScale = 0.25f;
 
 /// Emission of the triangles: a texture, the same texture masked, and a double-sided colour.
-Scene glowing_soup() {
+Scene emissive_soup() {
   Scene scene = triangle_soup();
   for (Material& material : scene.materials) {
     material.emissive[0] = 3, material.emissive[1] = 2, material.emissive[2] = 0.5f;
@@ -65,12 +65,12 @@ CheckResult check_scene(Session& session, const Scene& scene, const std::string&
 }  // namespace
 
 CheckResults check_emit(Session& session, const CheckScope&) {
-  Scene plain = glowing_soup();
+  Scene plain = emissive_soup();
   for (Material& material : plain.materials) {
     material.flags = 0;
     material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
   }
-  return {check_scene(session, glowing_soup(), "textures and holes"), check_scene(session, plain, "plain")};
+  return {check_scene(session, emissive_soup(), "textures and holes"), check_scene(session, plain, "plain")};
 }
 
 }  // namespace clpv::reference

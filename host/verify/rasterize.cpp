@@ -123,13 +123,14 @@ class SceneMaker {
 };
 
 double largest(const std::vector<glm::vec4>& field) {
-  float most = 0;
-  for (const glm::vec4& v : field) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  return most > 0 ? most : 1.0;
+  float maximum = 0;
+  for (const glm::vec4& v : field) maximum = std::max({maximum, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return maximum > 0 ? maximum : 1.0;
 }
 
 /// Returns the largest difference of a pixel's three numbers, relative to the field's largest value; 0 without a field.
-double apart(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>& expected, std::size_t at) {
+double relative_difference(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>& expected,
+                           std::size_t at) {
   if (device.empty() || expected.empty()) return 0;
   const glm::dvec3 off = glm::abs(glm::dvec3(device[at]) - glm::dvec3(expected[at]));
   return glm::any(glm::isnan(off)) ? NAN : std::max({off.x, off.y, off.z}) / largest(expected);
@@ -146,8 +147,9 @@ void append(CheckResults& results, const SurfaceImage& device, const RasterizedI
   for (std::size_t at = 0; at < expected.uncertain.size(); ++at) {
     CheckResult pixel{{}, {}, 0, values.allowed, {}};
     const double errors[] = {std::abs(double{device.depth[at]} - image.depth[at]) / deepest,
-                             apart(device.normal, image.normal, at), apart(device.colour, image.colour, at),
-                             apart(device.emissive, image.emissive, at)};
+                             relative_difference(device.normal, image.normal, at),
+                             relative_difference(device.colour, image.colour, at),
+                             relative_difference(device.emissive, image.emissive, at)};
     for (const double error : errors) {
       (expected.uncertain[at] ? pixel : values).take(error, [&] {
         return fmt::format(

@@ -89,11 +89,11 @@ CheckResults check_visibility(Session& session, const CheckScope&) {
   const Scene scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   const Occlusion expected = occlude(scene, kCells);
-  CellVisibility sight(session, buffers, kGrid, kCascade + 1);
-  sight.update(0, kCells);
-  sight.update(kCascade, kCells);
+  CellVisibility visibility(session, buffers, kGrid, kCascade + 1);
+  visibility.update(0, kCells);
+  visibility.update(kCascade, kCells);
   const std::size_t bytes = CellVisibility::bytes(kGrid);
-  const auto found = session.read<std::uint8_t>(sight.occluded(), bytes * (kCascade + 1));
+  const auto found = session.read<std::uint8_t>(visibility.occluded(), bytes * (kCascade + 1));
   CheckResult result{"visibility", "triangles", 0, tolerance("visibility"), {}};
   for (std::size_t point = 0; point < bytes; ++point) {
     const std::uint8_t bits = found[kCascade * bytes + point], lower = expected.lower[point],

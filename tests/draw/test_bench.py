@@ -21,7 +21,7 @@ class Charts(unittest.TestCase):
         self.assertEqual(axis.lines[0].get_xdata().tolist(), [16, 32, 64])
         self.assertEqual([t.get_text() for t in axis.get_xticklabels()], ["16", "32", "64"])
 
-    def test_layouts_tell_texels_and_occlusion_apart(self):
+    def test_layouts_distinguish_texels_and_occlusion(self):
         rows = [row("layouts", "gather", layout="image", storage="half", filtered=f, median=m)
                 for f, m in ((True, 2.0), (False, 1.0))]
         plain, shadowed = bench.layouts(rows + [row("layouts", "gather", occlusion=True)]).axes
@@ -64,7 +64,7 @@ class Charts(unittest.TestCase):
             for made in one.iterdir():
                 self.assertEqual(made.read_bytes(), (two / made.name).read_bytes(), made.name)
 
-    def test_a_document_of_another_shape_is_told_by_its_place(self):
+    def test_a_document_of_another_shape_is_reported_with_its_place(self):
         with self.assertRaisesRegex(documents.BadDocument, r"x.json: /benchmarks/1/median is \"4\"; allowed: a number"):
             documents.checked({"benchmarks": [row("a", "b"), row("a", "b", median="4")]}, "x.json", "benchmarks",
                               bench.ROW)

@@ -101,7 +101,7 @@ class Page(unittest.TestCase):
     def test_the_front_has_what_none_beats(self):
         self.assertEqual(report.front_of([(4, 30), (2, 60), (1, 50), (5, 30)]), [(1, 50), (4, 30)])
 
-    def test_refuses_a_document_of_another_shape(self):
+    def test_rejects_a_document_of_another_shape(self):
         self.document["quality"] = [{"file": "q.json", "document": {"variants": [{"rejected": 0, "options": {}}]}}]
         with self.assertRaisesRegex(documents.BadDocument, "q.json: /variants/0/nrmse is null; allowed: a number"):
             self.page()

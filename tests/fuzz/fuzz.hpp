@@ -25,7 +25,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// The process's folder, in memory where that can be; what is written again and again is small.
+/// The process's folder for small files, in memory where possible.
 inline const test::TemporaryFolder& folder() {
   static const bool in_memory = [] {
     if (std::filesystem::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 0);

@@ -10,7 +10,7 @@
 
 namespace {
 
-/// Small: a decoder's time goes by what a header asks for.
+/// Small, since a decoder's time depends on the header.
 constexpr clpv::ImageLimits kLimits{
     .file_bytes = 1 << 20, .side = 512, .channels = 32, .pixel_bytes = 1 << 22};
 

@@ -3,7 +3,7 @@
 //
 //   fuzz_NAME FOLDER SECONDS
 //
-// The mutants are the same in every run: a test that failed fails again. The input in hand lies in a file, which stays when it
+// The mutants are the same in every run: a test that failed fails again. The current input is a file, which remains when it
 // ends the program.
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ constexpr std::array<std::string_view, 14> kEdges = {
     {std::string_view("\0", 1), "\x7f", "\x80", "\xff", std::string_view("\0\0\0\0", 4), "\xff\xff\xff\xff",
      "\xff\xff\xff\x7f", std::string_view("\0\0\0\x80", 4), "-1", "0", "1e999", "nan", "4294967296",
      "18446744073709551615"}};
-constexpr std::size_t kMostSpan = 64;
+constexpr std::size_t kMaxSpan = 64;
 
 std::size_t below(std::size_t end, Random& random) {
   return end == 0 ? 0 : random() % end;
@@ -38,7 +38,7 @@ std::size_t below(std::size_t end, Random& random) {
 
 std::string_view span_of(std::string_view text, Random& random) {
   const std::size_t start = below(text.size() + 1, random);
-  return text.substr(start, 1 + below(kMostSpan, random));
+  return text.substr(start, 1 + below(kMaxSpan, random));
 }
 
 /// In place of as many bytes, or of those of a number in digits, or of none.

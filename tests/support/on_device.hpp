@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The device that tests run on, and what is expected of the checks there.
+// The device that tests run on, and expectations for results of `clpv check`.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program in this process: what it says and its exit code, without the seconds that starting it many times takes. For
-// environment variables, signals and streams that go nowhere: run_program.hpp.
+// Runs the program in this process and returns output and exit code, which saves its start-up time. Tests of environment
+// variables, signals and broken streams use run_program.hpp.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,15 +18,15 @@ namespace clpv::test {
 /// Words between blanks; '...' keeps blanks together.
 inline std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
-  bool quoted = false, begun = false;
+  bool quoted = false, in_word = false;
   for (const char c : text) {
     if (c == '\'') quoted = !quoted;
     if (c == ' ' && !quoted) {
-      begun = false;
+      in_word = false;
       continue;
     }
-    if (!begun) words.emplace_back();
-    begun = true;
+    if (!in_word) words.emplace_back();
+    in_word = true;
     if (c != '\'') words.back() += c;
   }
   return words;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs a command as a user would and keeps what it says.
+// Runs a command in a process and returns its output.
 #pragma once
 
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes for the tests of path tracing: floors, suns, lamps, and what looks at them.
+// Scenes for the tests of path tracing: floors, suns, lamps and cameras.
 #pragma once
 
 #include <limits>

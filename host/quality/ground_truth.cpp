@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quality/cached_reference.hpp"
+#include "quality/ground_truth.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -62,15 +62,14 @@ void describe(Image& image, const Scene& scene, const Camera& camera, const Trac
   image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
 }
 
-Reference read_reference(const std::filesystem::path& file) {
-  Reference reference;
-  reference.image = read_image(file);
-  reference.file = file;
-  for (const std::string& name : names_of<Show>())
-    extract_layer(reference.image, name, file.string());  // throws
-  reference.samples = static_cast<std::uint32_t>(std::stoul(reference.image.metadata.at("spp_traced")));
-  reference.noise = std::stod(reference.image.metadata.at("noise_reached"));
-  return reference;
+GroundTruth read_reference(const std::filesystem::path& file) {
+  GroundTruth truth;
+  truth.image = read_image(file);
+  truth.file = file;
+  for (const std::string& name : names_of<Show>()) extract_layer(truth.image, name, file.string());  // throws
+  truth.samples = static_cast<std::uint32_t>(std::stoul(truth.image.metadata.at("spp_traced")));
+  truth.noise = std::stod(truth.image.metadata.at("noise_reached"));
+  return truth;
 }
 
 }  // namespace
@@ -87,13 +86,13 @@ std::string scene_fingerprint(const Scene& scene) {
 
 namespace {
 
-/// Returns the cached reference if its file is readable.
-std::optional<Reference> kept_reference(const std::filesystem::path& file) {
+/// Returns the cached ground truth if its file is readable.
+std::optional<GroundTruth> read_cached(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
     return read_reference(file);
   } catch (const std::exception& error) {
-    spdlog::warn("{}; traced anew", error.what());
+    spdlog::warn("{}; traced again", error.what());
     return std::nullopt;
   }
 }
@@ -106,25 +105,25 @@ void check_place(const std::filesystem::path& file) {
 
 }  // namespace
 
-Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
-                           int width, int height, const PathTracerOptions& options,
-                           const TraceProgress& progress, Ranks& ranks) {
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
+                                int width, int height, const PathTracerOptions& options,
+                                const TraceProgress& progress, Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const std::filesystem::path file =
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
                            key(scene, camera, view, options));
-  std::optional<Reference> kept;
+  std::optional<GroundTruth> kept;
   const std::string found = ranks.from_root([&] {
-    kept = kept_reference(file);
+    kept = read_cached(file);
     if (!kept) check_place(file);
     return kept ? "there" : "";
   });
   if (!found.empty()) return kept ? *std::move(kept) : read_reference(file);
   const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
-  Reference reference{all_views(traced), file, true, traced.samples, traced.noise};
-  describe(reference.image, scene, camera, traced, options);
-  if (ranks.is_root()) write_exr(file, reference.image);
-  return reference;
+  GroundTruth truth{all_views(traced), file, true, traced.samples, traced.noise};
+  describe(truth.image, scene, camera, traced, options);
+  if (ranks.is_root()) write_exr(file, truth.image);
+  return truth;
 }
 
 }  // namespace clpv::reference

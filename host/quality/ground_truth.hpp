@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Path-traced references cached on disk.
+// Path-traced ground truths, cached on disk.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace clpv::reference {
 
 /// Ground truth of one camera: an image with one layer per view of a frame ("indirect", ...; traced_view).
-struct Reference {
+struct GroundTruth {
   Image image;
   std::filesystem::path file;  ///< cache file
   bool traced = false;         ///< true: traced by this call; false: read from the cache
@@ -19,14 +19,14 @@ struct Reference {
   double noise = 0;  ///< TracedImage::noise
 };
 
-/// Returns the reference of `camera` from the cache in `folder`; traces and stores it if it is missing.
+/// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is missing.
 /// The file name contains a key over scene content, camera, size, options and program version, but no file paths.
 /// An unreadable file is traced again, with a warning.
 /// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
 /// Throws like trace_paths, and Error(run_time) where the folder cannot be written (before tracing).
-Reference cached_reference(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
-                           int width, int height, const PathTracerOptions& options,
-                           const TraceProgress& progress = {}, Ranks& ranks = single_rank());
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
+                                int width, int height, const PathTracerOptions& options,
+                                const TraceProgress& progress = {}, Ranks& ranks = single_rank());
 
 /// Hash of all scene content that affects light: geometry, materials, textures.
 std::string scene_fingerprint(const Scene& scene);
