@@ -50,7 +50,8 @@ TEST(Scenes, MatchTheirDescriptions) {
   const Card cards[] = {
       {"atrium.json", 266672, 1, {30, 10, 14.15f}, {"nave", "curtains", "gallery"}},
       {"cornell.json", 48, 2, {0.716f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}},
-      {"cornell_lamp.json", 56, 0, {0.716f, 0.7088f, 0.6392f}, {"front", "published"}}};
+      {"cornell_lamp.json", 56, 0, {0.716f, 0.7088f, 0.6392f}, {"front", "published"}},
+      {"empty_room.json", 28, 2, {0.7128f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}}};
   for (const Card& card : cards) {
     SCOPED_TRACE(card.file);
     const Scene scene = load_scene(kScenes / card.file);

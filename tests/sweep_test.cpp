@@ -269,6 +269,60 @@ TEST(Sweep, UniformLightStaysSoThroughAllCascades) {
   }
 }
 
+/// A square of 0.3 m on the floor emits 1 W/m^2 by a basis's clamped cosine. Fluence [W/m^2] on a ceiling 0.56 m above and on
+/// a wall 0.34 m beside its middle, against the integral over the square.
+struct SquareErrors {
+  double ceiling, wall;  ///< root mean square, relative
+  double energy;         ///< on the ceiling, relative
+};
+SquareErrors square_errors(const char* name, int parts, int cells_across) {
+  const auto basis = make_basis(name);
+  const double s = 0.3 / cells_across;
+  const int n = static_cast<int>(0.76 / s);
+  const glm::ivec3 first((n - cells_across) / 2, (n - cells_across) / 2, 0);
+  const std::vector<double> lobe = basis->clamped_cosine({0, 0, 1});
+  std::vector<double> intensity = lobe;
+  for (double& c : intensity) c *= s * s / std::numbers::pi;
+  reference::Volume light(n, basis->size());
+  for (int i = 0; i < cells_across * cells_across; ++i)
+    light.set_cell(0, first + glm::ivec3(i % cells_across, i / cells_across, 0), intensity);
+  ClpvGrid grid = grid_of(n);
+  grid.cell = static_cast<float>(s);
+  const SweptCascade cascade{grid, &light, nullptr, parts};
+  const reference::Volume swept = reference::sweep(*basis, swept_by(*basis), {cascade}).front();
+  const auto exact = [&](const glm::ivec3& p) {
+    constexpr int kSamples = 18;  // along each edge of the square
+    double sum = 0;
+    for (int j = 0; j < kSamples * kSamples; ++j) {
+      const glm::dvec3 from((first.x - 0.5 + (j % kSamples + 0.5) * cells_across / kSamples) * s,
+                            (first.y - 0.5 + (j / kSamples + 0.5) * cells_across / kSamples) * s, 0);
+      const glm::dvec3 way = glm::dvec3(p) * s - from;
+      sum += basis->value(lobe, glm::normalize(way)) / std::numbers::pi / glm::dot(way, way);
+    }
+    return sum * 0.3 * 0.3 / (kSamples * kSamples);
+  };
+  double errors[2] = {0, 0}, squares[2] = {0, 0}, energy = 0, exact_energy = 0;
+  for (int i = 0; i < n * n; ++i) {
+    const int u = i % n, v = i / n;
+    const glm::ivec3 points[2] = {{u, v, static_cast<int>(0.56 / s)}, {n / 2 + static_cast<int>(0.34 / s), u, v}};
+    for (int side = 0; side < 2; ++side) {
+      const double found = fluence(swept, points[side]) / (s * s), wanted = exact(points[side]);
+      errors[side] += (found - wanted) * (found - wanted), squares[side] += wanted * wanted;
+      if (side == 0) energy += found, exact_energy += wanted;
+    }
+  }
+  return {std::sqrt(errors[0] / squares[0]), std::sqrt(errors[1] / squares[1]), energy / exact_energy};
+}
+
+TEST(Sweep, ASquareConvergesToItsClosedForm) {
+  const SquareErrors coarse = square_errors("sh3", 4, 10), fine = square_errors("sh3", 4, 18);
+  for (const SquareErrors& errors : {coarse, fine}) {
+    EXPECT_NEAR(errors.energy, 1, 0.02);
+    EXPECT_LT(errors.ceiling, 0.06);
+  }
+  EXPECT_LT(fine.wall, 0.8 * coarse.wall);
+}
+
 TEST(Sweep, RejectsGridsThatAreNotNested) {
   const auto basis = make_basis("bins24");
   Sweeper sweeper(test_session(), *basis, swept_by(*basis), {.grid = 6, .parts = {1, 1}, .blocking = false});

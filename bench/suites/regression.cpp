@@ -82,7 +82,7 @@ Suite regression_suite() {
             const SuiteOptions options = small(suite_options);
             const auto bench = make_bench(session, options, options.settings);
             const auto names =
-                options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2", "bins24"} : options.bases;
+                options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2", "sh3"} : options.bases;
             std::vector<Group> groups = groups_by_basis(names, [bench, options](const std::string& basis) {
               return stages_of(bench, options, basis);
             });

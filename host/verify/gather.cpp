@@ -113,7 +113,7 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     results.push_back(check_one(session, *basis, TransportKind::sampled, {"plain"}));
-    if (scope.thorough || name == "bins24") {
+    if (scope.thorough || name == "sh3") {
       results.push_back(check_one(session, *basis, TransportKind::sampled,
                                   {.name = "visible", .gather = Gathering::visible}));
     }

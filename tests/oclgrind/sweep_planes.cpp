@@ -8,12 +8,12 @@ int main() {
   using namespace clpv;
   constexpr int kGrid = 3;
   Session session(choose_device());
-  const auto basis = make_basis("bins24");
+  const auto basis = make_basis("sh3");
   const Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
   Sweeper sweeper(session, *basis, transport,
                   {.grid = kGrid, .parts = {1, 1}, .blocking = true, .form = SweepForm::planes});
   sweeper.set_sky(constant_sky(glm::vec3(1)));
-  const Volume light(session, {kGrid, kSweepBins, 3}, "light"),
+  const Volume light(session, {kGrid, basis->size(), 3}, "light"),
       blockers(session, {kGrid + 1, 3, 1}, "blockers");
   Volume swept(session, {kGrid, swept_basis()->size(), 3}, "swept");
   const std::vector<ClpvGrid> grids = cascade_grids(glm::vec3(0.1f), 2, 1, kGrid);
