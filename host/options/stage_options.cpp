@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "options/stage_options.hpp"
 
+#include <cstdlib>
+
 #include "options/render_options.hpp"
 
 namespace clpv {
@@ -38,7 +40,15 @@ GatherOptions gather_options(const RenderOptions& options) {
           .gather_offset = options.gather_offset,
           .lobes = options.lobes(),
           .table = options.table,
-          .format = options.format()};
+          .format = options.format(),
+          .packed = options.near != Near::off};
+}
+
+NearOptions near_options(const RenderOptions& options) {
+  return {.gather = gather_options(options),
+          .step = options.near_size == NearSize::half ? 2 : 1,
+          .rays = std::getenv("NEAR_K") ? std::atoi(std::getenv("NEAR_K")) : 4,
+          .reflects = options.bounces != Bounces::one};
 }
 
 }  // namespace clpv
