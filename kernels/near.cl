@@ -23,6 +23,16 @@
 #include "radiance.h"
 #include "surface_row.h"
 
+#define CLPV_LEAST_ARRIVING 0.5f  // of the irradiance that leaves, where rays without a hit count fully
+
+// Share of the difference of rays without a hit, in [0, 1]. Nine harmonics of light that leaves a bright surface are not
+// 0 towards it. Where more leaves than arrives, the difference of two such errors is left out; (x, y, z) = n.
+CLPV_INLINE float clpv_trust(const Sampled* field, const float x, const float y, const float z) {
+  const float4 arriving = clpv_field_irradiance(field, x, y, z), leaving = clpv_field_irradiance(field, -x, -y, -z);
+  const float in = arriving.x + arriving.y + arriving.z, out = leaving.x + leaving.y + leaving.z;
+  return in >= CLPV_LEAST_ARRIVING * out ? 1.0f : in / (CLPV_LEAST_ARRIVING * out);
+}
+
 __kernel void near_points(const ClpvView view, __global const float* depths, __global const float4* normals,
                           __global const ClpvGrid* grids, const uint cascades, __global float* points) {
   const NearRow r = near_row(view, (int)get_global_id(0) - CLPV_NEAR_COLUMNS / CLPV_ABREAST,
@@ -63,21 +73,29 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
   const int8 lit = p.reach > none;
   RadianceField here, there;
   clpv_radiance_field(CLPV_PASS_RADIANCE, p.position, (float8)(CLPV_GATHER_OFFSET), p.normal, lit, &here);
+  const VecLanes n = unpack(lit, p.normal);
+  float trusts[CLPV_ABREAST];
+  for (int i = 0; i < CLPV_ABREAST; ++i) trusts[i] = clpv_trust(&here.at[i], n.x[i], n.y[i], n.z[i]);
+  const float8 trust = vload8(0, trusts);
+  const Vec lifted = vec_add_scaled(p.position, (float8)(CLPV_GATHER_OFFSET) * p.reach, p.normal);
   Vec sum = vec(none, none, none);
   float4 volumes[CLPV_ABREAST];
   for (int i = 0; i < CLPV_ABREAST; ++i) volumes[i] = 0.0f;
   for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
     const Vec w = near_directions(directions, r, &p, k);
     const int8 hit = vload8(0, hits + k * r.plane + r.at) < (float8)(INFINITY);
-    const Vec lifted = vec_add_scaled(p.position, (float8)(CLPV_GATHER_OFFSET) * p.reach, p.normal);
-    clpv_radiance_field(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), none, p.normal, lit & ~hit, &there);
+    const int8 missed = lit & ~hit & (trust > none);
+    clpv_radiance_field(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), none, p.normal, missed, &there);
     const VecLanes back = unpack(lit, vec_times(w, (float8)(-1.0f)));
+    float shares[CLPV_ABREAST];
+    vstore8(hit ? (float8)(1.0f) : trust, 0, shares);
     for (int i = 0; i < CLPV_ABREAST; ++i) {
+      if (!(shares[i] > 0.0f)) continue;
       Sampled change = there.at[i];
 #define CLPV_DO(j, even, odd) change.p##j -= here.at[i].p##j;
       CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
-      volumes[i] += clpv_radiance(&change, back.x[i], back.y[i], back.z[i]);
+      volumes[i] += shares[i] * clpv_radiance(&change, back.x[i], back.y[i], back.z[i]);
     }
     const Vec met = near_vectors(radiances + 3 * k * r.plane, r.plane, r.at);
     sum = vec_add_scaled(sum, (float8)(1.0f), vec_masked(hit & lit, met));
