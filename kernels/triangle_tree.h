@@ -39,17 +39,29 @@ CLPV_INLINE void clpv_make_ray(const float x, const float y, const float z, cons
 }
 
 // Bit mask of the children whose boxes the ray meets before `reach` [m].
-CLPV_INLINE uint clpv_boxes_hit(__global const float8* node, const Ray* ray, const float reach) {
-  const float8 nx = (node[ray->near_row[0]] - ray->from[0]) * ray->inverse[0],
-               ny = (node[ray->near_row[1]] - ray->from[1]) * ray->inverse[1],
-               nz = (node[ray->near_row[2]] - ray->from[2]) * ray->inverse[2];
-  const float8 fx = (node[ray->far_row[0]] - ray->from[0]) * ray->inverse[0],
-               fy = (node[ray->far_row[1]] - ray->from[1]) * ray->inverse[1],
-               fz = (node[ray->far_row[2]] - ray->from[2]) * ray->inverse[2];
-  const float8 none = (float8)(0.0f), end = (float8)(reach);
-  const float8 nxy = nx > ny ? nx : ny, nz0 = nz > none ? nz : none, enter = nxy > nz0 ? nxy : nz0;
-  const float8 fxy = fx < fy ? fx : fy, fz1 = fz < end ? fz : end, leave = fxy < fz1 ? fxy : fz1;
-  return clpv_bits(enter <= leave * CLPV_BOX_MARGIN);
+#define CLPV_BOXES_HIT(name, memory)                                                                     \
+CLPV_INLINE uint name(memory const float8* node, const Ray* ray, const float reach) { \
+  const float8 nx = (node[ray->near_row[0]] - ray->from[0]) * ray->inverse[0], \
+               ny = (node[ray->near_row[1]] - ray->from[1]) * ray->inverse[1], \
+               nz = (node[ray->near_row[2]] - ray->from[2]) * ray->inverse[2]; \
+  const float8 fx = (node[ray->far_row[0]] - ray->from[0]) * ray->inverse[0], \
+               fy = (node[ray->far_row[1]] - ray->from[1]) * ray->inverse[1], \
+               fz = (node[ray->far_row[2]] - ray->from[2]) * ray->inverse[2]; \
+  const float8 none = (float8)(0.0f), end = (float8)(reach); \
+  const float8 nxy = nx > ny ? nx : ny, nz0 = nz > none ? nz : none, enter = nxy > nz0 ? nxy : nz0; \
+  const float8 fxy = fx < fy ? fx : fy, fz1 = fz < end ? fz : end, leave = fxy < fz1 ? fxy : fz1; \
+  return clpv_bits(enter <= leave * CLPV_BOX_MARGIN); \
+}
+CLPV_BOXES_HIT(clpv_boxes_hit, __global)
+CLPV_BOXES_HIT(clpv_entry_hit, )
+
+static inline uint clpv_lowest(const uint bits) {
+  return 31u - clz(bits & (0u - bits));
+}
+
+// Child `lane` of a node.
+static inline int clpv_child(__global const float8* node, const uint lane) {
+  return ((__global const int*)(node + CLPV_TREE_CHILDREN))[lane];
 }
 
 // Mask of the lanes where a masked material has a hole at weights (u, v). Other lanes may be anything.
@@ -103,31 +115,27 @@ CLPV_INLINE void clpv_leaf_hit(__global const float8* leaf, const Ray* ray, CLPV
   const float8 reached = met ? distance : (float8)(INFINITY);
   const float nearest = clpv_least(reached);
   const uint bits = clpv_bits(reached == (float8)(nearest));
-  const uint lane = 31u - clz(bits & (0u - bits));
+  const uint lane = clpv_lowest(bits);
   hit->distance = nearest;
   hit->u = ((const float*)&u)[lane];
   hit->v = ((const float*)&v)[lane];
   hit->triangle = ((const uint*)&triangle)[lane] & ~CLPV_TREE_MASKED;
 }
 
-// Finds the nearest triangle before hit->distance [m]. Returns false, and leaves `hit`, if there is none. The stack has
-// one entry per level: a node and the bit mask of its children to visit.
-CLPV_INLINE bool clpv_nearest_triangle(const Tree tree, const Ray* ray, CLPV_SCENE, Hit* hit) {
+// Takes the nearest triangle below a node, if it is nearer than `hit`. The stack has one entry per level: a node and the
+// bit mask of its children to visit.
+CLPV_INLINE void clpv_subtree_hit(const Tree tree, uint node, const Ray* ray, CLPV_SCENE, Hit* hit) {
   uint stack[CLPV_TREE_DEPTH];
-  const float reach = hit->distance;
-  uint node = 0, depth = 0, children = clpv_boxes_hit(tree.nodes, ray, reach);
+  uint depth = 0, children = clpv_boxes_hit(tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS, ray, hit->distance);
   for (;;) {
     if (children == 0) {
-      if (depth == 0) break;
+      if (depth == 0) return;
       const uint top = stack[--depth];
       node = top >> CLPV_TREE_WIDTH;
       children = top & ((1u << CLPV_TREE_WIDTH) - 1u);
-      continue;
     }
-    const uint lane = 31u - clz(children & (0u - children));
+    const int child = clpv_child(tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS, clpv_lowest(children));
     children &= children - 1u;
-    const int child =
-        ((__global const int*)(tree.nodes + node * CLPV_TREE_NODE_ROWS + CLPV_TREE_CHILDREN))[lane];
     if (child < 0) {
       clpv_leaf_hit(tree.leaves + (size_t)(uint)~child * CLPV_TREE_LEAF_ROWS, ray, CLPV_PASS_SCENE, hit);
       continue;
@@ -135,6 +143,82 @@ CLPV_INLINE bool clpv_nearest_triangle(const Tree tree, const Ray* ray, CLPV_SCE
     if (children != 0) stack[depth++] = node << CLPV_TREE_WIDTH | children;
     node = (uint)child;
     children = clpv_boxes_hit(tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS, ray, hit->distance);
+  }
+}
+
+// Up to eight subtrees that hold all triangles in a box: a node (shared/tree.h) that rays of one region share.
+typedef struct {
+  float8 rows[CLPV_TREE_CHILDREN + 1];
+} Entry;
+
+typedef struct {
+  float lower[3], upper[3];  // [m]
+} Box;
+
+// Bit mask of the children of a node that overlap a box.
+CLPV_INLINE uint clpv_overlaps(__global const float8* node, const Box box) {
+  int8 overlaps = (int8)(-1);
+  for (int a = 0; a < 3; ++a)
+    overlaps &= (node[CLPV_TREE_LOWER + a] <= box.upper[a]) & (node[CLPV_TREE_UPPER + a] >= box.lower[a]);
+  return clpv_bits(overlaps);
+}
+
+#define CLPV_ENTRY_STEPS 24  // nodes to open, at most
+
+// Opens nodes from the root on as long as the children that overlap the box fit.
+CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
+  float rows[CLPV_TREE_CHILDREN][CLPV_TREE_WIDTH];
+  int children[CLPV_TREE_WIDTH];
+  for (int lane = 0; lane < CLPV_TREE_WIDTH; ++lane) {
+    for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][lane] = row < 3 ? CLPV_TREE_FAR : -CLPV_TREE_FAR;
+    children[lane] = -1;
+  }
+  uint count = 0, next = 0, node = 0;
+  for (uint step = 0; step < CLPV_ENTRY_STEPS; ++step) {
+    __global const float8* from = tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS;
+    uint overlaps = clpv_overlaps(from, box);
+    const uint found = popcount(overlaps);
+    if (count + found <= CLPV_TREE_WIDTH + (step > 0 ? 1 : 0)) {
+      uint lane = step > 0 ? next : count;
+      if (step > 0 && found == 0) {
+        for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][next] = row < 3 ? CLPV_TREE_FAR : -CLPV_TREE_FAR;
+        children[next] = -1;
+      }
+      bool first = true;
+      while (overlaps != 0) {
+        const uint child = clpv_lowest(overlaps);
+        overlaps &= overlaps - 1u;
+        if (first) first = false;
+        else lane = count;
+        if (lane == count) ++count;
+        for (int row = 0; row < CLPV_TREE_CHILDREN; ++row)
+          rows[row][lane] = ((__global const float*)(from + row))[child];
+        children[lane] = clpv_child(from, child);
+      }
+      if (step == 0) next = 0;
+    } else {
+      ++next;
+    }
+    while (next < count && children[next] < 0) ++next;
+    if (next >= count) break;
+    node = (uint)children[next];
+  }
+  for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) entry->rows[row] = vload8(0, rows[row]);
+  entry->rows[CLPV_TREE_CHILDREN] = as_float8(vload8(0, children));
+}
+
+// Finds the nearest triangle before hit->distance [m]. Returns false, and leaves `hit`, if there is none.
+CLPV_INLINE bool clpv_nearest_triangle(const Tree tree, const Entry* entry, const Ray* ray, CLPV_SCENE, Hit* hit) {
+  const float reach = hit->distance;
+  uint children = clpv_entry_hit(entry->rows, ray, reach);
+  while (children != 0) {
+    const int child = ((const int*)&entry->rows[CLPV_TREE_CHILDREN])[clpv_lowest(children)];
+    children &= children - 1u;
+    if (child < 0) {
+      clpv_leaf_hit(tree.leaves + (size_t)(uint)~child * CLPV_TREE_LEAF_ROWS, ray, CLPV_PASS_SCENE, hit);
+    } else {
+      clpv_subtree_hit(tree, (uint)child, ray, CLPV_PASS_SCENE, hit);
+    }
   }
   return hit->distance < reach;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "options/stage_options.hpp"
 
-#include <cstdlib>
-
 #include "options/render_options.hpp"
 
 namespace clpv {
@@ -47,7 +45,6 @@ GatherOptions gather_options(const RenderOptions& options) {
 NearOptions near_options(const RenderOptions& options) {
   return {.gather = gather_options(options),
           .step = options.near_size == NearSize::half ? 2 : 1,
-          .rays = std::getenv("NEAR_K") ? std::atoi(std::getenv("NEAR_K")) : 4,
           .reflects = options.bounces != Bounces::one};
 }
 

@@ -2,26 +2,17 @@
 #include "pipeline/near.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
-#include "basis/sampling.hpp"
+#include "basis/near_directions.hpp"
 #include "codegen/gather_source.hpp"
 #include "kernels/shared/near.h"
-#include "pipeline/lookup_table.hpp"
 
 namespace clpv {
 namespace {
 
-constexpr std::uint64_t kNearSeed = 1;
-
 unsigned near_pixels(unsigned pixels, int step) {
   return (pixels + step - 1) / step;
 }
-
-/// Order of the pixels of a tile, by which near ones get directions far from each other (ordered dither).
-constexpr unsigned kTileOrder[CLPV_NEAR_TILE * CLPV_NEAR_TILE] = {0, 8,  2, 10, 12, 4, 14, 6,
-                                                                  3, 11, 1, 9,  15, 7, 13, 5};
 
 ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
   ProgramSource source{file, {}, {}};
@@ -68,20 +59,6 @@ std::vector<cl_float8> direction_rows(int rays) {
 }
 
 }  // namespace
-
-std::vector<std::vector<glm::vec3>> near_directions(int rays) {
-  std::vector<std::vector<glm::vec3>> directions;
-  for (const unsigned order : kTileOrder) {
-    std::vector<glm::vec3>& pixel = directions.emplace_back();
-    for (int ray = 0; ray < rays; ++ray)
-      pixel.emplace_back(cosine_direction({0, 0, 1}, sobol_point(order * rays + ray, mix(kNearSeed))));
-  }
-  return directions;
-}
-
-double near_cone(int rays) {
-  return std::sqrt(2 * std::numbers::pi / (CLPV_NEAR_TILE * CLPV_NEAR_TILE * rays));
-}
 
 NearField::NearField(Session& session, const Basis& basis, const Scene& scene, const SceneBuffers& buffers,
                      const NearOptions& options)
@@ -182,7 +159,7 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles, buffers_.materials,
            buffers_.textures, buffers_.texels, distances_, places_)
-      .launch(cl::NDRange(tiles_along(width), height, options_.rays), cl::NDRange(8, 1, 1));
+      .launch(rows, kTileRow);
   light_hits(camera, gatherer, lights, scale, occluded);
   near_.set(view, points_, directions_, distances_, radiances_, differences_);
   add_volumes(near_, gatherer, scale, occluded);

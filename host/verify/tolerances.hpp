@@ -62,6 +62,8 @@ inline constexpr Tolerance kTolerances[] = {
     {"gather-filter", 2e-2, 2e-2},
     // As gather, divided by the share of visible weight, at least 1/64.
     {"gather-visible", 1e-3, 2e-2},
+    // As gather-visible, for the mean of the differences of 100 rays with volumes at both ends. Texture steps at hits.
+    {"near", 1e-3, 2e-2},
     // float32 light angles and distances; shadow filter weights use coordinates accurate to 1e-6 of the map's side.
     {"shade", 5e-6},
 };
