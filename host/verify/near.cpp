@@ -34,7 +34,7 @@ SurfaceImage near_surfaces(std::mt19937& random) {
   const glm::vec4 towards(-view.forward[0], -view.forward[1], -view.forward[2], 0);
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
     if (pixel % 7 == 3 || image.depth[pixel] == 0) continue;
-    image.depth[pixel] = pixel % view.width < view.width / 2 ? 2.0f : 3.5f;
+    image.depth[pixel] = pixel % view.width < view.width / 2 ? 2.13f : 3.57f;
     image.normal[pixel] = towards;
   }
   return image;
