@@ -163,45 +163,39 @@ CLPV_INLINE uint clpv_overlaps(__global const float8* node, const Box box) {
   return clpv_bits(overlaps);
 }
 
-#define CLPV_ENTRY_STEPS 24  // nodes to open, at most
+#define CLPV_ENTRY_STEPS 24  // subtrees to look at, at most
 
-// Opens nodes from the root on as long as the children that overlap the box fit.
+// Opens nodes in order, from the root on, as long as the children that overlap the box fit.
 CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
   float rows[CLPV_TREE_CHILDREN][CLPV_TREE_WIDTH];
   int children[CLPV_TREE_WIDTH];
-  for (int lane = 0; lane < CLPV_TREE_WIDTH; ++lane) {
-    for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][lane] = row < 3 ? CLPV_TREE_FAR : -CLPV_TREE_FAR;
+  for (uint lane = 0; lane < CLPV_TREE_WIDTH; ++lane) {
+    for (int row = 0; row < CLPV_TREE_CHILDREN; ++row)
+      rows[row][lane] = row < CLPV_TREE_UPPER ? CLPV_TREE_FAR : -CLPV_TREE_FAR;
     children[lane] = -1;
   }
-  uint count = 0, next = 0, node = 0;
-  for (uint step = 0; step < CLPV_ENTRY_STEPS; ++step) {
-    __global const float8* from = tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS;
-    uint overlaps = clpv_overlaps(from, box);
-    const uint found = popcount(overlaps);
-    if (count + found <= CLPV_TREE_WIDTH + (step > 0 ? 1 : 0)) {
-      uint lane = step > 0 ? next : count;
-      if (step > 0 && found == 0) {
-        for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][next] = row < 3 ? CLPV_TREE_FAR : -CLPV_TREE_FAR;
-        children[next] = -1;
-      }
-      bool first = true;
-      while (overlaps != 0) {
-        const uint child = clpv_lowest(overlaps);
-        overlaps &= overlaps - 1u;
-        if (first) first = false;
-        else lane = count;
-        if (lane == count) ++count;
-        for (int row = 0; row < CLPV_TREE_CHILDREN; ++row)
-          rows[row][lane] = ((__global const float*)(from + row))[child];
-        children[lane] = clpv_child(from, child);
-      }
-      if (step == 0) next = 0;
-    } else {
+  children[0] = 0;
+  uint count = 1, next = 0;
+  for (uint step = 0; step < CLPV_ENTRY_STEPS && next < count; ++step) {
+    __global const float8* node = tree.nodes + (size_t)(uint)max(children[next], 0) * CLPV_TREE_NODE_ROWS;
+    uint overlaps = clpv_overlaps(node, box), lane = next, free = count;
+    if (children[next] < 0 || count - 1 + popcount(overlaps) > CLPV_TREE_WIDTH) {
       ++next;
+      continue;
     }
-    while (next < count && children[next] < 0) ++next;
-    if (next >= count) break;
-    node = (uint)children[next];
+    if (overlaps == 0) {  // nothing in reach below it
+      for (int row = 0; row < CLPV_TREE_CHILDREN; ++row)
+        rows[row][lane] = row < CLPV_TREE_UPPER ? CLPV_TREE_FAR : -CLPV_TREE_FAR;
+      children[lane] = -1;
+      continue;
+    }
+    count += popcount(overlaps) - 1;
+    for (; overlaps != 0; lane = free++) {
+      const uint child = clpv_lowest(overlaps);
+      overlaps &= overlaps - 1u;
+      for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][lane] = ((__global const float*)(node + row))[child];
+      children[lane] = clpv_child(node, child);
+    }
   }
   for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) entry->rows[row] = vload8(0, rows[row]);
   entry->rows[CLPV_TREE_CHILDREN] = as_float8(vload8(0, children));

@@ -67,7 +67,8 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       buffers_(buffers),
       options_(options),
       tree_(scene),
-      points_kernel_(session, with_volumes(near_source("near.cl", buffers, options), basis, options), "near_points"),
+      points_kernel_(session, with_volumes(near_source("near.cl", buffers, options), basis, options),
+                     "near_points"),
       trace_(session, near_source("near_trace.cl", buffers, options), "near_trace"),
       light_(session, near_source("near_light.cl", buffers, options), "near_light"),
       emit_(session, near_source("near_light.cl", buffers, options), "near_emit"),
@@ -75,7 +76,8 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       blur_(session, near_source("near_filter.cl", buffers, options), "near_blur"),
       add_(session, near_source("near_filter.cl", buffers, options), "near_add") {
   if (options.reflects) {
-    reflect_.emplace(session, reflecting(with_volumes(near_source("near_light.cl", buffers, options), basis, options)),
+    reflect_.emplace(session,
+                     reflecting(with_volumes(near_source("near_light.cl", buffers, options), basis, options)),
                      "near_reflect");
   }
   directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
@@ -95,7 +97,8 @@ void NearField::upload_tree() {
 }
 
 void NearField::reserve(const ClpvView& view) {
-  const std::size_t width = near_pixels(view.width, options_.step), height = near_pixels(view.height, options_.step);
+  const std::size_t width = near_pixels(view.width, options_.step),
+                    height = near_pixels(view.height, options_.step);
   const std::size_t plane = CLPV_NEAR_PLANE_OF(width, height), numbers = plane * sizeof(cl_float);
   if (plane == plane_) return;
   plane_ = plane;
@@ -119,11 +122,11 @@ void NearField::add_volumes(Kernel& kernel, const Gatherer& gatherer, float scal
   if (options_.gather.gather == Gathering::visible) kernel.add(*occluded);
 }
 
-void NearField::light_hits(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                           float scale, const Buffer* occluded) {
+void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
+                           const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
   const ClpvView& view = camera.view;
-  const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)), near_pixels(view.height, options_.step),
-                         options_.rays);
+  const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
+                         near_pixels(view.height, options_.step), options_.rays);
   const cl::NDRange group(8, 1, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -151,21 +154,23 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
                     float scale, const Buffer* occluded, Buffer& irradiance) {
   const ClpvView& view = camera.view;
   reserve(view);
-  const unsigned width = near_pixels(view.width, options_.step), height = near_pixels(view.height, options_.step);
+  const unsigned width = near_pixels(view.width, options_.step),
+                 height = near_pixels(view.height, options_.step);
   const cl::NDRange rows(tiles_along(width), height);
   const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
   points_kernel_.set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, kTileRow);
   trace_
-      .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles, buffers_.materials,
-           buffers_.textures, buffers_.texels, distances_, places_)
+      .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
+           buffers_.materials, buffers_.textures, buffers_.texels, distances_, places_)
       .launch(rows, kTileRow);
   light_hits(camera, gatherer, lights, scale, occluded);
   near_.set(view, points_, directions_, distances_, radiances_, differences_);
   add_volumes(near_, gatherer, scale, occluded);
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
-  add_.set(view, camera.depth, camera.normal, points_, blurred_, irradiance).launch(rows_of_tiles(view), kTileRow);
+  add_.set(view, camera.depth, camera.normal, points_, blurred_, irradiance)
+      .launch(rows_of_tiles(view), kTileRow);
 }
 
 }  // namespace clpv

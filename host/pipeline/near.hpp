@@ -29,8 +29,8 @@ class NearField {
 
   /// Corrects the irradiance that `gatherer` gathered last for `camera`. `lights`, `scale`, `occluded`: as for
   /// Shader::light() and Gatherer::gather().
-  void add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights, float scale,
-           const Buffer* occluded, Buffer& irradiance);
+  void add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
+           float scale, const Buffer* occluded, Buffer& irradiance);
 
  private:
   void upload_tree();

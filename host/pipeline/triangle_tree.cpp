@@ -48,7 +48,8 @@ void set_bounds(void* to, const RTCBounds** bounds, unsigned count, void*) {
   }
 }
 
-void* create_leaf(RTCThreadLocalAllocator, const RTCBuildPrimitive* triangles, std::size_t count, void* pool) {
+void* create_leaf(RTCThreadLocalAllocator, const RTCBuildPrimitive* triangles, std::size_t count,
+                  void* pool) {
   BuiltNode& leaf = static_cast<Pool*>(pool)->emplace_back();
   for (std::size_t i = 0; i < count; ++i) leaf.triangles.push_back(triangles[i].primID);
   return &leaf;
@@ -75,13 +76,13 @@ BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles
   const std::unique_ptr<std::remove_pointer_t<RTCDevice>, void (*)(RTCDevice)> device(
       rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
   if (!device) check_embree(nullptr, false);
-  const std::unique_ptr<std::remove_pointer_t<RTCBVH>, void (*)(RTCBVH)> tree(rtcNewBVH(device.get()), rtcReleaseBVH);
+  const std::unique_ptr<std::remove_pointer_t<RTCBVH>, void (*)(RTCBVH)> tree(rtcNewBVH(device.get()),
+                                                                              rtcReleaseBVH);
   check_embree(device.get(), tree != nullptr);
   std::vector<RTCBuildPrimitive> primitives;
   for (const std::uint32_t triangle : triangles) {
     const Bounds b = bounds_of_triangle(scene, triangle);
-    primitives.push_back(
-        {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
+    primitives.push_back({b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
   }
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;

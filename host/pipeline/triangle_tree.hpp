@@ -24,7 +24,9 @@ class TriangleTree {
   /// Rebuilds the tree of the moving triangles (Scene::moving). The scene has the same triangles as before.
   void move(const Scene& scene);
 
-  const std::vector<TreeRow>& nodes() const { return nodes_; }    ///< CLPV_TREE_NODE_ROWS each; node 0 is the root
+  const std::vector<TreeRow>& nodes() const {
+    return nodes_;
+  }  ///< CLPV_TREE_NODE_ROWS each; node 0 is the root
   const std::vector<TreeRow>& leaves() const { return leaves_; }  ///< CLPV_TREE_LEAF_ROWS each
 
  private:

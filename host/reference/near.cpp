@@ -40,7 +40,8 @@ struct NearField {
     return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift);
   }
   double trust(const RadianceField& field, const glm::dvec3& normal) const;
-  glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along, bool& uncertain) const;
+  glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
+                         bool& uncertain) const;
   void trace(NearPoint& point, const std::vector<glm::vec3>& directions) const;
 };
 
@@ -81,7 +82,8 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point, co
   if (glm::dot(n, n) == 0) n = front;
   n = glm::normalize(n);
   if (glm::dot(n, front) < 0) n = -n;
-  const glm::dvec3 position = a + double{hit.point.weights.x} * (b - a) + double{hit.point.weights.y} * (c - a);
+  const glm::dvec3 position =
+      a + double{hit.point.weights.x} * (b - a) + double{hit.point.weights.y} * (c - a);
   const auto uv = [&](int i) { return glm::dvec2(coordinates(scene.scene.vertices[triangle.vertex[i]])); };
   const double uv_area2 = std::abs(cross(uv(1) - uv(0), uv(2) - uv(0)));
   Footprint footprint;
@@ -91,7 +93,8 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point, co
   if (options.reflects)
     irradiance += field_irradiance(basis, field_at(position, options.gather.gather_offset, n), n);
   const bool emitting = !back || double_sided(scene.scene.materials[triangle.material]);
-  const glm::dvec3 emitted = emitting ? glm::dvec3(scene.materials.emissive(hit.point, footprint)) : glm::dvec3(0);
+  const glm::dvec3 emitted =
+      emitting ? glm::dvec3(scene.materials.emissive(hit.point, footprint)) : glm::dvec3(0);
   return emitted + glm::dvec3(scene.materials.albedo(hit.point, footprint)) / std::numbers::pi * irradiance;
 }
 
@@ -122,7 +125,8 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
 }
 
 /// Weight of a neighbour in a mean: 1 on the same surface, else 0.
-double same_surface(const NearPoint& there, const glm::dvec3& position, const glm::dvec3& normal, bool& uncertain) {
+double same_surface(const NearPoint& there, const glm::dvec3& position, const glm::dvec3& normal,
+                    bool& uncertain) {
   if (there.reach == 0) return 0;
   const double cosine = glm::dot(normal, there.normal),
                off = std::abs(glm::dot(there.position - position, normal)) / there.reach;
@@ -190,26 +194,28 @@ std::optional<NearHit> nearest_triangle(const Scene& scene, const Materials& mat
     const double inside = std::min({u, v, 1 - u - v});
     const double end = nearest ? nearest->distance : ray.reach;
     // Within the margin of the triangle, and not clearly beyond the end.
-    const bool about = inside > -kNearEdge && distance > -kNearEdge * ray.reach && distance < end + kNearEdge * ray.reach;
+    const bool about =
+        inside > -kNearEdge && distance > -kNearEdge * ray.reach && distance < end + kNearEdge * ray.reach;
     if (!about) continue;  // NaN for triangles without area, too
     const SurfacePoint point{i, {static_cast<float>(u), static_cast<float>(v)}};
     const double solidity = materials.solidity(point);
     if (solidity < -kAlphaTolerance) continue;
     uncertain = uncertain || inside < kNearEdge || distance < kNearEdge * ray.reach ||
-                distance > end - kNearEdge * ray.reach ||
-                std::abs(solidity) < kAlphaTolerance;
+                distance > end - kNearEdge * ray.reach || std::abs(solidity) < kAlphaTolerance;
     if (inside >= 0 && distance > 0 && distance < end && solidity >= 0) nearest = NearHit{point, distance};
   }
   return nearest;
 }
 
-NearResult near(const Basis& basis, const NearOptions& options, const NearScene& scene, const SurfaceImage& camera,
-                const std::vector<glm::dvec3>& gathered) {
+NearResult near(const Basis& basis, const NearOptions& options, const NearScene& scene,
+                const SurfaceImage& camera, const std::vector<glm::dvec3>& gathered) {
   const ClpvView& view = camera.view;
   const NearField field{basis, options, scene};
   const auto directions = near_directions(options.rays);
   const int step = options.step;
-  NearImage image{(static_cast<int>(view.width) + step - 1) / step, (static_cast<int>(view.height) + step - 1) / step, {}};
+  NearImage image{(static_cast<int>(view.width) + step - 1) / step,
+                  (static_cast<int>(view.height) + step - 1) / step,
+                  {}};
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       NearPoint& point = image.points.emplace_back();
@@ -218,7 +224,8 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
       point.position = surface_position(view, pixel, camera.depth[pixel]);
       point.normal = glm::dvec3(camera.normal[pixel]);
       point.reach = field.reach_at(point.position);
-      if (point.reach > 0) field.trace(point, directions[y % CLPV_NEAR_TILE * CLPV_NEAR_TILE + x % CLPV_NEAR_TILE]);
+      if (point.reach > 0)
+        field.trace(point, directions[y % CLPV_NEAR_TILE * CLPV_NEAR_TILE + x % CLPV_NEAR_TILE]);
     }
   }
   image = blurred(image);
@@ -227,7 +234,8 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
     if (camera.depth[pixel] <= 0) continue;
     const int x = static_cast<int>(pixel % view.width), y = static_cast<int>(pixel / view.width);
     Mean mean;
-    const glm::dvec3 position = surface_position(view, pixel, camera.depth[pixel]), normal(camera.normal[pixel]);
+    const glm::dvec3 position = surface_position(view, pixel, camera.depth[pixel]),
+                     normal(camera.normal[pixel]);
     for (int corner = 0; corner < 4; ++corner) {
       const int right = corner % 2 * (x % step), below = corner / 2 * (y % step);
       mean.add(image.at(x / step + right, y / step + below), 1, position, normal);

@@ -47,7 +47,7 @@ struct NearResult {
 };
 
 /// Returns the gathered irradiance with the light of near surfaces replaced. `basis`: of the cascades' volumes.
-NearResult near(const Basis& basis, const NearOptions& options, const NearScene& scene, const SurfaceImage& camera,
-                const std::vector<glm::dvec3>& gathered);
+NearResult near(const Basis& basis, const NearOptions& options, const NearScene& scene,
+                const SurfaceImage& camera, const std::vector<glm::dvec3>& gathered);
 
 }  // namespace clpv::reference

@@ -5,8 +5,9 @@
 
 namespace clpv::reference {
 
-RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades, int coefficients,
-                             const glm::dvec3& position, double offset, const glm::dvec3& lift) {
+RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
+                             int coefficients, const glm::dvec3& position, double offset,
+                             const glm::dvec3& lift) {
   RadianceField field;
   for (auto& channel : field) channel.assign(coefficients, 0.0);
   double rest = 1;  // weight of the coarser cascades

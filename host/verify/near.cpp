@@ -23,9 +23,9 @@ namespace clpv::reference {
 namespace {
 
 constexpr int kNearGrid = 9, kNearCascades = 3;
-constexpr double kNearFinestEdge = 6;    // [m]
-constexpr unsigned kNearMap = 24;        // texels along each side of a shadow map
-constexpr double kLeastCertain = 0.25;   // share of pixels that must be compared
+constexpr double kNearFinestEdge = 6;   // [m]
+constexpr unsigned kNearMap = 24;       // texels along each side of a shadow map
+constexpr double kLeastCertain = 0.25;  // share of pixels that must be compared
 
 /// The camera looks at two planes across its axis, and at random surfaces between them.
 SurfaceImage near_surfaces(std::mt19937& random) {
@@ -74,7 +74,8 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
   scene.materials[0].emissive[0] = 2, scene.materials[0].emissive[1] = 1;
   const Materials materials(scene);
   const std::vector<MappedLight> lights = near_lights(random);
-  const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kNearCascades, kNearFinestEdge, kNearGrid);
+  const std::vector<ClpvGrid> grids =
+      cascade_grids({0.1f, 0.2f, 0.3f}, kNearCascades, kNearFinestEdge, kNearGrid);
   std::vector<std::uint8_t> occluded(kNearCascades * CellVisibility::bytes(kNearGrid));
   for (std::uint8_t& bits : occluded) bits = random() % 256;
   std::vector<Volume> light;
@@ -89,11 +90,14 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
     volumes.push_back(&lit[c]);
     cascades.push_back({grids[c], &light[c], occluded.data() + c * CellVisibility::bytes(kNearGrid)});
   }
-  const NearOptions options{
-      .gather = {.grid = kNearGrid, .gather = variant.gather, .gather_offset = 0.25, .format = variant.format, .packed = true},
-      .step = variant.step,
-      .rays = variant.rays,
-      .reflects = variant.reflects};
+  const NearOptions options{.gather = {.grid = kNearGrid,
+                                       .gather = variant.gather,
+                                       .gather_offset = 0.25,
+                                       .format = variant.format,
+                                       .packed = true},
+                            .step = variant.step,
+                            .rays = variant.rays,
+                            .reflects = variant.reflects};
 
   const Buffer occluded_there = session.upload(occluded, "check: occluded cells");
   const Buffer* hidden = variant.gather == Gathering::visible ? &occluded_there : nullptr;
@@ -110,7 +114,8 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
     }
   }
   const SceneBuffers buffers = upload_scene(session, scene);
-  clpv::NearField(session, *basis, scene, buffers, options).add(camera, gatherer, shadowed, 1, hidden, irradiance);
+  clpv::NearField(session, *basis, scene, buffers, options)
+      .add(camera, gatherer, shadowed, 1, hidden, irradiance);
 
   const NearResult wanted = near(*basis, options, {scene, materials, lights, cascades}, image,
                                  gather(*basis, TransportKind::sweep, options.gather, cascades, image));
@@ -143,7 +148,8 @@ CheckResults check_near(Session& session, const CheckScope& scope) {
   if (!scope.thorough) return results;
   results.push_back(check_one_near(session, {.name = "1 ray", .rays = 1}));
   results.push_back(check_one_near(session, {.name = "all cells", .gather = Gathering::all}));
-  results.push_back(check_one_near(session, {.name = "half numbers", .format = {Layout::soa, Storage::float16}}));
+  results.push_back(
+      check_one_near(session, {.name = "half numbers", .format = {Layout::soa, Storage::float16}}));
   return results;
 }
 
