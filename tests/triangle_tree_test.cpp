@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstring>
 #include <set>
 
 #include "tests/support/scene_builder.hpp"
@@ -81,14 +82,18 @@ TEST(TriangleTree, HoldsEachTriangleOnce) {
   }
 }
 
+bool equal_bytes(const std::vector<TreeRow>& a, const std::vector<TreeRow>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(TreeRow)) == 0;
+}
+
 TEST(TriangleTree, MovesToWhatItWouldBeFromScratch) {
   Scene scene = many_triangles(true);
   TriangleTree tree(scene);
   for (unsigned v = 3000; v < 4500; ++v) scene.vertices[v].position[1] += 0.01f * static_cast<float>(v % 300);
   tree.move(scene);
   const TriangleTree fresh(scene);
-  EXPECT_EQ(tree.nodes(), fresh.nodes());
-  EXPECT_EQ(tree.leaves(), fresh.leaves());
+  EXPECT_TRUE(equal_bytes(tree.nodes(), fresh.nodes()));  // integers in rows may read as NaN
+  EXPECT_TRUE(equal_bytes(tree.leaves(), fresh.leaves()));
 }
 
 TEST(TriangleTree, OfNothingIsEmpty) {
