@@ -3,8 +3,8 @@
 //
 // near_blur
 //   A window of five by five pixels, with half weight at its edges, counts each pixel of a tile once: (1/2 1 1 1 1/2)
-//   along both axes. Pixels count if their normal is within 25 degrees and their distance from the plane of the surface
-//   below 0.05 R.
+//   along both axes. Pixels count if their normal is within 45 degrees and their distance from the plane of the surface
+//   below 0.1 R.
 //   In:      points        near_layout.h; differences: D of near.cl
 //   Out:     blurred       D, three planes
 // near_add
@@ -15,8 +15,8 @@
 #include "near_layout.h"
 #include "surface_row.h"
 
-#define CLPV_SAME_NORMAL 0.9f  // cosine
-#define CLPV_SAME_PLANE 0.05f  // [R]
+#define CLPV_SAME_NORMAL 0.7f  // cosine
+#define CLPV_SAME_PLANE 0.1f    // [R]
 
 // Surfaces of eight neighbours.
 typedef struct {

@@ -15,7 +15,7 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kSameNormal = 0.9, kSamePlane = 0.05;  // near_filter.cl
+constexpr double kSameNormal = 0.7, kSamePlane = 0.1;  // near_filter.cl
 constexpr double kLeastArriving = 0.5;                  // near.cl
 
 bool close_to(double value, double limit) {
