@@ -16,7 +16,7 @@ namespace clpv::reference {
 namespace {
 
 constexpr double kSameNormal = 0.7, kSamePlane = 0.1;  // near_filter.cl
-constexpr double kLeastArriving = 0.5;                  // near.cl
+constexpr double kLeastArriving = 0.5;                 // near.cl
 
 bool close_to(double value, double limit) {
   return std::abs(value - limit) < kNearEdge * std::max(1.0, std::abs(limit));
