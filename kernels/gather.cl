@@ -3,10 +3,8 @@
 //
 //   E(n) = max(0, g(n) . c) / s^2,   c: coefficients interpolated trilinearly at p + offset s n
 //
-// docs/method.md, 'Gathering'. g depends on basis and transport (has_faces, host/basis/transport.hpp). A cascade has
-// the weight min(1, d / CLPV_BLEND), d the distance [cells] of p from the boundary of the cube about the eye; a coarser
-// cascade gets the weight that finer ones leave. E is therefore continuous, also when a grid moves by a cell, and 0
-// outside all cascades.
+// docs/method.md, 'Gathering'. g depends on basis and transport (has_faces, host/basis/transport.hpp); cascades.h has the
+// weights of cascades.
 //
 // In:   depths [m], normals   the camera's surface (surface.h)
 //       grids       ClpvGrid of each of `cascades` cascades, finest first
@@ -23,25 +21,8 @@
 //   float4 clpv_weigh(weights, sampled)           weights . coefficients for each channel, and 0
 // From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, and Coefficients clpv_gather_weights(float3 n
 // CLPV_AND_TABLE), g(n). If g comes from a look-up table, it is the last argument.
-#include "coefficients.h"
-#include "shared/grid.h"
+#include "cascades.h"
 #include "surface_row.h"
-
-#ifndef CLPV_VISIBLE
-#define CLPV_VISIBLE 0  // 1: occluded cells do not light a surface (visibility.cl)
-#endif
-
-// Clamps to [0, maximum]; NaN becomes 0.
-CLPV_INLINE float8 clpv_clamp(const float8 v, const float maximum) {
-  const float8 zero = (float8)(0.0f), upper = (float8)(maximum);
-  return v > zero ? (v < upper ? v : upper) : zero;
-}
-
-#if CLPV_PACKED
-#include "gather_packed.h"
-#else
-#include "gather_image.h"
-#endif
 
 // E s^2 of one volume at point i.
 CLPV_INLINE float4 clpv_irradiance(CLPV_GATHERED volume, const SamplePoints* points, const int i,
@@ -63,18 +44,12 @@ typedef struct {
 CLPV_INLINE void clpv_add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GATHERED volume) {
   const ClpvGrid grid = *of;
   const float per_cell = 1.0f / grid.cell;
-  const Vec from_eye = vec_minus(g->surfaces.position, vec_of(grid.middle));
-  const float8 x = fabs(from_eye.x), y = fabs(from_eye.y), z = fabs(from_eye.z), xy = x > y ? x : y;
-  const float8 farthest = xy > z ? xy : z;
-  const float8 inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * per_cell;
-  const float8 share = clpv_clamp(inside * CLPV_INVERSE_BLEND, 1.0f);
+  const float8 share = clpv_cascade_share(grid, g->surfaces.position);
   const float8 weight = share * g->remaining * (per_cell * per_cell);
   g->remaining *= 1.0f - share;
   if (none(weight > (float8)(0.0f))) return;
-  const Vec at = vec_times(vec_minus(g->surfaces.position, vec_of(grid.origin)), (float8)(per_cell));
-  const Vec lifted = vec_add_scaled(at, (float8)(CLPV_GATHER_OFFSET), g->surfaces.normal);
   SamplePoints points;
-  clpv_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), &points);
+  clpv_cascade_points(grid, g->surfaces.position, (float8)(CLPV_GATHER_OFFSET), g->surfaces.normal, &points);
   float shares[CLPV_ABREAST];
   vstore8(weight, 0, shares);
   for (int i = 0; i < CLPV_ABREAST; ++i) {

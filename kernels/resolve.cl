@@ -18,8 +18,8 @@
 // materials), CLPV_FROM_LIGHT (1: resolve_rsm, 0: resolve_camera).
 #include "lanes.h"
 #include "lighting.h"
+#include "scene_triangles.h"
 #include "surface_row.h"
-#include "texture.h"
 #include "tile_row.h"
 #include "triangle.h"
 
@@ -27,69 +27,11 @@
 #define CLPV_FROM_LIGHT 0
 #endif
 
-#ifndef CLPV_TEXTURED
-#define CLPV_TEXTURED 1
-#define CLPV_COLOURED 1
-#define CLPV_EMISSIVE 1
-#endif
-
-// Attributes of one corner of each lane's triangle.
-typedef struct {
-  Vec position, normal;
-  Uv uv;
-  Vec colour;
-} VertexAttributes;
-
-CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, VertexAttributes* corner) {
-  Rows first, second;
-  gather_rows(vertices, 3u * index, &first);
-  gather_rows(vertices + 1, 3u * index, &second);
-  corner->position = vec(CLPV_COLUMN(first, x), CLPV_COLUMN(first, y), CLPV_COLUMN(first, z));
-  corner->normal = vec(CLPV_COLUMN(first, w), CLPV_COLUMN(second, x), CLPV_COLUMN(second, y));
-  corner->uv.u = CLPV_COLUMN(second, z);
-  corner->uv.v = CLPV_COLUMN(second, w);
-#if CLPV_COLOURED
-  Rows third;
-  gather_rows(vertices + 2, 3u * index, &third);
-  corner->colour = vec(CLPV_COLUMN(third, x), CLPV_COLUMN(third, y), CLPV_COLUMN(third, z));
-#endif
-}
-
-typedef struct {
-  Vec base_colour, emissive;
-  uint8 texture, emissive_texture;
-} MaterialLanes;
-
-CLPV_INLINE void material_of(__global const float4* materials, const uint8 index, MaterialLanes* material) {
-  Rows base, textures;
-  gather_rows(materials, 3u * index, &base);
-  gather_rows(materials + 2, 3u * index, &textures);
-  material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
-  material->texture = as_uint8(CLPV_COLUMN(textures, x));
-#if CLPV_EMISSIVE
-  Rows emissive;
-  gather_rows(materials + 1, 3u * index, &emissive);
-  material->emissive = vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
-  material->emissive_texture = as_uint8(CLPV_COLUMN(textures, y));
-#endif
-}
-
 typedef struct {
   Vec normal;  // unit, towards the viewer
   Vec albedo;
   Vec emissive;  // [W/m^2/sr]
 } PixelSurface;
-
-// Interpolated normal, flipped to the side of the triangle that faces the viewer. Near a silhouette the interpolated
-// normal itself may point away from the viewer.
-static inline Vec facing_normal(const Face face, const float8 facing, const Vec interpolated) {
-  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
-  const Vec front = vec_times(face.normal, facing > none ? -one : one);
-  const int8 usable = vec_dot(interpolated, interpolated) > none;
-  const Vec normal = vec(usable ? interpolated.x : front.x, usable ? interpolated.y : front.y,
-                         usable ? interpolated.z : front.z);
-  return vec_times(normal, (vec_dot(normal, front) < none ? -one : one) / sqrt(vec_dot(normal, normal)));
-}
 
 // Change of uv on a face for a step of `by` [m] across the view, from pixel to pixel.
 static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by, const Uv uv1,
@@ -99,20 +41,6 @@ static inline Uv uv_step(const Face face, const Weights weights, const Vec along
   const Uv step = {w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
   return step;
 }
-
-CLPV_INLINE void apply_texture(__global const float4* textures, __global const uint* texels,
-                               const uint8 texture, const Uv uv, const Uv step_x, const Uv step_y,
-                               Vec* colour) {
-  Vec factor;
-  clpv_trilinear(textures, texels, texture, uv, step_x, step_y, &factor);
-  *colour = vec_product(*colour, factor);
-}
-
-// Parameters of the scene's buffers, in rows of float4.
-#define CLPV_SCENE                                                                                     \
-  __global const float4 *vertices, __global const float4 *triangles, __global const float4 *materials, \
-      __global const float4 *textures, __global const uint *texels
-#define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
 // Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
 CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const float8 depth, const uint8 triangle,
@@ -131,7 +59,8 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const f
   const Vec ray = clpv_along(view, p.x, p.y);
   const float8 facing = vec_dot(face.normal, ray);
 
-  surface->normal = facing_normal(face, facing, vec_blend(w, a.normal, b.normal, c.normal));
+  const float8 towards_viewer = facing > (float8)(0.0f) ? (float8)(-1.0f) : (float8)(1.0f);
+  surface->normal = normal_towards(vec_times(face.normal, towards_viewer), vec_blend(w, a.normal, b.normal, c.normal));
   surface->albedo = material.base_colour;
 #if CLPV_EMISSIVE
   surface->emissive = material.emissive;

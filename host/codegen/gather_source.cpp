@@ -42,10 +42,13 @@ std::string pack_source(const Basis& basis) {
   return coefficient_macros(basis.size()) + pair_macros(basis.size(), "(((const float*)&(a).c{})[lane])");
 }
 
+std::string radiance_source(const Basis& basis) {
+  return coefficient_macros(basis.size()) + pair_macros(basis.size(), "(a).c{}") + basis.kernel_source();
+}
+
 std::string gather_source(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
                           bool from_table) {
-  std::string text =
-      coefficient_macros(basis.size()) + pair_macros(basis.size(), "(a).c{}") + basis.kernel_source();
+  std::string text = radiance_source(basis);
   if (from_table) text += table_basis_source(basis, lobes.table_size);
   return text + gather_weights(basis.size(), transport, from_table);
 }

@@ -18,6 +18,9 @@ std::string pack_source(const Basis& basis);
 std::string gather_source(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
                           bool from_table);
 
+/// For kernels/radiance.h: coefficient_macros, CLPV_EACH_PAIR, and the functions of the basis of swept light.
+std::string radiance_source(const Basis& basis);
+
 /// Number of float8 in a record, each with two coefficients of three channels.
 int packed_pairs(const Basis& basis);
 

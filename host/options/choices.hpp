@@ -89,6 +89,21 @@ constexpr double usual_gather_offset(Gathering gathering) {
   return {};
 }
 
+/// Final gather of light from surfaces nearer than a cell.
+enum class Near {
+  off,     ///< volumes alone
+  traced,  ///< rays against the scene's triangles
+};
+
+template <>
+inline constexpr auto kNames<Near> = name_list("off", "traced");
+
+/// Pixels whose near field is computed: one of 2 x 2, or all.
+enum class NearSize { half, full };
+
+template <>
+inline constexpr auto kNames<NearSize> = name_list("half", "full");
+
 /// Number of sweep directions: 24 bins of 1, 4, 9 or 16 parts (basis/sweep.hpp).
 enum class Directions { of24, of96, of216, of384 };
 

@@ -100,6 +100,10 @@ void for_each_option(Options& o, Visit&& visit) {
         Named{});
   visit("gather-offset", o.gather_offset, "distance from the surface at which light is gathered [cells]",
         Range{0, 4});
+  visit("near", o.near,
+        "light from surfaces nearer than a cell: from the volumes (off), or by rays; needs --transport sweep",
+        Named{});
+  visit("near-size", o.near_size, "resolution of --near", Named{});
   visit("width", o.width, "image width [pixels]", Range{1, kMaxPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMaxPixels});
 }

@@ -50,6 +50,8 @@ struct RenderOptions {
   int blocker_stride = 3;
   Gathering gather = Gathering::visible;
   double gather_offset = usual_gather_offset(Gathering::visible);
+  Near near = Near::off;
+  NearSize near_size = NearSize::half;
   int width = 960, height = 540;
 
   VolumeFormat format() const { return {layout, storage}; }

@@ -38,7 +38,14 @@ GatherOptions gather_options(const RenderOptions& options) {
           .gather_offset = options.gather_offset,
           .lobes = options.lobes(),
           .table = options.table,
-          .format = options.format()};
+          .format = options.format(),
+          .packed = options.near != Near::off};
+}
+
+NearOptions near_options(const RenderOptions& options) {
+  return {.gather = gather_options(options),
+          .step = options.near_size == NearSize::half ? 2 : 1,
+          .reflects = options.bounces != Bounces::one};
 }
 
 }  // namespace clpv

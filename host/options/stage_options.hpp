@@ -66,6 +66,14 @@ struct GatherOptions {
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< of the cascades' volumes
   bool filtered = true;      ///< images: filtered by the sampler; false: from texels in float
+  bool packed = false;       ///< packs images too, for stage `near`
+};
+
+struct NearOptions {
+  GatherOptions gather = {};  ///< of the volumes
+  int step = 1;               ///< traces one of step x step pixels: 1 or 2
+  int rays = 4;               ///< per traced pixel, a power of two
+  bool reflects = false;      ///< surfaces that rays hit also reflect the volumes' light
 };
 
 /// `unit_flux_lobes`: as in Transport.
@@ -73,5 +81,6 @@ InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes)
 PropagateOptions propagate_options(const RenderOptions& options);
 SweepOptions sweep_options(const RenderOptions& options);
 GatherOptions gather_options(const RenderOptions& options);
+NearOptions near_options(const RenderOptions& options);
 
 }  // namespace clpv

@@ -21,13 +21,14 @@ enum class Stage {
   bounce,
   visibility,
   gather,
+  near,
   shade
 };
 
 template <>
 inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "inject", "blockers",
                                                 "reflectors", "propagate", "sweep", "bounce", "visibility",
-                                                "gather", "shade");
+                                                "gather", "near", "shade");
 
 /// A part of a frame that is timed separately: a stage, or one use of it. `whole`: everything that a benchmark launches.
 enum class Pass {
@@ -42,6 +43,7 @@ enum class Pass {
   propagate,   ///< steps, or a sweep with its bounces
   visibility,  ///< per cascade
   gather,
+  near,  ///< near field
   shade,
   whole,
 };
@@ -49,7 +51,7 @@ enum class Pass {
 template <>
 inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow", "rasterize-rsm",
                                                "emit", "inject-light", "inject-geometry", "blockers",
-                                               "reflectors", "propagate", "visibility", "gather", "shade",
-                                               "whole");
+                                               "reflectors", "propagate", "visibility", "gather", "near",
+                                               "shade", "whole");
 
 }  // namespace clpv

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "pathtracer/sampling.hpp"
+#include "basis/sampling.hpp"
 #include "reference/triangle.hpp"
 #include "scene/emission.hpp"
 

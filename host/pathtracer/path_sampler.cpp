@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "pathtracer/sampling.hpp"
+#include "basis/sampling.hpp"
 #include "reference/lighting.hpp"
 #include "reference/view.hpp"
 #include "scene/light_kind.hpp"

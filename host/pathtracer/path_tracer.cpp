@@ -10,10 +10,10 @@
 #include <thread>
 #include <utility>
 
+#include "basis/sampling.hpp"
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
-#include "pathtracer/sampling.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
 #include "support/error.hpp"

@@ -62,6 +62,7 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
       cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_),
       packed_(options.cascades) {
   require_sweep(options, scene);
+  if (options.near != Near::off) near_.emplace(session, gathered(), scene, buffers_, near_options(options));
   const std::size_t pixels = std::size_t(options.width) * options.height;
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
@@ -69,7 +70,9 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
 }
 
 void Frame::scene_moved() {
+  const unsigned instant = buffers_.clusters->instant();
   upload_moving(session_, scene_, buffers_);
+  if (near_ && buffers_.clusters->instant() != instant) near_->move();
 }
 
 void Frame::invalidate() {
@@ -106,6 +109,11 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
   {
     const StageScope scope(session_, {Pass::gather});
     gather(*camera_surface_, irradiance_);
+  }
+  if (near_) {
+    const StageScope scope(session_, {Pass::near});
+    const GatheredLight light = cascades_.light();
+    near_->add(*camera_surface_, gatherer_, lights_.shadowed(), light.scale, light.occluded, irradiance_);
   }
   const StageScope scope(session_, {Pass::shade});
   shader_.light(*camera_surface_, lights_.shadowed());

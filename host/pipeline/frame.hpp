@@ -16,6 +16,7 @@
 #include "pipeline/frame_cascades.hpp"
 #include "pipeline/frame_lights.hpp"
 #include "pipeline/gather.hpp"
+#include "pipeline/near.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
 #include "pipeline/shade.hpp"
@@ -74,6 +75,7 @@ class Frame {
   Rasterizer rasterizer_;
   Gatherer gatherer_;
   Shader shader_;
+  std::optional<NearField> near_;  ///< none: Near::off
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;

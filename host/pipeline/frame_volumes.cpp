@@ -36,6 +36,10 @@ void require_compatible(const RenderOptions& options) {
     throw Error(ExitCode::usage, "bounces: found '{}' with transport '{}', allowed: 1 (or transport 'sweep')",
                 name_of(options.bounces), name_of(options.transport));
   }
+  if (!sweeps(options) && options.near != Near::off) {
+    throw Error(ExitCode::usage, "near: found '{}' with transport '{}', allowed: off (or transport 'sweep')",
+                name_of(options.near), name_of(options.transport));
+  }
   require_faces(options);
 }
 

@@ -97,6 +97,7 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   require_fit(camera, grids, accumulated);
   if (sees() && occluded == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is occluded");
   reserve(grids.size());
+  cascades_ = grids.size();
   session_.write(grids_, grids);
   Kernel& kernel = gather_kernel(grids.size());
   kernel.set(camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()), 1 / scale,

@@ -41,10 +41,15 @@ class Gatherer {
               const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1,
               const Buffer* occluded = nullptr, const std::vector<bool>& changed = {});
 
+  /// Grids and packed volumes (kernels/gather_packed.h) of the last gather() on the device.
+  const Buffer& grids() const { return grids_; }
+  cl_uint cascades() const { return cascades_; }
+  const Buffer& packed() const { return packed_; }
+
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
-  /// Images are sampled directly, unless gathering selects single cells.
-  bool packs() const { return options_.format.layout != Layout::image || sees(); }
+  /// Images are sampled directly, unless gathering selects single cells or another stage needs packed volumes.
+  bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
   Kernel& gather_kernel(std::size_t cascades);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;
@@ -60,6 +65,7 @@ class Gatherer {
   std::optional<Kernel> pack_;
   std::map<std::size_t, Kernel> gather_;  ///< by number of cascades; only unpacked volumes depend on it
   Buffer packed_, grids_;
+  cl_uint cascades_ = 0;
 };
 
 }  // namespace clpv

@@ -95,6 +95,8 @@ glm::vec3 Materials::textured(std::uint32_t texture, const SurfacePoint& point,
   if (texture == CLPV_NO_TEXTURE) return glm::vec3(1);
   const Triangle& triangle = scene_->triangles[point.triangle];
   const glm::vec2 uv = interpolate(*scene_, triangle, point.weights, coordinates);
+  if (footprint.uv > 0)
+    return glm::vec3(look_up(textures_[texture], uv, {footprint.uv, 0}, {0, footprint.uv}));
   if (footprint.right == glm::dvec3(0) && footprint.below == glm::dvec3(0)) {
     return glm::vec3(look_up(scene_->textures[texture], uv));
   }

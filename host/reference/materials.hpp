@@ -17,9 +17,10 @@ struct SurfacePoint {
 };
 
 /// Footprint of a pixel on a triangle's plane: offsets [m] to the next pixel on the right and below. Zero: a point
-/// sample of the textures' finest level.
+/// sample of the textures' finest level. Or a square in texture coordinates of edge `uv`, if that is not 0.
 struct Footprint {
   glm::dvec3 right{0}, below{0};
+  double uv = 0;
 };
 
 /// Materials of a scene, which must outlive this object.

@@ -62,6 +62,9 @@ inline constexpr Tolerance kTolerances[] = {
     {"gather-filter", 2e-2, 2e-2},
     // As gather, divided by the share of visible weight, at least 1/64.
     {"gather-visible", 1e-3, 2e-2},
+    // float32 positions and directions of rays, and sums over 100 of them; pixels that rounding may decide are left out;
+    // measured 1e-6. float16 as gather.
+    {"near", 1e-4, 2e-2},
     // float32 light angles and distances; shadow filter weights use coordinates accurate to 1e-6 of the map's side.
     {"shade", 5e-6},
 };

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <span>
 
-namespace clpv::reference {
+namespace clpv {
 
 /// 64-bit hash of `x` (the finaliser of SplitMix64).
 constexpr std::uint64_t mix(std::uint64_t x) {
@@ -100,4 +100,4 @@ inline CdfSample sample_cdf(std::span<const double> cdf, double random) {
           *at > before ? std::clamp((random - before) / (*at - before), 0.0, 1.0) : 0.5};
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Tree of bounding boxes over the triangles of a scene, for rays on the device (kernels/triangle_tree.h). Built by
+// Embree's builder on the host, without OpenCL.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/shared/tree.h"
+#include "scene/scene.hpp"
+
+namespace clpv {
+
+/// A row: eight numbers, float or 32-bit integer as kernels/shared/tree.h says.
+using TreeRow = std::array<float, CLPV_TREE_WIDTH>;
+
+/// Moving triangles have a tree of their own below the root, so that motion rebuilds only that.
+class TriangleTree {
+ public:
+  /// Throws Error(run_time) if Embree fails.
+  explicit TriangleTree(const Scene& scene);
+
+  /// Rebuilds the tree of the moving triangles (Scene::moving). The scene has the same triangles as before.
+  void move(const Scene& scene);
+
+  const std::vector<TreeRow>& nodes() const {
+    return nodes_;
+  }  ///< CLPV_TREE_NODE_ROWS each; node 0 is the root
+  const std::vector<TreeRow>& leaves() const { return leaves_; }  ///< CLPV_TREE_LEAF_ROWS each
+
+ private:
+  void add(const Scene& scene, const std::vector<std::uint32_t>& triangles, int lane);
+
+  std::vector<std::uint32_t> moving_;  ///< triangles
+  std::vector<TreeRow> nodes_, leaves_;
+  std::size_t fixed_nodes_ = 0, fixed_leaves_ = 0;  ///< rows that motion does not change
+};
+
+}  // namespace clpv

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// CPU reference of kernels/cascades.h and kernels/gather_packed.h: samples of a cascade's volume and its weight, in double.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "kernels/shared/grid.h"
+#include "reference/volume.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv::reference {
+
+/// Trilinear interpolation: eight cells and their weights.
+struct TrilinearSample {
+  std::array<glm::ivec3, 8> cell;
+  std::array<double, 8> weight;
+};
+
+/// Returns the cells about `at` [cells from the first centre], clamped to a grid of n cells along each axis.
+TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
+
+/// Multiplies weights by the visible shares of the cells from `at`, and normalises them.
+void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n, const std::uint8_t* occluded);
+
+/// Interpolated coefficients of one channel.
+std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample);
+
+/// Blend weight of a cascade at a point: 1 inside, 0 at and beyond the boundary of the cube about the eye that it lights.
+double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double blend_cells);
+
+}  // namespace clpv::reference

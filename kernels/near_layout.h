@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Pixels of the near field: one of CLPV_NEAR_STEP x CLPV_NEAR_STEP pixels of the camera, in planes of numbers with an
+// empty border (shared/near.h); and the directions of their rays.
+//
+// From the host: CLPV_NEAR_STEP, CLPV_NEAR_RAYS (rays per pixel).
+#ifndef CLPV_NEAR_LAYOUT_H
+#define CLPV_NEAR_LAYOUT_H
+
+#include "lanes.h"
+#include "shared/near.h"
+#include "shared/view.h"
+#include "vec.h"
+
+// Eight pixels of a row.
+typedef struct {
+  uint width, height, pitch, plane;  // of the near field: pixels, and numbers of a row and of a plane
+  int x, y;                          // first pixel; may be in the border
+  uint at;                           // its index in a plane
+} NearRow;
+
+static inline uint near_pixels(const uint pixels) {
+  return (pixels + CLPV_NEAR_STEP - 1) / CLPV_NEAR_STEP;
+}
+
+// The pixels from (8 column, row) on.
+static inline NearRow near_row(const ClpvView view, const int column, const int row) {
+  NearRow r;
+  r.width = near_pixels(view.width);
+  r.height = near_pixels(view.height);
+  r.pitch = CLPV_NEAR_PITCH_OF(r.width);
+  r.plane = CLPV_NEAR_PLANE_OF(r.width, r.height);
+  r.x = column * CLPV_ABREAST;
+  r.y = row;
+  r.at = (uint)(row + CLPV_NEAR_ROWS) * r.pitch + (uint)(r.x + CLPV_NEAR_COLUMNS);
+  return r;
+}
+
+// True if a row has pixels.
+static inline bool near_inside(const NearRow r) {
+  return r.x < (int)r.width && r.y < (int)r.height;
+}
+
+// Vectors from three planes.
+CLPV_INLINE Vec near_vectors(__global const float* planes, const uint plane, const uint at) {
+  return vec(vload8(0, planes + at), vload8(0, planes + plane + at), vload8(0, planes + 2 * plane + at));
+}
+CLPV_INLINE void store_near_vectors(const Vec v, __global float* planes, const uint plane, const uint at) {
+  vstore8(v.x, 0, planes + at);
+  vstore8(v.y, 0, planes + plane + at);
+  vstore8(v.z, 0, planes + 2 * plane + at);
+}
+
+// Points of eight pixels.
+typedef struct {
+  Vec position, normal, tangent, bitangent;
+  float8 reach;
+} NearPoints;
+
+// Loads points. The tangents make an orthonormal frame without a branch (Duff et al., 'Building an Orthonormal Basis,
+// Revisited', JCGT 6(1), 2017).
+CLPV_INLINE void near_points_at(__global const float* points, const NearRow r, NearPoints* p) {
+  p->position = near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  p->normal = near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+  p->reach = vload8(0, points + CLPV_NEAR_REACH * r.plane + r.at);
+  const Vec n = p->normal;
+  const float8 one = (float8)(1.0f), sign = n.z < (float8)(0.0f) ? -one : one;
+  const float8 a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+  p->tangent = vec(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+  p->bitangent = vec(b, sign + n.y * n.y * a, -n.y);
+}
+
+// Unit directions of ray k of eight pixels. `directions`: about +z, by row of the tile, ray and axis; the four pixels of
+// a tile's row twice.
+CLPV_INLINE Vec near_directions(__global const float8* directions, const NearRow r, const NearPoints* p, const uint k) {
+  __global const float8* about_z = directions + ((uint)r.y % CLPV_NEAR_TILE * CLPV_NEAR_RAYS + k) * 3;
+  return vec_blend(vec(about_z[0], about_z[1], about_z[2]), p->tangent, p->bitangent, p->normal);
+}
+
+#endif

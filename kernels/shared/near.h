@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Layout of the near field's buffers (near_layout.h), shared by host and kernels.
+#ifndef CLPV_SHARED_NEAR_H
+#define CLPV_SHARED_NEAR_H
+
+#define CLPV_NEAR_TILE 4     // pixels along each side of a tile; each pixel of a tile has its own directions
+#define CLPV_NEAR_COLUMNS 8  // empty columns before and at least as many after each row, for the filter's window
+#define CLPV_NEAR_ROWS 2     // empty rows above and below
+
+// Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a surface in a cascade.
+#define CLPV_NEAR_POSITION 0
+#define CLPV_NEAR_NORMAL 3
+#define CLPV_NEAR_REACH 6
+#define CLPV_NEAR_PLANES 7
+
+// Numbers of a row and of a plane of `width` x `height` pixels.
+#define CLPV_NEAR_PITCH_OF(width) (((width) + 7) / 8 * 8 + 2 * CLPV_NEAR_COLUMNS)
+#define CLPV_NEAR_PLANE_OF(width, height) (CLPV_NEAR_PITCH_OF(width) * ((height) + 2 * CLPV_NEAR_ROWS))
+
+// Distance of a ray's origin from its surface [R].
+#define CLPV_NEAR_LIFT 1e-3f
+
+#endif

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// The tree of triangles: its boxes enclose each triangle once, and it follows moving ones. tests/near_test.cpp has rays.
+#include "pipeline/triangle_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <set>
+
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv::triangle_tree_test {
+namespace {
+
+using namespace test;
+
+/// Triangles of a tree, by child lane of the root; checks that boxes enclose them.
+struct TreeWalk {
+  const TriangleTree& tree;
+  const Scene& scene;
+  std::multiset<unsigned> triangles;
+  int depth = 0;
+
+  float number(std::size_t row, int lane) const { return tree.nodes()[row][lane]; }
+  void leaf(std::size_t index, const Bounds& box) {
+    const TreeRow& row = tree.leaves()[index * CLPV_TREE_LEAF_ROWS + CLPV_TREE_TRIANGLES];
+    for (int lane = 0; lane < CLPV_TREE_WIDTH; ++lane) {
+      const TreeRow* rows = &tree.leaves()[index * CLPV_TREE_LEAF_ROWS];
+      bool area = false;
+      for (int i = 0; i < 3; ++i) area = area || rows[CLPV_TREE_EDGE1 + i][lane] != 0;
+      if (!area) continue;
+      const unsigned triangle = std::bit_cast<unsigned>(row[lane]) & ~CLPV_TREE_MASKED;
+      triangles.insert(triangle);
+      for (const unsigned vertex : scene.triangles[triangle].vertex) {
+        for (int a = 0; a < 3; ++a) {
+          EXPECT_GE(scene.vertices[vertex].position[a], box.lower[a]);
+          EXPECT_LE(scene.vertices[vertex].position[a], box.upper[a]);
+        }
+      }
+    }
+  }
+  void node(std::size_t index, int level) {
+    depth = std::max(depth, level);
+    const std::size_t first = index * CLPV_TREE_NODE_ROWS;
+    for (int lane = 0; lane < CLPV_TREE_WIDTH; ++lane) {
+      Bounds box;
+      for (int a = 0; a < 3; ++a) {
+        box.lower[a] = number(first + CLPV_TREE_LOWER + a, lane);
+        box.upper[a] = number(first + CLPV_TREE_UPPER + a, lane);
+      }
+      if (box.lower.x > box.upper.x) continue;  // no child
+      const int child = std::bit_cast<int>(number(first + CLPV_TREE_CHILDREN, lane));
+      child < 0 ? leaf(~child, box) : node(child, level + 1);
+    }
+  }
+};
+
+Scene many_triangles(bool moving) {
+  Scene scene;
+  const unsigned plain = add_material(scene),
+                 masked = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
+  for (int i = 0; i < 3000; ++i) {
+    const glm::vec3 p(i % 10, i / 10 % 10, i / 100 + 0.1f * (i % 7));
+    add_triangle(scene, p, p + glm::vec3(0.5f, 0, 0.2f), p + glm::vec3(0, 0.5f, 0.1f),
+                 i % 5 == 0 ? masked : plain);
+  }
+  if (moving) scene.moving.push_back({3 * 1000, 3 * 500, 1000, 500});
+  return scene;
+}
+
+TEST(TriangleTree, HoldsEachTriangleOnce) {
+  for (const bool moving : {false, true}) {
+    const Scene scene = many_triangles(moving);
+    const TriangleTree tree(scene);
+    TreeWalk walk{tree, scene, {}};
+    walk.node(0, 1);
+    EXPECT_EQ(walk.triangles.size(), scene.triangles.size());
+    EXPECT_EQ(std::set<unsigned>(walk.triangles.begin(), walk.triangles.end()).size(),
+              scene.triangles.size());
+    EXPECT_LE(walk.depth, CLPV_TREE_DEPTH);
+  }
+}
+
+bool equal_bytes(const std::vector<TreeRow>& a, const std::vector<TreeRow>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(TreeRow)) == 0;
+}
+
+TEST(TriangleTree, MovesToWhatItWouldBeFromScratch) {
+  Scene scene = many_triangles(true);
+  TriangleTree tree(scene);
+  for (unsigned v = 3000; v < 4500; ++v) scene.vertices[v].position[1] += 0.01f * static_cast<float>(v % 300);
+  tree.move(scene);
+  const TriangleTree fresh(scene);
+  EXPECT_TRUE(equal_bytes(tree.nodes(), fresh.nodes()));  // integers in rows may read as NaN
+  EXPECT_TRUE(equal_bytes(tree.leaves(), fresh.leaves()));
+}
+
+TEST(TriangleTree, OfNothingIsEmpty) {
+  const TriangleTree tree{Scene{}};
+  EXPECT_EQ(tree.nodes().size(), std::size_t{CLPV_TREE_NODE_ROWS});
+  EXPECT_TRUE(tree.leaves().empty());
+}
+
+}  // namespace
+}  // namespace clpv::triangle_tree_test
