@@ -15,6 +15,7 @@ namespace {
 std::string opening(const char* function, const TableName& name) {
   return fmt::format(
       "CLPV_INLINE Coefficients {}(const float x, const float y, const float z CLPV_AND_{}) {{\n"
+      "#pragma OPENCL FP_CONTRACT OFF\n"  // rounding of a table's index: ZonalTable
       "  Coefficients r;\n",
       function, name.macro);
 }
@@ -25,13 +26,22 @@ std::string height(const glm::dvec3& centre, const std::vector<std::string>& nam
   return sum_of_products(factors, names);
 }
 
-/// Expression that reads table number `table` at the expression `t`.
+/// Expression of dot_in_float(centre, (x, y, z)); `names`: names of x, y, z.
+std::string dot_product(const glm::dvec3& centre, const std::vector<std::string>& names) {
+  std::string text;
+  for (int i = 0; i < 3; ++i) {
+    if (centre[i] == 0) continue;
+    text += fmt::format("{}{} * {}", text.empty() ? "" : " + ", float_literal(centre[i]), names[i]);
+  }
+  return text;
+}
+
+/// Expression that reads table number `table` at the expression `t`. Halving is exact, so half of size - 1 is one factor.
 std::string entry(const std::string& t, std::size_t table, int table_size, const TableName& name) {
-  const double half = (table_size - 1) / 2.0;
   const std::size_t first = table * static_cast<std::size_t>(table_size);
-  return fmt::format("CLPV_TABLE_READ({}, {}clamp((int)fma({}, {}, {}), 0, {}))", name.argument,
-                     first == 0 ? "" : fmt::format("{} + ", first), t, float_literal(half),
-                     float_literal(half + ZonalTable::kIndexBias), table_size - 1);
+  return fmt::format("CLPV_TABLE_READ({}, {}clamp((int)(({} + 1.0f) * {}), 0, {}))", name.argument,
+                     first == 0 ? "" : fmt::format("{} + ", first), t, float_literal((table_size - 1) / 2.0),
+                     table_size - 1);
 }
 
 /// Statements of rotation_to(): the rotation of +z to (x, y, z).
@@ -78,8 +88,8 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
   }
   for (int i = 0; i < basis.size(); ++i) {
     for (int j = 0; j < basis.size(); ++j) {
-      const std::string t =
-          height(basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
+      const std::string t = dot_product(
+          basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
       const std::size_t table = products.index[i * basis.size() + j];
       const std::string weight = float_literal(up_lobe[j]), value = entry(t, table, table_size, {});
       text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
@@ -93,7 +103,7 @@ std::string table_basis_source(const Basis& basis, int table_size, const TableNa
   const Parameters lambdas = function_parameters(basis);
   std::string text = opening("clpv_table_basis", name);
   for (int i = 0; i < basis.size(); ++i) {
-    const std::string t = height(basis.centres()[i], {"x", "y", "z"});
+    const std::string t = dot_product(basis.centres()[i], {"x", "y", "z"});
     text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.index[i], table_size, name));
   }
   return text + "  return r;\n}\n";

@@ -43,6 +43,14 @@ ZonalTables tables_of(const Parameters& parameters, int size,
 
 }  // namespace
 
+float dot_in_float(const glm::dvec3& a, const glm::dvec3& b) {
+  // Double holds products of floats exactly, and the casts prevent fused multiply-adds.
+  const glm::vec3 p(a), q(b);
+  const auto x = static_cast<float>(double{p.x} * q.x), y = static_cast<float>(double{p.y} * q.y),
+             z = static_cast<float>(double{p.z} * q.z);
+  return x + y + z;
+}
+
 ZonalTable::ZonalTable(int size, const std::function<double(double)>& function) {
   if (size < 2 || size > kMaxTableSize) {
     throw Error(ExitCode::usage, "table size: found {}, allowed: 2..{}", size, kMaxTableSize);
@@ -50,16 +58,14 @@ ZonalTable::ZonalTable(int size, const std::function<double(double)>& function) 
   for (int i = 0; i < size; ++i) values_.push_back(function(-1 + 2.0 * i / (size - 1)));
 }
 
-double ZonalTable::position(double t) const {
-  return (t + 1) / 2 * (size() - 1) + kIndexBias;
-}
-
-double ZonalTable::operator()(double t) const {
-  return values_[std::clamp(std::floor(position(t)), 0.0, size() - 1.0)];
+double ZonalTable::operator()(float t) const {
+  const int index = static_cast<int>((t + 1) * 0.5f * static_cast<float>(size() - 1));
+  return values_[static_cast<std::size_t>(std::clamp(index, 0, size() - 1))];
 }
 
 double ZonalTable::to_step(double t) const {
-  return std::abs(position(t) - std::round(position(t)));
+  const double position = (t + 1) / 2 * (size() - 1);
+  return std::abs(position - std::round(position));
 }
 
 Parameters gram_parameters(const Basis& basis) {
@@ -94,7 +100,7 @@ ZonalTables function_tables(const Basis& basis, int size) {
 std::vector<double> evaluate(const Basis& basis, const ZonalTables& tables, const glm::dvec3& w) {
   if (basis.centres().empty()) return basis.evaluate(w);
   std::vector<double> b;
-  for (const glm::dvec3& centre : basis.centres()) b.push_back(tables(b.size(), glm::dot(centre, w)));
+  for (const glm::dvec3& centre : basis.centres()) b.push_back(tables(b.size(), dot_in_float(centre, w)));
   return b;
 }
 
@@ -120,9 +126,9 @@ Lobes::Lobes(const Basis& basis, const LobeOptions& options)
   if (rotate_ && options.table_size != 0) tables_ = gram_tables(basis, options.table_size);
 }
 
-double Lobes::gram(std::size_t i, std::size_t j, double t) const {
-  if (tables_) return (*tables_)(i * basis_.lambdas().size() + j, t);
-  return gram_function(t, basis_.lambdas()[i] * basis_.lambdas()[j]);
+double Lobes::gram(std::size_t i, std::size_t j, const glm::dvec3& a, const glm::dvec3& b) const {
+  if (tables_) return (*tables_)(i * basis_.lambdas().size() + j, dot_in_float(a, b));
+  return gram_function(glm::dot(a, b), basis_.lambdas()[i] * basis_.lambdas()[j]);
 }
 
 std::vector<double> Lobes::operator()(const glm::dvec3& axis) const {
@@ -133,7 +139,7 @@ std::vector<double> Lobes::operator()(const glm::dvec3& axis) const {
   for (std::size_t j = 0; j < centres.size(); ++j) {
     const glm::dvec3 centre = rotation * centres[j];
     for (std::size_t i = 0; i < centres.size(); ++i)
-      rotated[i] += gram(i, j, glm::dot(centres[i], centre)) * up_lobe_[j];
+      rotated[i] += gram(i, j, centres[i], centre) * up_lobe_[j];
   }
   return basis_.gram_inverse() * rotated;
 }

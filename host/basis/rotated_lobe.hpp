@@ -29,24 +29,22 @@ struct LobeOptions {
   bool table_functions = false;  ///< true: stages read basis functions from G's table
 };
 
-/// Table of a function of t in [-1, 1]. The first entry is for t = -1, the last for t = 1. Reads without interpolation: entry
-/// floor((t + 1)/2 (size - 1) + 1/1024). The 1/1024 absorbs rounding of a t on an entry (the cube's 1/3), so that float and
-/// double read the same entry.
+/// Returns a . b in float: each component, product and sum rounded, in order of x, y, z. As kernels compute it.
+float dot_in_float(const glm::dvec3& a, const glm::dvec3& b);
+
+/// Table of a function of t in [-1, 1]. The first entry is for t = -1, the last for t = 1. Reads without interpolation, as the
+/// paper's Appendix 2: entry int((t + 1) * 0.5 * (size - 1)) in float. Rounding decides where t lies on an entry (the cube's 1/3).
 class ZonalTable {
  public:
-  static constexpr double kIndexBias = 1.0 / 1024;
-
   /// Throws Error(usage) for fewer than 2 or more than 2^20 entries.
   ZonalTable(int size, const std::function<double(double)>& function);
 
-  double operator()(double t) const;
+  double operator()(float t) const;
   double to_step(double t) const;  ///< distance from t to the next change of entry [entries]
   int size() const { return static_cast<int>(values_.size()); }
   std::vector<float> values() const { return {values_.begin(), values_.end()}; }  ///< entries for a device
 
  private:
-  double position(double t) const;  ///< fractional index of t
-
   std::vector<double> values_;
 };
 
@@ -64,7 +62,7 @@ struct ZonalTables {
   std::vector<std::size_t> index;  ///< as Parameters::index
 
   /// Value at t of member `i`, a centre or pair of centres.
-  double operator()(std::size_t i, double t) const { return tables[index[i]](t); }
+  double operator()(std::size_t i, float t) const { return tables[index[i]](t); }
   std::vector<float> values() const;  ///< entries of all tables in order, for a device
 };
 
@@ -91,7 +89,8 @@ class Lobes {
   std::vector<double> operator()(const glm::dvec3& axis) const;
 
  private:
-  double gram(std::size_t i, std::size_t j, double t) const;
+  /// Returns H_ij(a . b).
+  double gram(std::size_t i, std::size_t j, const glm::dvec3& a, const glm::dvec3& b) const;
 
   const Basis& basis_;
   bool rotate_;

@@ -225,7 +225,8 @@ const std::vector<std::pair<std::string_view, std::string_view>>& paper_options(
       {"evaluate", "table"},     {"table-size", "256"},   {"table", "image"},       {"transport", "sampled"},
       {"state", "coefficients"}, {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"},
       {"blocker-stride", "1"},   {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},
-      {"storage", "half"},
+      {"storage", "half"},       {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},
+      {"rsm-size", "256"},       {"iterations", "8"},     {"width", "960"},         {"height", "540"},
   };
   return options;
 }
