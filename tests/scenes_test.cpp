@@ -33,7 +33,7 @@ TEST_P(Generator, ReproducesTheCommittedFiles) {
         << file << " differs from the committed one";
     ++files;
   }
-  EXPECT_EQ(files, name == "atrium" ? 5 : 4) << "models and scene files";
+  EXPECT_EQ(files, name == "atrium" ? 5 : 6) << "models and scene files";
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
