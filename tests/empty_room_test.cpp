@@ -39,9 +39,9 @@ TEST(EmptyRoom, FinerCellsAreNoWorse) {
   const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/empty_room.json");
   reference::PathTracerOptions traced;
   traced.noise = 0.04;
-  const Image truth =
-      traced_view(trace_paths(scene, scene.lights, camera_view(scene.camera("front"), kWidth, kHeight), traced),
-                  Show::indirect);
+  const Image truth = traced_view(
+      trace_paths(scene, scene.lights, camera_view(scene.camera("front"), kWidth, kHeight), traced),
+      Show::indirect);
   const Quality coarse = quality(scene, truth, "sh3", 32), fine = quality(scene, truth, "sh3", 64);
   for (const Quality& q : {coarse, fine}) {
     EXPECT_NEAR(q.energy, 1, 0.03);

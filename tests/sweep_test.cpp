@@ -304,7 +304,8 @@ SquareErrors square_errors(const char* name, int parts, int cells_across) {
   double errors[2] = {0, 0}, squares[2] = {0, 0}, energy = 0, exact_energy = 0;
   for (int i = 0; i < n * n; ++i) {
     const int u = i % n, v = i / n;
-    const glm::ivec3 points[2] = {{u, v, static_cast<int>(0.56 / s)}, {n / 2 + static_cast<int>(0.34 / s), u, v}};
+    const glm::ivec3 points[2] = {{u, v, static_cast<int>(0.56 / s)},
+                                  {n / 2 + static_cast<int>(0.34 / s), u, v}};
     for (int side = 0; side < 2; ++side) {
       const double found = fluence(swept, points[side]) / (s * s), wanted = exact(points[side]);
       errors[side] += (found - wanted) * (found - wanted), squares[side] += wanted * wanted;

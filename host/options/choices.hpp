@@ -7,10 +7,10 @@
 
 namespace clpv {
 
-enum class PresetName { best, paper };
+enum class PresetName { best, fine, paper };
 
 template <>
-inline constexpr auto kNames<PresetName> = name_list("best", "paper");
+inline constexpr auto kNames<PresetName> = name_list("best", "fine", "paper");
 
 /// Memory layout of volumes (kernels/volume/). `image`: 3-D image of RGBA texels, four coefficients per texel. `aos`: all
 /// coefficients of a sample are adjacent. `soa`: one array of samples per channel and coefficient. `tiled`: blocks of 8

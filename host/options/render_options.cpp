@@ -41,9 +41,13 @@ struct OnOff {};
 std::string preset_help() {
   std::string text =
       "set of options; single options override it\n"
-      "best: the defaults, closest to path tracing at about the cost of the published scheme\n"
-      "paper: the published scheme";
-  for (const auto& [name, value] : paper_options()) text += fmt::format(" --{} {}", name, value);
+      "best: the defaults, closest to path tracing at about the cost of the published scheme";
+  const auto add = [&](const char* preset, const PresetOptions& options) {
+    text += fmt::format("\n{}:", preset);
+    for (const auto& [name, value] : options) text += fmt::format(" --{} {}", name, value);
+  };
+  add("fine: for who has time", fine_options());
+  add("paper: the published scheme", paper_options());
   return text;
 }
 
@@ -218,9 +222,8 @@ nlohmann::json to_json(const RenderOptions& options) {
   return json;
 }
 
-// Kaplanyan and Dachsbacher's scheme with the paper's basis, step by step as published.
-const std::vector<std::pair<std::string_view, std::string_view>>& paper_options() {
-  static const std::vector<std::pair<std::string_view, std::string_view>> options{
+const PresetOptions& paper_options() {
+  static const PresetOptions options{
       {"basis", "srbf8v2"},      {"lambda", "0.25"},      {"lobe", "rotate"},       {"lobe-time", "kernel"},
       {"evaluate", "table"},     {"table-size", "256"},   {"table", "image"},       {"transport", "sampled"},
       {"state", "coefficients"}, {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"},
@@ -231,12 +234,20 @@ const std::vector<std::pair<std::string_view, std::string_view>>& paper_options(
   return options;
 }
 
+const PresetOptions& fine_options() {
+  static const PresetOptions options{{"grid", "64"}, {"near", "traced"}, {"near-size", "full"}};
+  return options;
+}
+
 void apply_preset(RenderOptions& options, PresetName name) {
   const std::vector<OptionDescription> defaults = list_options(RenderOptions{});
-  for (const auto& [option, value] : paper_options()) {
-    const bool paper = name == PresetName::paper;
-    set_option(options, option,
-               paper ? value : std::ranges::find(defaults, option, &OptionDescription::name)->value);
+  for (const PresetOptions* preset : {&paper_options(), &fine_options()}) {
+    for (const auto& [option, value] : *preset)
+      set_option(options, option, std::ranges::find(defaults, option, &OptionDescription::name)->value);
+  }
+  if (name != PresetName::best) {
+    for (const auto& [option, value] : name == PresetName::paper ? paper_options() : fine_options())
+      set_option(options, option, value);
   }
   options.preset = name;
 }

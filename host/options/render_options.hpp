@@ -65,7 +65,7 @@ Transport make_transport(const RenderOptions& options, const Basis& basis);
 /// Returns all options with their current values, in the order of --help.
 std::vector<OptionDescription> list_options(const RenderOptions& options);
 
-/// Sets one option from text. `preset` sets every option of paper_options(), so set it before options that override it.
+/// Sets one option from text. `preset` sets every option that any preset names, so set it before options that override it.
 /// `basis` clears `centres`. Throws Error(usage) with option, value found and values allowed, for example
 /// "layout: found 'planes', allowed: image|aos|soa|tiled".
 void set_option(RenderOptions& options, std::string_view name, std::string_view value);
@@ -73,10 +73,14 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
 /// Returns every option by name, as a number, string or boolean.
 nlohmann::json to_json(const RenderOptions& options);
 
-/// Returns names and values of the options that `paper` (the published scheme) sets. `best` leaves them at their defaults.
-const std::vector<std::pair<std::string_view, std::string_view>>& paper_options();
+/// Names and values of the options that a preset sets; `best` leaves them at their defaults.
+using PresetOptions = std::vector<std::pair<std::string_view, std::string_view>>;
+/// The published scheme: that of Kaplanyan and Dachsbacher with the paper's basis and sizes.
+const PresetOptions& paper_options();
+/// Finer cells, and the near field of every pixel.
+const PresetOptions& fine_options();
 
-/// Sets these options to their values in the preset. Other options, such as the image size, do not change.
+/// Sets these options to their values in the preset, those of other presets to their defaults. Other options do not change.
 void apply_preset(RenderOptions& options, PresetName name);
 
 }  // namespace clpv

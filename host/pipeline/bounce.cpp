@@ -14,7 +14,8 @@ constexpr int kChannels = 3;
 Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& options)
     : volumes_(session, options.grid, options.format),
       reflectors_(options.parts.size()),
-      inject_reflected_(session, volumes_.program("bounce.cl", bounce_source_text(basis)), "inject_reflected") {
+      inject_reflected_(session, volumes_.program("bounce.cl", bounce_source_text(basis)),
+                        "inject_reflected") {
   if (options.bounces != Bounces::all) return;
   const ProgramSource program = volumes_.program("bounce.cl", bounce_source_text(basis));
   inject_unit_.emplace(session, program, "inject_unit");

@@ -65,8 +65,9 @@ void add_one_bounce(const Basis& basis, const Transport& transport, std::vector<
 }
 
 /// light += R D_1 + R (1 + E) D_2 in the coarsest cascade, R D in finer ones, D interpolated from the next coarser one.
-void add_all_bounces(const Basis& basis, const Transport& transport, const std::vector<SweptCascade>& cascades,
-                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
+void add_all_bounces(const Basis& basis, const Transport& transport,
+                     const std::vector<SweptCascade>& cascades, const std::vector<const Volume*>& reflectors,
+                     std::vector<Volume>& light) {
   const SweptCascade& coarsest = cascades.back();
   const Volume first = swept_along_24(basis, transport, coarsest, light.back());
   Volume reflected(first.n, basis.size());
@@ -79,8 +80,8 @@ void add_all_bounces(const Basis& basis, const Transport& transport, const std::
     const std::vector<SweptCascade> coarser(cascades.begin() + static_cast<std::ptrdiff_t>(c) + 1,
                                             cascades.end());
     const Volume swept = sweep(basis, transport, coarser)[0];
-    inject_reflected(basis, *reflectors[c],
-                     interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid), light[c]);
+    inject_reflected(basis, *reflectors[c], interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid),
+                     light[c]);
   }
 }
 

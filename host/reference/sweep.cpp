@@ -32,10 +32,7 @@ class Sweep {
  public:
   Sweep(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
         const BoundaryCondition& boundary)
-      : cascade_(cascade),
-        boundary_(boundary),
-        n_(cascade.grid.n),
-        means_(part_means(basis, cascade.parts)) {
+      : cascade_(cascade), boundary_(boundary), n_(cascade.grid.n), means_(part_means(basis, cascade.parts)) {
     set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
@@ -103,7 +100,7 @@ class Sweep {
   SweptCascade cascade_;
   BoundaryCondition boundary_;
   int n_;
-  Matrix means_;  ///< part_means()
+  Matrix means_;                       ///< part_means()
   std::vector<Volume> transmittance_;  ///< by link_of()
 };
 
