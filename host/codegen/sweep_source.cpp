@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "basis/bounce.hpp"
 #include "codegen/linear_code.hpp"
