@@ -43,7 +43,7 @@ TEST(Compare, IdenticalImages) {
   EXPECT_EQ(c.channels, 3);
   EXPECT_EQ(c.nrmse_best_gain.value(), 0);
   EXPECT_NEAR(c.energy_ratio.value(), 1, 1e-12);
-  EXPECT_EQ(c.perceptual_failures, 0u);
+  EXPECT_EQ(c.flip.value(), 0);
   EXPECT_EQ(c.valid_pixels, 64u * 48u);
   EXPECT_TRUE(to_json(c)["psnr_db"].is_null());
   EXPECT_EQ(to_json(c)["schema"], 1);
@@ -110,17 +110,19 @@ TEST(Compare, ABlackReferenceHasNoRelativeError) {
   EXPECT_TRUE(black.identical);
 }
 
-TEST(Compare, PerceptualTestFindsAPatchAndIgnoresSmallErrors) {
+TEST(Compare, FlipSeesAPatchAndHardlySmallErrors) {
   const Image b = plain(128, 128, 0.5f, 0.5f, 0.5f);
   Image patch = b, trace = b;
   for (int y = 40; y < 80; ++y) {
     for (int x = 40; x < 80; ++x) patch.at(x, y, 0) = 0.1f;
   }
   for (float& value : trace.pixels) value *= 1.0005f;
-  EXPECT_GT(compare(patch, "a", b, "b").perceptual_failures, 500u);
-  EXPECT_EQ(compare(trace, "a", b, "b").perceptual_failures, 0u);
+  EXPECT_GT(compare(patch, "a", b, "b").flip.value(), 0.03);
+  EXPECT_LT(compare(trace, "a", b, "b").flip.value(), 5e-3);
+  EXPECT_GT(compare(patch, "a", b, "b", -3).flip.value(), 0.0);
+  EXPECT_LT(compare(patch, "a", b, "b", -3).flip.value(), compare(patch, "a", b, "b").flip.value()) << "in the dark";
   for (std::size_t p = 0; p < patch.pixel_count(); ++p) patch.pixels[4 * p + 3] = 0;
-  EXPECT_EQ(compare(patch, "a", b, "b").perceptual_failures, 0u);
+  EXPECT_FALSE(compare(patch, "a", b, "b").flip.has_value()) << "no valid pixel";
 }
 
 TEST(Compare, RejectsWhatCannotBeCompared) {

@@ -54,7 +54,7 @@ QualityCell cell(const std::string& basis, const std::string& camera, double nrm
   c.best_gain = 0.9;
   c.nrmse_best_gain = nrmse / 2;
   c.energy_ratio = 1.5;
-  c.perceptual = 0.25;
+  c.flip = 0.25;
   c.frame_ms = ms;
   c.stage_ms = {{"propagate", ms / 2}, {"rasterize-rsm", ms / 4}, {"rasterize-camera", ms / 4}};
   return c;
@@ -63,7 +63,7 @@ QualityCell cell(const std::string& basis, const std::string& camera, double nrm
 QualityCell rejected(const std::string& basis, const std::string& camera) {
   QualityCell c = cell(basis, camera, 0, 0);
   c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(),
-      c.perceptual.reset();
+      c.flip.reset();
   c.stage_ms.clear();
   c.rejected = "a \"quoted\" reason, with a comma";
   return c;
@@ -86,7 +86,7 @@ TEST(QualityReport, SummariesAreMeansBestFirst) {
 TEST(QualityReport, CsvHasALineACell) {
   const std::string csv = quality_csv({cell("sh2", "a", 0.9, 10), rejected("sh4", "a")});
   EXPECT_EQ(csv,
-            "scene,camera,basis,rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms,"
+            "scene,camera,basis,rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,flip,frame_ms,"
             "propagate_ms,rasterize-camera_ms,rasterize-rsm_ms\n"
             "room,a,sh2,,0.9,0.9,0.45,1.5,0.25,10,5,2.5,2.5\n"
             "room,a,sh4,\"a \"\"quoted\"\" reason, with a comma\",,,,,,,,,\n");

@@ -18,7 +18,7 @@ namespace {
 
 struct CompareOptions {
   std::string a, b, layer, output;
-  float amplify = 15;
+  float amplify = 15, exposure = 0;
 };
 
 bool is_png(const std::filesystem::path& path) {
@@ -45,7 +45,7 @@ void run(const CompareOptions& options) {
   check_output(options.output);
   const Image a = extract_layer(read_image(options.a), options.layer, options.a);
   const Image b = extract_layer(read_image(options.b), options.layer, options.b);
-  const Comparison comparison = compare(a, options.a, b, options.b);
+  const Comparison comparison = compare(a, options.a, b, options.b, options.exposure);
   if (!options.output.empty()) write_difference(options.output, difference_image(a, b, options.amplify));
   fmt::print("{}\n", to_json(comparison).dump(2));
 }
@@ -62,6 +62,9 @@ void add_compare(CLI::App& app, Shared&) {
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--exposure", options->exposure, "exposure of linear images for flip [EV]")
+      ->capture_default_str()
+      ->check(CLI::Range(-30.0, 30.0));
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
   command->footer(
@@ -70,8 +73,10 @@ void add_compare(CLI::App& app, Shared&) {
       "and HDR, sRGB-encoded from 0 to 1 in PNG. psnr_db has its peak at 1 and is null without error; nrmse "
       "is rmse over\n"
       "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and "
-      "perceptual_failures (pixels,\n"
-      "Yee 1999) are over the valid pixels: alpha above 0 in both, all where there is no alpha.\n"
+      "flip are over the\n"
+      "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et al. 2020) is "
+      "the mean\n"
+      "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
       "Different sizes and values that are not finite exit with 3.");
   command->callback([options] { run(*options); });
 }

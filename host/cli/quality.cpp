@@ -243,8 +243,8 @@ void add_quality(CLI::App& app, Shared& shared) {
   command->footer(
       "nrmse: root mean square error over the ground truth's, over the valid pixels; best "
       "gain: after the\n"
-      "single factor that minimises it; energy: ratio of sums; perceptual: share of pixels that fail Yee's "
-      "test (1999).\n"
+      "single factor that minimises it; energy: ratio of sums; FLIP: mean visible difference, 0 to 1,\n"
+      "at the scene's exposure (Andersson et al. 2020).\n"
       "An interrupted run resumes from its cached cells. A new build, device or kernel source invalidates "
       "them.\n"
       "mpirun -n N clpv quality ... distributes the cells over N ranks (docs/scale.md).");

@@ -114,7 +114,7 @@ nlohmann::json view(Session& session, const Options& options, const Subject& sub
   nlohmann::json shots = nlohmann::json::array();
   for (const PageVariant& variant : page_variants(options)) {
     const Image image = render_indirect(session, subject, camera, options, variant);
-    nlohmann::json shot = to_json(compare(image, variant.title, truth, "truth"));
+    nlohmann::json shot = to_json(compare(image, variant.title, truth, "truth", exposure));
     shot.update(add_image(drawing, fmt::format("{}-{}", stem, shots.size()), image, exposure));
     shot.update({{"title", variant.title}, {"options", as_arguments(variant.given)}});
     shots.push_back(std::move(shot));

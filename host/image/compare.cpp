@@ -2,12 +2,11 @@
 // Errors of an image against its reference.
 #include "image/compare.hpp"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "image/flip.hpp"
 #include "image/tone_map.hpp"
 #include "support/error.hpp"
 #include "support/json_optional.hpp"
@@ -61,24 +60,28 @@ void check_comparable(const Image& a, const std::string& a_name, const Image& b,
   check_finite(b, b_name);
 }
 
-/// Input of Yee's test: linear RGB, black where a pixel is not valid.
-OIIO::ImageBuf perceptual_input(const Image& image, const std::vector<bool>& valid) {
-  const std::vector<std::size_t> channels = colour_channels(image);
-  OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeFloat));
-  auto* out = static_cast<float*>(buffer.localpixels());
-  for (std::size_t p = 0; p < valid.size(); ++p) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float value = pixel(image, p)[channels[channels.size() < 3 ? 0 : c]];
-      out[3 * p + c] = !valid[p] ? 0.0f : image.encoding == Encoding::srgb ? srgb_decode(value) : value;
-    }
-  }
-  return buffer;
+std::optional<double> ratio(double numerator, double denominator) {
+  if (denominator == 0) return std::nullopt;
+  return numerator / denominator;
 }
 
-std::uint64_t perceptual_failures(const Image& a, const Image& b, const std::vector<bool>& valid) {
-  const OIIO::ImageBuf in_a = perceptual_input(a, valid), in_b = perceptual_input(b, valid);
-  OIIO::ImageBufAlgo::CompareResults results{};
-  return static_cast<std::uint64_t>(OIIO::ImageBufAlgo::compare_Yee(in_a, in_b, results));
+/// R, G and B as a display shows them; black where a pixel is not valid.
+Image shown(const Image& image, const std::vector<bool>& valid, float exposure) {
+  const std::vector<std::size_t> channels = colour_channels(image);
+  Image rgb = make_image(image.width, image.height, {"R", "G", "B"});
+  rgb.encoding = image.encoding;
+  for (std::size_t p = 0; p < valid.size(); ++p) {
+    for (std::size_t c = 0; c < 3 && valid[p]; ++c)
+      rgb.pixels[3 * p + c] = pixel(image, p)[channels[channels.size() < 3 ? 0 : c]];
+  }
+  return image.encoding == Encoding::srgb ? rgb : display_image(rgb, exposure, ToneMap::aces);
+}
+
+std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid, float exposure) {
+  const std::vector<double> differences = flip(shown(a, valid, exposure), shown(b, valid, exposure));
+  double sum = 0;
+  for (std::size_t p = 0; p < valid.size(); ++p) sum += valid[p] ? differences[p] : 0;
+  return ratio(sum, static_cast<double>(std::ranges::count(valid, true)));
 }
 
 /// Sums over pairs of values.
@@ -93,11 +96,6 @@ struct Sums {
     squared_error += (x - y) * (x - y);
   }
 };
-
-std::optional<double> ratio(double numerator, double denominator) {
-  if (denominator == 0) return std::nullopt;
-  return numerator / denominator;
-}
 
 /// sqrt(squared_error / reference_power); 0 if both are 0, empty if only the power is 0.
 std::optional<double> normalised(double squared_error, double reference_power) {
@@ -124,7 +122,8 @@ double pixel_luminance(const float* values, const std::vector<std::size_t>& chan
 
 }  // namespace
 
-Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name) {
+Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name,
+                   float exposure) {
   check_comparable(a, a_name, b, b_name);
   const std::vector<std::size_t> in_a = colour_channels(a), in_b = colour_channels(b);
   const auto alpha_a = a.channel("A"), alpha_b = b.channel("A");
@@ -162,13 +161,13 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
   result.mean_luminance /= static_cast<double>(pixels);
   result.identical = result.max_error == 0;
   set_valid_errors(result, valid);
-  result.perceptual_failures = perceptual_failures(a, b, is_valid);
+  result.flip = mean_flip(a, b, is_valid, exposure);
   return result;
 }
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, width, height, channels, rmse, nrmse, relative_mse, psnr_db,
                                    max_error, identical, valid_pixels, nrmse_valid, best_gain,
-                                   nrmse_best_gain, energy_ratio, perceptual_failures)
+                                   nrmse_best_gain, energy_ratio, flip)
 
 nlohmann::json to_json(const Comparison& c) {
   nlohmann::json json = c;

@@ -31,13 +31,14 @@ struct Comparison {
   std::optional<double> best_gain;        ///< factor g that minimises |g A - B|
   std::optional<double> nrmse_best_gain;  ///< nrmse of g A
   std::optional<double> energy_ratio;     ///< sum of A over sum of B
-  std::uint64_t perceptual_failures =
-      0;  ///< pixels with a visible difference by OpenImageIO's test (H. Yee 1999)
+  std::optional<double> flip;  ///< mean difference that an observer sees, from 0 to 1 (image/flip.hpp); empty without valid pixels
 };
 
 /// Compares A with the reference B; messages contain `a_name` and `b_name`. Throws Error(bad_input) for different sizes,
 /// numbers of colour channels or encodings, and for values that are not finite.
-Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name);
+/// Linear images are tone-mapped for FLIP: ToneMap::aces at `exposure` [EV].
+Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name,
+                   float exposure = 0);
 
 nlohmann::json to_json(const Comparison& comparison);
 

@@ -118,9 +118,13 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
     if (!kept) check_place(file);
     return kept ? "there" : "";
   });
-  if (!found.empty()) return kept ? *std::move(kept) : read_reference(file);
+  if (!found.empty()) {
+    GroundTruth truth = kept ? *std::move(kept) : read_reference(file);
+    truth.exposure = scene.exposure;
+    return truth;
+  }
   const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
-  GroundTruth truth{all_views(traced), file, true, traced.samples, traced.noise};
+  GroundTruth truth{all_views(traced), file, true, traced.samples, traced.noise, scene.exposure};
   describe(truth.image, scene, camera, traced, options);
   if (ranks.is_root()) write_exr(file, truth.image);
   return truth;

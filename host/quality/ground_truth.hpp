@@ -16,7 +16,8 @@ struct GroundTruth {
   std::filesystem::path file;  ///< cache file
   bool traced = false;         ///< true: traced by this call; false: read from the cache
   std::uint32_t samples = 0;
-  double noise = 0;  ///< TracedImage::noise
+  double noise = 0;    ///< TracedImage::noise
+  float exposure = 0;  ///< the scene's [EV]
 };
 
 /// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is missing.

@@ -33,14 +33,12 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show) {
   const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
-  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string());
+  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string(), truth.exposure);
   cell.nrmse = c.nrmse_valid;
   cell.best_gain = c.best_gain;
   cell.nrmse_best_gain = c.nrmse_best_gain;
   cell.energy_ratio = c.energy_ratio;
-  if (c.valid_pixels > 0) {
-    cell.perceptual = static_cast<double>(c.perceptual_failures) / static_cast<double>(c.valid_pixels);
-  }
+  cell.flip = c.flip;
 }
 
 /// Total times of one frame per stage.
@@ -125,7 +123,7 @@ std::string quality_key(const reference::GroundTruth& truth, const Device& devic
   static const std::string program = program_fingerprint();
   Fingerprint print;
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
-  print.add(to_json(options).dump()).add(name_of(show)).add(frames);
+  print.add(to_json(options).dump()).add(name_of(show)).add(frames).add(truth.exposure);
   if (!options.centres.empty()) {
     const auto basis = make_basis(options);
     for (const glm::dvec3& centre : basis->centres()) print.add(centre.x).add(centre.y).add(centre.z);
@@ -173,7 +171,7 @@ void add(QualitySummary& sum, const QualityCell& cell) {
   sum.worst_nrmse = std::max(sum.worst_nrmse, nrmse);
   sum.nrmse_best_gain += cell.nrmse_best_gain.value_or(0);
   sum.energy_ratio += cell.energy_ratio.value_or(0);
-  sum.perceptual += cell.perceptual.value_or(0);
+  sum.flip += cell.flip.value_or(0);
   sum.frame_ms += cell.frame_ms;
   for (const auto& [stage, ms] : cell.stage_ms) sum.stage_ms[stage] += ms;
 }
@@ -182,7 +180,7 @@ void divide(QualitySummary& sum) {
   const int rendered = sum.views - sum.rejected;
   if (rendered == 0) return;
   for (double* value :
-       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.perceptual, &sum.frame_ms}) {
+       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.flip, &sum.frame_ms}) {
     *value /= rendered;
   }
   for (auto& [stage, ms] : sum.stage_ms) ms /= rendered;

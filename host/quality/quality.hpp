@@ -42,7 +42,7 @@ struct QualityCell {
   std::optional<double> nrmse;  ///< RMSE / RMS of the ground truth, over the valid pixels
   std::optional<double> best_gain, nrmse_best_gain;
   std::optional<double> energy_ratio;      ///< sum of the frame / sum of the ground truth
-  std::optional<double> perceptual;        ///< share of the valid pixels that fail the perceptual test (Yee)
+  std::optional<double> flip;              ///< mean FLIP of the valid pixels, at the scene's exposure
   double frame_ms = 0;                     ///< all stages
   std::map<std::string, double> stage_ms;  ///< median over the timed frames; sum over cascades and lights
   bool from_events = true;                 ///< times from device events; false: wall time
@@ -81,7 +81,7 @@ class QualityStore {
 struct QualitySummary {
   Variant variant;
   int views = 0, rejected = 0;
-  double nrmse = 0, worst_nrmse = 0, nrmse_best_gain = 0, energy_ratio = 0, perceptual = 0, frame_ms = 0;
+  double nrmse = 0, worst_nrmse = 0, nrmse_best_gain = 0, energy_ratio = 0, flip = 0, frame_ms = 0;
   std::map<std::string, double> stage_ms;
 };
 

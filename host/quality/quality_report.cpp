@@ -72,10 +72,10 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 }  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain, nrmse_best_gain,
-                                   energy_ratio, perceptual, frame_ms, stage_ms, compute_units, setup_s,
+                                   energy_ratio, flip, frame_ms, stage_ms, compute_units, setup_s,
                                    measured_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse, nrmse_best_gain,
-                                   energy_ratio, perceptual, frame_ms, stage_ms)
+                                   energy_ratio, flip, frame_ms, stage_ms)
 
 nlohmann::json to_json(const QualityCell& cell) {
   nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects lose the order
@@ -104,7 +104,7 @@ std::string quality_csv(const std::vector<QualityCell>& cells) {
   const std::set<std::string> stages = stage_names(cells);
   std::string text = "scene,camera";
   for (const auto& [name, value] : cells[0].variant) text += ',' + csv_field(name);
-  text += ",rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,perceptual,frame_ms";
+  text += ",rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,flip,frame_ms";
   for (const std::string& stage : stages) text += ',' + csv_field(stage + "_ms");
   text += '\n';
   for (const QualityCell& cell : cells) {
@@ -112,7 +112,7 @@ std::string quality_csv(const std::vector<QualityCell>& cells) {
     for (const auto& [name, value] : cell.variant) text += ',' + csv_field(value);
     text += ',' + csv_field(cell.rejected);
     for (const auto& value :
-         {cell.nrmse, cell.best_gain, cell.nrmse_best_gain, cell.energy_ratio, cell.perceptual}) {
+         {cell.nrmse, cell.best_gain, cell.nrmse_best_gain, cell.energy_ratio, cell.flip}) {
       text += ',' + text_of(value);
     }
     text += ',' + (cell.rejected.empty() ? fmt::format("{:.4g}", cell.frame_ms) : "");
@@ -134,7 +134,7 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
   std::vector<std::vector<std::string>> rows(1);
   rows[0] = {"NRMSE %"};
   for (const auto& [scene, camera] : views) rows[0].push_back(scene + ":" + camera);
-  for (const char* name : {"mean", "worst", "best gain", "energy", "percept. %", "frame ms"})
+  for (const char* name : {"mean", "worst", "best gain", "energy", "FLIP", "frame ms"})
     rows[0].push_back(name);
   for (const std::string_view kind : kinds) rows[0].emplace_back(kind);
   for (const QualitySummary& sum : summarise(cells)) {
@@ -154,7 +154,7 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
     row[c++] = percent(sum.worst_nrmse);
     row[c++] = percent(sum.nrmse_best_gain);
     row[c++] = fmt::format("{:.2f}", sum.energy_ratio);
-    row[c++] = percent(sum.perceptual);
+    row[c++] = fmt::format("{:.3f}", sum.flip);
     row[c++] = fmt::format("{:.1f}", sum.frame_ms);
     for (const std::string_view kind : kinds) row[c++] = fmt::format("{:.1f}", kind_ms(sum, kind));
   }
