@@ -8,10 +8,11 @@ if(CLPV_BUILD_PROGRAM)
   if(HELP2MAN)
     set(page ${CMAKE_CURRENT_BINARY_DIR}/clpv.1)
     add_custom_command(OUTPUT ${page}
-      COMMAND ${HELP2MAN} --no-info --help-option=--help-all "--name=${PROJECT_DESCRIPTION}" --output=${page} $<TARGET_FILE:clpv>
-      DEPENDS clpv VERBATIM)
+      COMMAND ${HELP2MAN} --no-info --help-option=--help-all "--name=${PROJECT_DESCRIPTION}"
+              --include=${CMAKE_CURRENT_SOURCE_DIR}/docs/manual_sections.h2m --output=${page} $<TARGET_FILE:clpv>
+      DEPENDS clpv docs/manual_sections.h2m VERBATIM)
     add_custom_target(clpv_pages ALL DEPENDS ${page})
-    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)  # a build of the target clpv alone has none
   else()
     message(STATUS "help2man not found: no man page")
   endif()
@@ -21,11 +22,13 @@ install(DIRECTORY tools/clpv_draw DESTINATION ${CMAKE_INSTALL_DATADIR}/clpv
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/clpv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
-configure_package_config_file(cmake/clpvConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake
+# In a folder of its own: find_package searches folders of PATH, and the build folder may be one.
+set(package ${CMAKE_CURRENT_BINARY_DIR}/package)
+configure_package_config_file(cmake/clpvConfig.cmake.in ${package}/clpvConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
 file(RELATIVE_PATH CLPV_PREFIX_FROM_PC /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/clpv.pc.in ${CMAKE_CURRENT_BINARY_DIR}/clpv.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/clpv.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/clpvConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/clpvConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/clpvConfigVersion.cmake
+write_basic_package_version_file(${package}/clpvConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${package}/clpvConfig.cmake ${package}/clpvConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
