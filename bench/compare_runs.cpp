@@ -2,7 +2,7 @@
 // Compares the medians of two reports.
 #include "bench/compare_runs.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "support/error.hpp"
 #include "support/json_schema.hpp"
 
 namespace clpv::bench {
@@ -33,13 +34,14 @@ void require_report(const nlohmann::json& report, const std::string& file) {
 
 struct Time {
   double ms, mad;
+  bool repeated;  ///< more than once
 };
 
 std::map<std::string, Time> times_of(const nlohmann::json& report) {
   std::map<std::string, Time> times;
   for (const nlohmann::json& row : report.at("benchmarks")) {
     if (row.at("status") == "unsupported") continue;
-    times[row.at("name")] = {row.at("median"), row.at("mad")};
+    times[row.at("name")] = {row.at("median"), row.at("mad"), row.value("repetitions", 2) > 1};
   }
   return times;
 }
@@ -60,10 +62,11 @@ Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& afte
       continue;
     }
     Change change{name, old_time->second.ms, new_time->second.ms, old_time->second.mad, new_time->second.mad};
+    change.spread_known = old_time->second.repeated && new_time->second.repeated;
     const double difference = std::abs(change.after_ms - change.before_ms),
                  deviation = kDeviationPerMad * std::hypot(change.before_mad, change.after_mad);
-    change.significant =
-        difference > kSignificantDeviations * deviation && difference > kMinRelativeChange * change.before_ms;
+    change.significant = change.spread_known && difference > kSignificantDeviations * deviation &&
+                         difference > kMinRelativeChange * change.before_ms;
     result.changes.push_back(change);
   }
   for (const auto& [name, time] : old_times) {
@@ -72,15 +75,27 @@ Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& afte
   return result;
 }
 
+void require_ratios(const Comparison& comparison, double limit) {
+  std::vector<std::string> slower;
+  for (const Change& change : comparison.changes) {
+    if (change.ratio() > limit && (change.significant || !change.spread_known))
+      slower.push_back(fmt::format("{} ({:.3f})", change.name, change.ratio()));
+  }
+  if (slower.empty()) return;
+  throw Error(ExitCode::validation, "{} of {} rows take more than {} times as long as before: {}",
+              slower.size(), comparison.changes.size(), limit, fmt::join(slower, ", "));
+}
+
 std::string comparison_table(const Comparison& comparison) {
   std::size_t width = 3;
   for (const Change& change : comparison.changes) width = std::max(width, change.name.size());
   std::string text =
       fmt::format("{:<{}} {:>22} {:>22} {:>8}\n", "row", width, "before [ms]", "after [ms]", "ratio");
   for (const Change& change : comparison.changes) {
-    const char* verdict = !change.significant  ? "within the spread"
-                          : change.ratio() > 1 ? "SLOWER"
-                                               : "faster";
+    const char* verdict = !change.spread_known  ? "spread unknown"
+                          : !change.significant ? "within the spread"
+                          : change.ratio() > 1  ? "SLOWER"
+                                                : "faster";
     text += fmt::format("{:<{}} {:>22} {:>22} {:>8.3f} {}\n", change.name, width,
                         fmt::format("{:.4f} +- {:.4f}", change.before_ms, change.before_mad),
                         fmt::format("{:.4f} +- {:.4f}", change.after_ms, change.after_mad), change.ratio(),

@@ -91,6 +91,34 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
   EXPECT_THAT(table, HasSubstr("0.500 faster"));
 }
 
+TEST(BenchCompare, OneRepetitionHasNoSpread) {
+  nlohmann::json once = report({{"row", 10, 0}});
+  once["benchmarks"][0]["repetitions"] = 1;
+  const Comparison found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
+  EXPECT_FALSE(found.changes.at(0).significant);
+  EXPECT_THAT(comparison_table(found), HasSubstr("spread unknown"));
+  EXPECT_THROW(require_ratios(found, 1.1), Error);
+  EXPECT_NO_THROW(require_ratios(found, 1.3));
+}
+
+TEST(BenchCompare, RatiosAboveALimitFail) {
+  const Comparison found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
+                                        report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
+  EXPECT_NO_THROW(require_ratios(found, 1.2)) << "a change within the spread is none";
+  const Comparison slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
+  EXPECT_NO_THROW(require_ratios(slow, 1.6));
+  try {
+    require_ratios(slow, 1.2);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::validation);
+    EXPECT_THAT(error.what(), HasSubstr("slow (1.500)"));
+  }
+  const test::Outcome alone = test::run_here("bench ceilings --fail-above 1.2");
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("--compare"));
+}
+
 TEST(BenchCompare, RejectsWhatIsNoReport) {
   EXPECT_THROW(compare_runs(nlohmann::json::array(), report({}), "old.json"), Error);
   EXPECT_THROW(

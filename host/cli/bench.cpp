@@ -24,6 +24,7 @@ namespace clpv {
 namespace bench_command {
 
 struct Options {
+  double fail_above = 0;  ///< 0: not given
   std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
   bench::BenchOptions bench;
 };
@@ -66,6 +67,8 @@ std::string as_text(const Options& options, const bench::Suite& suite, const Ses
 
 /// Reads the report of an earlier run before the benchmark starts. Null if not requested.
 nlohmann::json earlier_run(const Options& options) {
+  if (options.compare.empty() && options.fail_above > 0)
+    throw Error(ExitCode::usage, "--fail-above {}: needs --compare", options.fail_above);
   if (options.compare.empty()) return nullptr;
   if (options.format != "table" && options.out.empty()) {
     throw Error(ExitCode::usage,
@@ -135,10 +138,10 @@ void run(Options options, const Shared& shared) {
                session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);
   write(options, as_text(options, suite, session, results));
+  bench::Comparison comparison;
   if (!before.is_null()) {
-    fmt::print("{}{}", options.out.empty() ? "\n" : "",
-               bench::comparison_table(
-                   bench::compare_runs(before, report_of(options, session, results), options.compare)));
+    comparison = bench::compare_runs(before, report_of(options, session, results), options.compare);
+    fmt::print("{}{}", options.out.empty() ? "\n" : "", bench::comparison_table(comparison));
   }
   if (plot) {
     plot->add("bench.json", report_of(options, session, results));
@@ -146,6 +149,7 @@ void run(Options options, const Shared& shared) {
   }
   session.store_programs();
   require_right_results(results.rows);
+  if (options.fail_above > 0) bench::require_ratios(comparison, options.fail_above);
 }
 
 }  // namespace bench_command
@@ -183,6 +187,9 @@ void add_bench(CLI::App& app, Shared& shared) {
   add(*command, "-o,--out", "FILE", options->out, "output file (default: stdout)");
   add(*command, "--compare", "OLD.json", options->compare,
       "JSON of an earlier run, for a table of changes and their spread");
+  add(*command, "--fail-above", "RATIO", options->fail_above,
+      "with --compare: exit with 5 if a row takes more than RATIO times as long, beyond the spread")
+      ->check(CLI::Range(1.0, 1e6));
   add(*command, "--plot", "DIR", options->plot, "output folder for SVG and PNG charts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }
