@@ -41,10 +41,19 @@ void write_difference(const std::string& output, const Image& difference) {
   }
 }
 
+/// Reads the layer of "FILE:LAYER", or the layer `usual` of "FILE". A file may have a colon in its name.
+Image read_layer(const std::string& text, const std::string& usual) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(text))
+    return extract_layer(read_image(text), usual, text);
+  const std::string file = text.substr(0, colon);
+  return extract_layer(read_image(file), text.substr(colon + 1), file);
+}
+
 void run(const CompareOptions& options) {
   check_output(options.output);
-  const Image a = extract_layer(read_image(options.a), options.layer, options.a);
-  const Image b = extract_layer(read_image(options.b), options.layer, options.b);
+  const Image a = read_layer(options.a, options.layer);
+  const Image b = read_layer(options.b, options.layer);
   const Comparison comparison = compare(a, options.a, b, options.b, options.exposure);
   if (!options.output.empty()) write_difference(options.output, difference_image(a, b, options.amplify));
   fmt::print("{}\n", to_json(comparison).dump(2));
@@ -56,8 +65,8 @@ void add_compare(CLI::App& app, Shared&) {
   CLI::App* command =
       app.add_subcommand("compare", "Errors of image A against ground truth B, as JSON on stdout");
   auto options = std::make_shared<CompareOptions>();
-  command->add_option("A", options->a, "image: .exr, .png or .hdr")->required();
-  command->add_option("B", options->b, "ground truth of the same size")->required();
+  command->add_option("A", options->a, "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer")->required();
+  command->add_option("B", options->b, "ground truth of the same size, with a layer likewise")->required();
   add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
