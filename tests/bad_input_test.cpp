@@ -152,6 +152,7 @@ TEST_F(BadSceneFileTest, EachMember) {
                   {R"("metres_per_unit": "big")", {"/metres_per_unit"}},
                   {R"("exposure": 100)", {"/exposure", "-64 to 64"}},
                   {R"("cascades": {"count": 0})", {"/cascades/count"}},
+                  {R"("cascades": {"count": 9})", {"/cascades/count"}},
                   {R"("cascades": {"count": 1.5})", {"/cascades/count"}},
                   {R"("cascades": {"count": 17})", {"/cascades/count"}},
               });

@@ -42,6 +42,19 @@ TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
               AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));
 }
 
+TEST(CommandLine, HelpIsShortAndHelpAllIsWhole) {
+  const std::string brief = clpv("render --help").out, whole = clpv("render --help-all").out;
+  for (const char* common : {"--basis", "--grid", "--transport", "--near", "--output"})
+    EXPECT_THAT(brief, HasSubstr(common));
+  for (const char* rare : {"--lobe-time", "--blocker-stride", "--table-size", "--rsm-format"}) {
+    EXPECT_THAT(brief, ::testing::Not(HasSubstr(rare)));
+    EXPECT_THAT(whole, HasSubstr(rare));
+  }
+  EXPECT_THAT(brief, ::testing::ContainsRegex("--help-all lists [0-9]+ more options"));
+  EXPECT_THAT(clpv("--help").out, AllOf(HasSubstr("Look:"), HasSubstr("Measure:"), HasSubstr("Verify:"),
+                                        ::testing::Not(HasSubstr("prepare"))));
+}
+
 TEST(CommandLine, AClosedPipeEndsTheProgram) {
   // SIGPIPE ends the program without a message, like any other.
   const test::TemporaryFolder folder;

@@ -73,8 +73,9 @@ TEST(Junit, ListsStagesCasesAndFailures) {
               AllOf(HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"3\" failures=\"2\">"),
                     HasSubstr("<testsuite name=\"inject\" tests=\"1\" failures=\"0\">"),
                     HasSubstr("<testsuite name=\"gather\" tests=\"2\" failures=\"2\">"),
-                    HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\"/>"),
-                    HasSubstr("name=\"a&lt;b\">"), HasSubstr("cell &quot;1&quot; &amp; more</failure>")));
+                    HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000\"/>"),
+                    HasSubstr("name=\"a&lt;b\" time=\"0.000\">"),
+                    HasSubstr("cell &quot;1&quot; &amp; more</failure>")));
 }
 
 TEST(Junit, IsWrittenByTheCheck) {

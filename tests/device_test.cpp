@@ -99,7 +99,7 @@ TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
   const test::TemporaryFolder empty;
   const std::string none = "OCL_ICD_VENDORS=" + empty.path().string() + " ";
   const auto listed = test::run(none + CLPV_PROGRAM " devices --json");
-  EXPECT_EQ(listed.exit_code, 0);
+  EXPECT_EQ(listed.exit_code, 4);
   EXPECT_TRUE(nlohmann::json::parse(listed.out).at("devices").empty());
   EXPECT_THAT(listed.err, HasSubstr("no OpenCL device"));
   const auto asked = test::run(none + CLPV_PROGRAM " devices --device 0");

@@ -80,37 +80,55 @@ void expect_usage(const std::string& before, const std::vector<BadLine>& lines) 
 }
 
 TEST(HostileCommandLines, OfFrames) {
-  expect_usage("render " + kCornell + " -o @/out.exr ",
-               {
-                   {"--view inside", {"--view", "inside", "indirect"}},
-                   {"--tonemap sepia", {"--tonemap", "sepia"}},
-                   {"--grid 0", {"grid", "'0'", "1..512"}},
-                   {"--grid 99999999999999999999", {"grid", "1..512"}},
-                   {"--grid 0x10", {"grid", "0x10", "1..512"}},
-                   {"--cascades 9", {"cascades", "1..8"}},
-                   {"--cascade-size 0", {"cascade-size", "greater than 0"}},
-                   {"--cascade-size nan", {"cascade-size", "nan"}},
-                   {"--width 0", {"width", "1..16384"}},
-                   {"--height 16385", {"height", "1..16384"}},
-                   {"--rsm-size 8193", {"rsm-size", "1..8192"}},
-                   {"--shadow-size -8", {"shadow-size"}},
-                   {"--lambda 0 --basis srbf4", {"lambda", "greater than 0 and less than 1"}},
-                   {"--lambda 1 --basis srbf4", {"lambda", "greater than 0 and less than 1"}},
-                   {"--table-size 1", {"table-size", "2..65536"}},
-                   {"--iterations 4097", {"iterations", "0..4096"}},
-                   {"--blocker-stride 0", {"blocker-stride", "1..16"}},
-                   {"--gather-offset 5", {"gather-offset", "0..4"}},
-                   {"--bounces 2 --transport exact", {"bounces"}},
-                   {"--frames 0", {"--frames"}},
-                   {"--frames 1001", {"--frames"}},
-                   {"--time nan", {"--time", "-1000000..1000000"}},
-                   {"--exposure bright", {"--exposure"}},
-                   {"--frobnicate 3", {"--frobnicate"}},
-                   {"--grid 8 --grid 16", {"--grid"}},
-                   {"--grid", {"--grid"}},
-                   {"--basis a\033[31mb", {"basis"}},
-                   {"--basis \377\376", {"basis"}},
-               });
+  expect_usage(
+      "render " + kCornell + " -o @/out.exr ",
+      {
+          {"--view inside", {"--view", "inside", "indirect"}},
+          {"--tonemap sepia", {"--tonemap", "sepia"}},
+          {"--grid 0", {"grid", "'0'", "1..512"}},
+          {"--grid 99999999999999999999", {"grid", "1..512"}},
+          {"--grid 0x10", {"grid", "0x10", "1..512"}},
+          {"--cascades 9", {"cascades", "1..8"}},
+          {"--cascade-size 0", {"cascade-size", "greater than 0"}},
+          {"--cascade-size nan", {"cascade-size", "nan"}},
+          {"--width 0", {"width", "1..16384"}},
+          {"--height 16385", {"height", "1..16384"}},
+          {"--rsm-size 8193", {"rsm-size", "1..8192"}},
+          {"--shadow-size -8", {"shadow-size"}},
+          {"--lambda 0 --basis srbf4", {"lambda", "greater than 0 and less than 1"}},
+          {"--lambda 1 --basis srbf4", {"lambda", "greater than 0 and less than 1"}},
+          {"--table-size 1", {"table-size", "2..65536"}},
+          {"--iterations 4097", {"iterations", "0..4096"}},
+          {"--blocker-stride 0", {"blocker-stride", "1..16"}},
+          {"--gather-offset 5", {"gather-offset", "0..4"}},
+          {"--bounces 2 --transport exact", {"bounces"}},
+          {"--frames 0", {"--frames"}},
+          {"--frames 1001", {"--frames"}},
+          {"--time nan", {"--time", "-1000000..1000000"}},
+          {"--exposure bright", {"--exposure"}},
+          {"--exposure nan", {"--exposure"}},
+          {"--exposure inf", {"--exposure"}},
+          {"--camera=", {"--camera"}},
+          {"--frobnicate 3", {"--frobnicate"}},
+          {"--iteration 3", {"'--iteration'", "did you mean --iterations?"}},
+          {"--iterations 24",
+           {"--iterations 24 has no effect with --transport sweep (the default)",
+            "allowed with --transport sampled or exact"}},
+          {"--lambda 0.3", {"--lambda 0.3 has no effect with --basis sh3 (the default)"}},
+          {"--lobe rotate --basis bins24", {"--lobe rotate has no effect with --basis bins24;"}},
+          {"--evaluate table --basis srbf4", {"--evaluate table has no effect with --transport sweep"}},
+          {"--table-size 64 --basis srbf4", {"--table-size 64 has no effect with --lobe exact"}},
+          {"--directions 24 --preset paper",
+           {"--directions 24 has no effect with --transport sampled (set by --preset paper)"}},
+          {"--blocker-stride 2", {"--blocker-stride 2 has no effect with --blockers scene"}},
+          {"--near-size full", {"--near-size full has no effect with --near off"}},
+          {"--blocking areas --occlusion off", {"--blocking areas has no effect with --occlusion off;"}},
+          {"--preset paper --transport sweep", {"found 'kernel' (set by --preset paper)"}},
+          {"--grid 8 --grid 16", {"--grid"}},
+          {"--grid", {"--grid"}},
+          {"--basis a\033[31mb", {"basis"}},
+          {"--basis \377\376", {"basis"}},
+      });
 }
 
 TEST(HostileCommandLines, OfCommands) {
@@ -126,6 +144,7 @@ TEST(HostileCommandLines, OfCommands) {
                        {"--quiet renderr " + kCornell, {"'renderr'", "did you mean render?"}},
                        {"reference scene.json -o a.exr", {"now 'pathtrace'"}},
                        {"qualtiy", {"did you mean quality?"}},
+                       {"report @/out", {"nothing to show"}},
                        {"basis --search 4 --most-condition 9", {"now '--max-condition'"}},
                        {"--quiet", {"subcommand"}},
                        {"--device 99 devices2", {"devices"}},
@@ -215,6 +234,8 @@ TEST(HostileSurroundings, Variables) {
   const auto rejected = [](const std::string& variables, int code, const std::vector<std::string>& words) {
     expect_rejected({variables, kTiny + "-o @/out.exr", code, words, {{"file", ""}}, {}, variables});
   };
+  rejected("CLPV_PROGRAM_CACHE=none", 2, {"CLPV_PROGRAM_CACHE: found 'none', allowed: on, off"});
+  rejected("CLPV_KERNEL_DIR=@/none", 2, {"CLPV_KERNEL_DIR: found", "a folder with kernel files"});
   rejected("CLPV_PROGRAM_CACHE=off CLPV_PROGRAM_DUMP=@/none", 1, {"none/", "there is no folder"});
   rejected("env -u POCL_CACHE_DIR XDG_CACHE_HOME=@/file", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
 }

@@ -181,6 +181,44 @@ TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
   EXPECT_FALSE(fs::exists(image));
 }
 
+/// Empty caches, so that a render compiles for seconds.
+std::string compiling(const fs::path& cache, const fs::path& image) {
+  fs::create_directories(cache / "pocl");
+  return "env XDG_CACHE_HOME=" + cache.string() + " POCL_CACHE_DIR=" + (cache / "pocl").string() +
+         " " CLPV_PROGRAM " -v render " + kTiny + kSmall + "-o " + image.string();
+}
+
+/// Waits until `text` is in the file.
+bool wait_for(const fs::path& said, const std::string& text) {
+  for (int i = 0; i < 1200; ++i, std::this_thread::sleep_for(50ms))
+    if (read_file(said).find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST_F(Killed, AnInterruptEndsHelpers) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "helpers need a second core";
+  const fs::path said = folder_ / "said";
+  Child child(compiling(folder_ / "cache", folder_ / "a.exr"), said);
+  ASSERT_TRUE(wait_for(said, "compiling ")) << read_file(said);
+  std::this_thread::sleep_for(1s);  // into a compilation
+  const Clock::time_point asked = Clock::now();
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_LT(Clock::now() - asked, 10s) << "a whole compilation takes longer";
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+}
+
+TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
+  const fs::path said = folder_ / "said";
+  Child child("taskset -c 0 " + compiling(folder_ / "cache", folder_ / "a.exr"),
+              said);  // one core: no helpers
+  ASSERT_TRUE(wait_for(said, "compiled in")) << read_file(said);
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: stopping after this kernel; once more to stop now"));
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+}
+
 TEST_F(Killed, AFolderThatDisappearsIsReported) {
   const fs::path film = folder_ / "film", said = folder_ / "said";
   Child child(CLPV_PROGRAM " " + sequence(film), said);

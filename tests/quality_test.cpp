@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "support/error.hpp"
@@ -153,6 +154,20 @@ class QualityCommand : public ::testing::Test {
  private:
   test::TemporaryFolder folder_;
 };
+
+TEST_F(QualityCommand, MeasuresOnlyWhatIsNamed) {
+  const test::Outcome named = quality("--basis sh2 --camera left --format json");  // and --grid
+  ASSERT_EQ(named.exit_code, 0) << named.err;
+  EXPECT_EQ(nlohmann::json::parse(named.out)["variants"].size(), 1u);
+}
+
+TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
+  std::ofstream(file("cache")) << "a file, so that no folder of this name can be made";
+  const test::Outcome outcome = quality("--basis sh2 --camera left --spp 4 --format json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("results are not cached"));
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["variants"].size(), 1u);
+}
 
 TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   const std::string matrix =

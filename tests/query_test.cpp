@@ -119,6 +119,19 @@ TEST_F(PointsFile, BadLinesAreNamed) {
   EXPECT_THROW(read_points(folder.path()), Error);
 }
 
+TEST(UnreachedSurfaces, AreReported) {
+  const test::TemporaryFolder images;
+  const std::string render = "render " + kCornell + " --width 48 --height 27 --grid 16 --rsm-size 64 -o " +
+                             (images / "a.exr").string();
+  const Outcome all = run_here(render);
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.err, ::testing::Not(HasSubstr("outside the cascades")));
+  const Outcome few = run_here(render + " --cascades 1 --cascade-size 1");
+  ASSERT_EQ(few.exit_code, 0) << few.err;
+  EXPECT_THAT(few.err,
+              ::testing::ContainsRegex("[0-9.]+ % of the visible surface lies outside the cascades"));
+}
+
 TEST_F(PointsFile, QueryAddsLightToEachPoint) {
   folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n900,0,0,0,1,0\n");
   const auto query = [&](const std::string& more) {

@@ -89,7 +89,7 @@ TEST_F(SequenceTest, ARunResumesWhereAnotherEnded) {
 
 TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
   ASSERT_EQ(sequence("--frames 2 --fps 10 --format png").exit_code, 0);
-  for (const std::string other : {"--fps 5", "--fps 10 --from 3", "--fps 10 --iterations 3",
+  for (const std::string other : {"--fps 5", "--fps 10 --from 3", "--fps 10 --gather-offset 0.3",
                                   "--fps 10 --exposure 1", "--fps 10 --view albedo"}) {
     const std::string before = read_file(frame(1, "png"));
     const Outcome outcome = sequence("--frames 2 --format png " + other);

@@ -5,13 +5,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "parallel/ranks.hpp"
 #include "support/error.hpp"
+#include "support/helpers.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
@@ -22,14 +25,30 @@
 namespace clpv {
 
 namespace reference {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CheckResult, stage, variant, worst, allowed, place)
+
+/// A NaN has no number in JSON: null.
+void from_json(const nlohmann::json& json, CheckResult& result) {
+  result.stage = json.at("stage");
+  result.variant = json.at("variant");
+  result.worst = json.at("worst").is_null() ? std::nan("") : json.at("worst").get<double>();
+  result.allowed = json.at("allowed");
+  result.place = json.at("place");
+  result.seconds = json.at("seconds");
 }
+
+void to_json(nlohmann::json& json, const CheckResult& result) {
+  json = {{"stage", result.stage},     {"variant", result.variant}, {"worst", result.worst},
+          {"allowed", result.allowed}, {"place", result.place},     {"seconds", result.seconds}};
+}
+
+}  // namespace reference
 namespace check_command {
 
 struct Options {
   std::vector<Stage> only;
-  std::string junit;
-  bool json = false, thorough = false;
+  std::vector<std::string> match;
+  std::string junit, claims;
+  bool json = false, thorough = false, list = false;
 };
 
 auto failures(const reference::CheckResults& results) {
@@ -68,22 +87,165 @@ nlohmann::json to_json(const reference::CheckResults& results) {
   return list;
 }
 
+/// One comparison: its stage, and its number within the stage.
+struct Job {
+  Stage stage;
+  int number;
+  std::string variant;
+  std::string name() const { return fmt::format("{}-{}", name_of(stage), number); }
+};
+
+reference::CheckScope scope_of(const Options& options) {
+  return options.thorough ? reference::thorough_scope() : reference::CheckScope{};
+}
+
+bool matches(const Options& options, const std::string& variant) {
+  return std::ranges::all_of(
+      options.match, [&](const std::string& text) { return variant.find(text) != std::string::npos; });
+}
+
+/// Runs the comparisons of a stage that the options name and for which take(job) returns true. Calls finished(job,
+/// results) after each.
+template <typename Take, typename Finished>
+void check_stage(Session& session, const Options& options, Stage stage, const Take& take,
+                 const Finished& finished) {
+  Job job{stage, 0, {}};
+  reference::CheckScope scope = scope_of(options);
+  scope.selects = [&](std::string_view, const std::string& variant) {
+    if (!matches(options, variant)) return false;
+    ++job.number;
+    job.variant = variant;
+    return take(job);
+  };
+  scope.finished = [&](const reference::CheckResults& results) { finished(job, results); };
+  reference::check(stage, session, scope);
+}
+
+std::vector<Stage> stages_of(const Options& options) {
+  std::vector<Stage> stages;
+  for (const Stage stage : values_of<Stage>()) {
+    if (options.only.empty() || std::ranges::count(options.only, stage) > 0) stages.push_back(stage);
+  }
+  return stages;
+}
+
+/// Lists all comparisons that the options name, in order. Throws Error(usage) if there is none.
+std::vector<Job> list_jobs(Session& session, const Options& options) {
+  std::vector<Job> jobs;
+  const auto keep = [&](const Job& job) {
+    jobs.push_back(job);
+    return false;
+  };
+  for (const Stage stage : stages_of(options)) check_stage(session, options, stage, keep, [](auto&&...) {});
+  if (jobs.empty())
+    throw Error(ExitCode::usage, "--match {}: no comparison has it; clpv check --list shows their names",
+                fmt::join(options.match, " "));
+  return jobs;
+}
+
+/// Takes comparisons until none is left. Helpers begin at different stages, since those of one stage share kernels.
+void help(Session& session, const Options& options) {
+  become_helper();
+  const Claims claims(options.claims);
+  std::vector<Stage> stages = stages_of(options);
+  std::ranges::rotate(stages,
+                      stages.begin() + claims.number() * stages.size() / std::max(1u, helper_count()));
+  for (const Stage stage : stages) {
+    check_stage(
+        session, options, stage, [&](const Job& job) { return claims.take(job.name()); },
+        [&](const Job& job, const reference::CheckResults& results) {
+          claims.finish(job.name(), nlohmann::json(results).dump());
+        });
+  }
+}
+
+/// Collects results of the comparisons and prints each stage when it is complete.
+class Results {
+ public:
+  Results(const std::vector<Job>& jobs, bool prints)
+      : jobs_(jobs), prints_(prints), progress_("check", jobs.size()) {}
+
+  void add(const reference::CheckResults& results) {
+    all_.insert(all_.end(), results.begin(), results.end());
+    stage_.insert(stage_.end(), results.begin(), results.end());
+    const Stage stage = jobs_[done_].stage;
+    ++done_;
+    progress_.reach(done_);
+    if (done_ < jobs_.size() && jobs_[done_].stage == stage) return;
+    if (prints_) print(name_of(stage), stage_);
+    stage_.clear();
+  }
+
+  const Job* next() const { return done_ < jobs_.size() ? &jobs_[done_] : nullptr; }
+  const reference::CheckResults& all() const { return all_; }
+  void reach(std::size_t done) { progress_.reach(done); }
+  void stop_if_interrupted() const {
+    clpv::stop_if_interrupted(fmt::format("{} comparisons, {} failed", all_.size(), failures(all_)));
+  }
+
+ private:
+  const std::vector<Job>& jobs_;
+  bool prints_;
+  Progress progress_;
+  std::size_t done_ = 0;
+  reference::CheckResults all_, stage_;
+};
+
+/// Arguments of a helper that runs comparisons of the same options.
+std::vector<std::string> helper_arguments(const Options& options, const Shared& shared) {
+  std::vector<std::string> arguments = {"check"};
+  for (const Stage stage : options.only) arguments.push_back(fmt::format("--stage={}", name_of(stage)));
+  for (const std::string& text : options.match) arguments.push_back("--match=" + text);
+  if (options.thorough) arguments.push_back("--thorough");
+  if (!shared.device.empty()) arguments.push_back("--device=" + shared.device);
+  arguments.push_back("--quiet");
+  return arguments;
+}
+
+void check_with_helpers(const Options& options, const Shared& shared, Results& results) {
+  Helpers helpers(helper_arguments(options, shared));
+  for (bool running = true; running;) {
+    running = helpers.wait();
+    results.stop_if_interrupted();
+    results.reach(helpers.claims().finished_count());
+    for (const Job* job; (job = results.next()) != nullptr && helpers.claims().finished(job->name());)
+      results.add(nlohmann::json::parse(helpers.claims().result(job->name())).get<reference::CheckResults>());
+  }
+  if (const Job* job = results.next())
+    throw Error(ExitCode::run_time, "comparison '{}' of stage {} did not end:\n{}", job->variant,
+                name_of(job->stage), helpers.failures());
+}
+
+void check_here(Session& session, const Options& options, Results& results) {
+  for (const Stage stage : stages_of(options)) {
+    check_stage(
+        session, options, stage,
+        [&](const Job&) {
+          results.stop_if_interrupted();
+          return true;
+        },
+        [&](const Job&, const reference::CheckResults& found) { results.add(found); });
+  }
+}
+
 void run(const Options& options, const Shared& shared) {
   if (!options.junit.empty()) check_writable(options.junit);
   Session session(choose_device(shared.device));
-  spdlog::info("checking {} ({}), driver {}", session.device().name, session.device().platform,
-               session.device().driver);
-  reference::CheckResults all;
-  Progress progress("check", values_of<Stage>().size());
-  for (const Stage stage : values_of<Stage>()) {
-    progress.advance();
-    stop_if_interrupted(fmt::format("{} comparisons, {} failed", all.size(), failures(all)));
-    if (!options.only.empty() && std::ranges::count(options.only, stage) == 0) continue;
-    const reference::CheckResults results = reference::check(stage, session, {.thorough = options.thorough});
-    if (results.empty()) throw Error(ExitCode::validation, "no comparison of stage {}", name_of(stage));
-    if (!options.json) print(name_of(stage), results);
-    all.insert(all.end(), results.begin(), results.end());
+  if (!options.claims.empty()) return help(session, options);
+  const std::vector<Job> jobs = list_jobs(session, options);
+  if (options.list) {
+    for (const Job& job : jobs) fmt::print("{:<10} {}\n", name_of(job.stage), job.variant);
+    return;
   }
+  spdlog::info("checking {} ({}), driver {}: {} comparisons", session.device().name,
+               session.device().platform, session.device().driver, jobs.size());
+  Results results(jobs, !options.json);
+  const bool alone = helper_count() == 0 || jobs.size() < 2 || launcher_rank();
+  if (alone)
+    check_here(session, options, results);
+  else
+    check_with_helpers(options, shared, results);
+  const reference::CheckResults& all = results.all();
   const auto failed = failures(all);
   if (options.json) {
     fmt::print("{}\n", nlohmann::json{{"schema", 1},
@@ -106,8 +268,15 @@ void add_check(CLI::App& app, Shared& shared) {
       "check", "Compare every stage's kernels with double-precision CPU references on this device");
   auto options = std::make_shared<check_command::Options>();
   add_choices(*command, "--stage", options->only, "stages to check (default: all)");
-  command->add_flag("--thorough", options->thorough,
-                    "all combinations of bases, lobes, tables, transports and states; takes minutes");
+  command->add_flag(
+      "--thorough", options->thorough,
+      "all combinations of bases, formats, lobes, tables, transports and states; takes minutes");
+  command
+      ->add_option("--match", options->match,
+                   "only comparisons with this text in their name, such as a basis or layout; repeatable")
+      ->type_name("TEXT");
+  command->add_flag("--list", options->list, "print the names of the comparisons and end");
+  add(*command, "--claims", "DIR", options->claims, "folder shared with other helpers")->group("");
   command->add_flag("--json", options->json, "JSON on stdout");
   add(*command, "--junit", "FILE.xml", options->junit,
       "output file in JUnit format, one test case per comparison");

@@ -70,7 +70,9 @@ void reject_misspelt_command(const CLI::App& app) {
   const auto word = std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
   if (word == words.end()) return;
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (!command->get_group().empty()) names.push_back(command->get_name());
+  }
   if (const std::string renamed = reject_old_name(*word); !renamed.empty())
     throw Error(ExitCode::usage, "{}", renamed);
   const auto nearest =
@@ -80,6 +82,28 @@ void reject_misspelt_command(const CLI::App& app) {
   throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));
 }
 
+/// Throws Error(usage) that suggests the closest option for an unknown one of the command.
+void reject_misspelt_option(const CLI::App& app) {
+  const std::vector<const CLI::App*> commands =
+      app.get_subcommands().empty() ? std::vector<const CLI::App*>{&app}
+                                    : std::vector<const CLI::App*>{app.get_subcommands().front(), &app};
+  for (const std::string& word : commands.front()->remaining()) {
+    if (!word.starts_with("--")) continue;
+    const std::string given = word.substr(0, word.find('='));
+    std::string nearest;
+    for (const CLI::App* command : commands) {
+      for (const CLI::Option* option : command->get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+          if (nearest.empty() || edits(given, "--" + name) < edits(given, nearest)) nearest = "--" + name;
+        }
+      }
+    }
+    if (edits(given, nearest) > kMaxEdits) continue;
+    throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?", commands.front()->get_name(),
+                given, nearest);
+  }
+}
+
 /// Throws Error(usage) that names the successor of a renamed option.
 void reject_renamed_options(int argc, const char* const* argv) {
   for (const std::string word : std::span(argv, static_cast<std::size_t>(argc))) {
@@ -87,6 +111,33 @@ void reject_renamed_options(int argc, const char* const* argv) {
     if (!renamed.empty()) throw Error(ExitCode::usage, "{}", renamed);
   }
 }
+
+/// Leaves the options of some groups to --help-all.
+class ShortHelp : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    short_ = mode == CLI::AppFormatMode::Normal;
+    return CLI::Formatter::make_help(app, std::move(name), mode);
+  }
+
+  std::string make_group(std::string group, bool positional,
+                         std::vector<const CLI::Option*> options) const override {
+    if (short_ && group.starts_with(kMoreOptions)) return {};
+    return CLI::Formatter::make_group(std::move(group), positional, std::move(options));
+  }
+
+  std::string make_footer(const CLI::App* app) const override {
+    const auto more = std::ranges::count_if(app->get_options(), [](const CLI::Option* option) {
+      return option->get_group().starts_with(kMoreOptions);
+    });
+    if (more == 0 || !short_) return CLI::Formatter::make_footer(app);
+    return fmt::format("\n--help-all lists {} more options, by stage.\n{}", more,
+                       CLI::Formatter::make_footer(app));
+  }
+
+ private:
+  mutable bool short_ = true;  ///< --help, not --help-all
+};
 
 /// Reports write errors of stdout, such as a full disk.
 void flush_data() {
@@ -126,6 +177,7 @@ std::span<const Command> all_commands() {
 void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
   app.name("clpv");
+  app.formatter(std::make_shared<ShortHelp>());  // commands inherit it
   app.set_version_flag("--version", "clpv " + version(), "version of the program");
   app.set_help_flag("-h,--help", "this help");
   app.set_help_all_flag("--help-all", "help of all commands");
@@ -138,6 +190,19 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
   for (const Command& command : commands) command.add(app, shared);
+  add_prepare(app, shared);
+  for (CLI::App* command : app.get_subcommands({})) {
+    const std::string name = command->get_name();
+    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+      return std::ranges::find(names, name) != names.end();
+    };
+    if (is_one_of({"render", "sequence", "query", "pathtrace", "compare"}))
+      command->group("Look");
+    else if (is_one_of({"quality", "bench", "basis", "propagate", "report"}))
+      command->group("Measure");
+    else if (is_one_of({"devices", "check"}))
+      command->group("Verify");
+  }
   reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
@@ -150,7 +215,11 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   reject_renamed_options(argc, argv);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    reject_misspelt_option(app);
+    throw;
   } catch (const CLI::RequiredError&) {
+    if (!app.get_subcommands().empty()) reject_misspelt_option(app);
     if (app.get_subcommands().empty()) reject_misspelt_command(app);
     throw;
   }

@@ -52,5 +52,6 @@ void add_quality(CLI::App& app, Shared& shared);
 void add_basis(CLI::App& app, Shared& shared);
 void add_bench(CLI::App& app, Shared& shared);
 void add_report(CLI::App& app, Shared& shared);
+void add_prepare(CLI::App& app, Shared& shared);  // hidden: a helper process of the others
 
 }  // namespace clpv

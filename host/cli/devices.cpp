@@ -6,7 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "device/device.hpp"
-#include "support/log.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name, driver,
@@ -51,14 +51,14 @@ void add_devices(CLI::App& app, Shared& shared) {
     DeviceList list = list_devices();
     if (!shared.device.empty()) {
       list = {{choose_device(list.devices, shared.device)}, {}};
-    } else if (list.devices.empty()) {
-      spdlog::warn("no OpenCL device found; on Debian: apt install pocl-opencl-icd");
     }
     if (*json) {
       fmt::print("{}\n", to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
       print(list);
     }
+    if (list.devices.empty())
+      throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
   });
 }
 

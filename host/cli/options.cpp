@@ -42,6 +42,21 @@ CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
       ->type_name("");
 }
 
+/// Group of a frame option in the help: those that most people need, or a stage.
+std::string group_of(const std::string& name) {
+  static const std::map<std::string_view, std::vector<std::string_view>> kStages{
+      {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size", "table"}},
+      {"shadow maps", {"rsm-format", "shadow-size"}},
+      {"blockers", {"blockers", "blocking", "blocker-stride"}},
+      {"propagation", {"iterations", "directions", "coarser-directions", "state", "layout", "storage"}},
+      {"gathering", {"gather", "gather-offset", "near-size"}},
+  };
+  for (const auto& [stage, names] : kStages) {
+    if (std::ranges::find(names, name) != names.end()) return fmt::format("{}{}", kMoreOptions, stage);
+  }
+  return "Frame";
+}
+
 }  // namespace
 
 std::string reject_old_name(const std::string& name) {
@@ -113,7 +128,7 @@ void add_frame_options(CLI::App& command, OptionValues& given) {
       set_given(probe, name, text);  // rejects bad values before any scene is read
       given[name] = text;
     };
-    add_text(command, info, take)->group("Frame");
+    add_text(command, info, take)->group(group_of(info.name));
   }
 }
 

@@ -79,6 +79,9 @@ glm::ivec3 parse_ivec3(const std::string& text, const char* option);
 /// Parses two corners "i0,j0,k0:i1,j1,k1"; the first must not exceed the second.
 std::pair<glm::ivec3, glm::ivec3> parse_box(const std::string& text, const char* option);
 
+/// Prefix of the groups of options that --help leaves to --help-all.
+inline constexpr std::string_view kMoreOptions = "More: ";
+
 /// Adds all frame options as text options, except those that `command` already has.
 void add_frame_options(CLI::App& command, OptionValues& given);
 

@@ -13,6 +13,7 @@
 #include "options/render_options.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
+#include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "volume/volume_files.hpp"
@@ -144,6 +145,7 @@ void run(const Options& options, const Shared& shared) {
   for (const std::string& path : {options.npy, options.vti}) {
     if (!path.empty()) check_writable(path);
   }
+  if (options.sources.empty()) spdlog::warn("no light is injected: --at x,y,z names a cell to inject into");
   const RenderOptions& frame = options.frame;
   const auto basis = make_basis(frame);
   // Blockers block all directions here; stored as coefficients for any blocker option of the frame.

@@ -17,11 +17,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
 #include "clpv/version.hpp"
+#include "quality/light_field.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/output_file.hpp"
@@ -39,9 +41,16 @@ struct Options {
   bool fresh = false;
   TracingOptions tracing;
   OptionValues given;
+
+  /// True if the command line names a frame option, apart from the size.
+  bool named() const {
+    return std::ranges::any_of(
+        given, [](const auto& option) { return option.first != "width" && option.first != "height"; });
+  }
 };
 
-/// All combinations of the values of --vary. Bases and transports vary over all values unless an option fixes them.
+/// All combinations of the values of --vary. Without it: the frame that the options name; without any option: all bases
+/// and transports.
 std::vector<Variant> variants_of(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
@@ -51,14 +60,10 @@ std::vector<Variant> variants_of(const Options& options) {
                   text);
     }
   }
-  const auto mentioned = [&](const char* name) {
-    return options.given.contains(name) || std::ranges::count(varied, name, &VariedOption::name) > 0;
-  };
-  const bool preset = mentioned("preset");
-  if (!preset && !mentioned("transport"))
-    varied.insert(varied.begin(), {"transport", names_of<TransportKind>()});
-  if (!preset && !mentioned("basis") && !mentioned("centres"))
-    varied.insert(varied.begin(), {"basis", basis_names()});
+  if (varied.empty() && !options.named()) {
+    varied.push_back({"basis", basis_names()});
+    varied.push_back({"transport", names_of<TransportKind>()});
+  }
   return combinations(varied);
 }
 
@@ -130,7 +135,8 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
   };
   std::size_t mine = 0;
   each([&](auto&...) { ++mine; });
-  std::map<std::size_t, nlohmann::json> cells;  // cells of this rank, by number
+  std::set<std::pair<std::string, std::string>> warned;  // scenes and cameras
+  std::map<std::size_t, nlohmann::json> cells;           // cells of this rank, by number
   Progress progress("quality", mine);
   each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
     stop_if_interrupted(
@@ -140,7 +146,11 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
     std::optional<QualityCell> cell;
     if (!options.fresh) cell = store.find(key);
     const bool kept = cell.has_value();
-    if (!kept) cell = rendered(session, frame, group, camera, options);
+    if (!kept) {
+      cell = rendered(session, frame, group, camera, options);
+      if (cell->rejected.empty() && warned.insert({cell->scene, cell->camera}).second)
+        warn_of_unreached(session, *frame, cell->camera);
+    }
     cell->variant = group.variant;  // the spelling of the same options may differ
     if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be temporary
     cells[number] = to_json(*cell);
@@ -208,8 +218,8 @@ void add_options(CLI::App& command, Options& options) {
       ->required();
   add_subject_options(command, options.subjects);
   add(command, "--vary", "OPTION=a,b,c", options.varied,
-      "render option and its values, repeatable; each combination is a variant. Default: all bases\n"
-      "and transports, unless --preset, --basis, --centres, --transport or --vary sets them");
+      "render option and its values, repeatable; each combination is a variant. Without --vary: the frame\n"
+      "that the other options name, or all bases and transports if none is named");
   add_choice(command, "--view", options.view, "view to compare");
   command
       .add_option("--frames", options.frames,

@@ -43,10 +43,11 @@ void run(const Options& options, const Shared& shared) {
   const RenderRequest& request = options.request;
   MovingScene moving(request.scene, request.model);
   moving.pose(options.time);
-  const RenderOptions resolved = resolve_options(request.frame, moving.scene());
+  const RenderOptions resolved = resolve_request(request, moving.scene());
   const Camera& camera = moving.scene().camera(request.camera);
   log_scene(moving.scene(), camera, resolved);
-  Session session(choose_device(shared.device), ProgramCache::of_user());
+  Session session(choose_device(shared.device), ProgramCache::of_user(),
+                  compilation_of(request, shared.device));
   Frame frame(session, moving.scene(), resolved);
   frame.render(camera);
   const std::string table = table_of(points, LightField(session, frame));

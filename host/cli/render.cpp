@@ -11,6 +11,7 @@
 #include "image/image_io.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
+#include "quality/light_field.hpp"
 #include "quality/normal_weights.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -49,7 +50,7 @@ void check_outputs(const Options& options) {
   for (const Show view : options.views) {
     if (extension == ".png") check_writable(png_path(options.output, view, options.views.size() > 1));
   }
-  if (!options.stats.empty()) check_writable(options.stats);
+  if (!options.stats.empty() && options.stats != "-") check_writable(options.stats);
   if (!options.normals.empty()) check_writable(options.normals);
   if (!options.dump.empty()) {
     create_folder("--dump-volume", options.dump);
@@ -77,13 +78,20 @@ void write_images(Frame& frame, const Options& options, float exposure,
   }
 }
 
-void dump_volume(Session& session, const Options& options, const CascadeVolumes& volumes) {
+/// Adds the cascade to `grids`: origin is the lower corner of the first cell.
+void dump_volume(Session& session, const Options& options, const CascadeVolumes& volumes,
+                 nlohmann::json& grids) {
   std::vector<float> values = volumes.accumulated.read(session);
   for (float& value : values) value /= volumes.light_scale;
   const VolumeShape& shape = volumes.accumulated.shape();
   const fs::path stem = fs::path(options.dump) / fmt::format("cascade{}", volumes.cascade);
   write_volume_npy(stem.string() + ".npy", values, shape.n, shape.coefficients);
   write_volume_vti(stem.string() + ".vti", values, volumes.grid, shape.coefficients);
+  grids.push_back({{"file", stem.filename().string() + ".npy"},
+                   {"cascade", volumes.cascade},
+                   {"origin_metres", volumes.grid.origin},
+                   {"cell_metres", volumes.grid.cell},
+                   {"cells", volumes.grid.n}});
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -94,24 +102,28 @@ void run(const Options& options, const Shared& shared) {
   MovingScene moving(request.scene, request.model);
   const Scene& scene = moving.scene();
   moving.pose(options.time);
-  const RenderOptions resolved = resolve_options(request.frame, scene);
+  const RenderOptions resolved = resolve_request(request, scene);
   const Camera& camera = scene.camera(request.camera);
   log_scene(scene, camera, resolved);
   progress.advance();
 
   stats.begin_startup();
-  Session session(choose_device(shared.device), ProgramCache::of_user());
+  Session session(choose_device(shared.device), ProgramCache::of_user(),
+                  compilation_of(request, shared.device));
   Frame frame(session, scene, resolved);
   stats.end_startup(session);
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
                 session.device().driver);
   spdlog::debug("options: {}", to_json(resolved).dump());
   progress.advance();
+  nlohmann::json grids = nlohmann::json::array();
   frame.render(camera, [&](const CascadeVolumes& volumes) {
     if (!options.stats.empty()) stats.add_energy(session, frame, volumes);
-    if (!options.dump.empty()) dump_volume(session, options, volumes);
+    if (!options.dump.empty()) dump_volume(session, options, volumes, grids);
   });
+  if (!options.dump.empty()) write_file(fs::path(options.dump) / "grids.json", grids.dump(2) + "\n");
   stats.end_first_frame(session);
+  warn_of_unreached(session, frame, camera.name);
   stop_if_interrupted();
   progress.advance();
   for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
@@ -126,7 +138,13 @@ void run(const Options& options, const Shared& shared) {
   write_images(frame, options, request.exposure_of(scene), metadata_of(described));
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
-  if (!options.stats.empty()) write_file(options.stats, stats.to_json(session, described).dump(2) + "\n");
+  if (!options.stats.empty()) {
+    const std::string text = stats.to_json(session, described).dump(2) + "\n";
+    if (options.stats == "-")
+      fmt::print("{}", text);
+    else
+      write_file(options.stats, text);
+  }
   progress.advance();
   session.store_programs();
 }
@@ -148,14 +166,18 @@ void add_render(CLI::App& app, Shared& shared) {
               "views to write; several become layers of one EXR, or FILE.VIEW.png")
       ->default_str("full");
   add(*command, "--stats", "FILE.json", options->stats,
-      "output file for stage times of frames that recompute all lighting, options and energies, as JSON");
+      "output file (-: stdout) for stage times of frames that recompute all lighting, options and energies, "
+      "as JSON");
   command
       ->add_option("--frames", options->frames,
                    "number of timed frames for --stats, after a warm-up frame; it has their medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add(*command, "--dump-volume", "DIR", options->dump,
-      "output folder for accumulated light of each cascade: cascadeN.npy (3,N,z,y,x), .vti [W/sr]");
+      "output folder for accumulated light of each cascade, as cascadeN.npy and .vti: coefficients of the "
+      "basis, in\n"
+      "float32 [W/sr], of either sign, ordered (red, green, blue; coefficient; z; y; x). grids.json has "
+      "origin and cell");
   add(*command, "--dump-normals", "FILE.json", options->normals,
       "output file for lit surface normals, weighted by reflected flux, for clpv basis --weights");
   command->callback([options, &shared] { run(*options, shared); });

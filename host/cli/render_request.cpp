@@ -5,22 +5,108 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.hpp"
+#include "parallel/ranks.hpp"
 #include "pipeline/cascade.hpp"
 #include "scene/load.hpp"
+#include "support/error.hpp"
 #include "support/log.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
+
+namespace {
+constexpr double kMaxExposure = 64;  // 2^64: beyond any scene, and finite
+}
 
 void add_render_request(CLI::App& command, RenderRequest& request) {
   command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
-  add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)");
+  add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)")
+      ->check([](const std::string& name) { return name.empty() ? "found '', allowed: a name" : ""; });
   add_frame_options(command, request.frame);
 }
 
 void add_shown_options(CLI::App& command, RenderRequest& request) {
-  add(command, "--exposure", "EV", request.exposure, "exposure of a PNG [EV] (default: the scene's)");
+  add(command, "--exposure", "EV", request.exposure, "exposure of a PNG [EV] (default: the scene's)")
+      ->check(CLI::Range(-kMaxExposure, kMaxExposure));
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
+}
+
+namespace {
+
+/// Where an option's value comes from, for errors.
+std::string source_of(const OptionValues& given, const RenderOptions& options, const char* name) {
+  if (given.contains(name)) return {};
+  const std::string preset = preset_note(options, name);
+  return preset.empty() ? " (the default)" : preset;
+}
+
+/// A condition under which some options have an effect, and what it depends on.
+struct Effect {
+  bool exists;
+  std::vector<const char*> options;
+  std::string without;  ///< the option and value that take the effect away
+  std::string with;     ///< values with which there is one
+};
+
+std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& options) {
+  const auto found = [&](const char* name, std::string_view value) {
+    return fmt::format("--{} {}{}", name, value, source_of(given, options, name));
+  };
+  const bool sweeps = options.transport == TransportKind::sweep;
+  const bool centred = !make_basis(options)->centres().empty();
+  const bool tables = options.lobe == LobeKind::rotate || options.evaluate == Evaluation::table;
+  const std::string transport = found("transport", name_of(options.transport)),
+                    basis = found("basis", options.basis);
+  return {
+      {!sweeps, {"iterations"}, transport, "--transport sampled or exact"},
+      {sweeps, {"directions", "coarser-directions"}, transport, "--transport sweep"},
+      {options.cascades > 1,
+       {"coarser-directions"},
+       found("cascades", std::to_string(options.cascades)),
+       "--cascades 2 or more"},
+      {centred, {"lambda", "lobe", "evaluate"}, basis, "a basis with centres (srbf...)"},
+      {!sweeps, {"evaluate"}, transport, "--transport sampled or exact"},
+      {tables,
+       {"table-size", "table"},
+       found("lobe", name_of(options.lobe)),
+       "--lobe rotate or --evaluate table"},
+      {options.near != Near::off, {"near-size"}, found("near", name_of(options.near)), "--near traced"},
+      {options.occlusion, {"blockers", "blocking"}, found("occlusion", "off"), "--occlusion on"},
+      {options.occlusion && options.blockers == Blockers::seen,
+       {"blocker-stride"},
+       found("blockers", name_of(options.blockers)),
+       "--blockers seen"},
+  };
+}
+
+}  // namespace
+
+RenderOptions resolve_request(const RenderRequest& request, const Scene& scene) {
+  const RenderOptions options = resolve_options(request.frame, scene);
+  for (const Effect& effect : effects_of(request.frame, options)) {
+    if (effect.exists) continue;
+    for (const char* name : effect.options) {
+      const auto given = request.frame.find(name);
+      if (given == request.frame.end()) continue;
+      throw Error(ExitCode::usage, "--{} {} has no effect with {}; allowed with {}", name, given->second,
+                  effect.without, effect.with);
+    }
+  }
+  return options;
+}
+
+Compilation compilation_of(const RenderRequest& request, const std::string& device) {
+  if (launcher_rank()) return {};
+  std::vector<std::string> arguments = {"prepare", request.scene};
+  const auto add = [&arguments](const std::string& name, const std::string& value) {
+    if (!value.empty()) arguments.push_back(fmt::format("--{}={}", name, value));
+  };
+  add("model", request.model);
+  add("camera", request.camera);
+  add("device", device);
+  for (const auto& [name, value] : request.frame) add(name, value);
+  return {std::move(arguments), std::nullopt};
 }
 
 void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {

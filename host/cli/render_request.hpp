@@ -31,6 +31,13 @@ void add_render_request(CLI::App& command, RenderRequest& request);
 /// Adds the options for image display.
 void add_shown_options(CLI::App& command, RenderRequest& request);
 
+/// Returns the frame options of the request for `scene`, as resolve_options. Throws Error(usage) if a given option would have
+/// no effect with the others; it names both.
+RenderOptions resolve_request(const RenderRequest& request, const Scene& scene);
+
+/// Returns who compiles the kernels of these frames: helper processes, unless a launcher started several ranks.
+Compilation compilation_of(const RenderRequest& request, const std::string& device);
+
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
 void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);
 

@@ -140,6 +140,8 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
 }
 
 void run(const Options& options, const Shared& shared) {
+  if (options.subjects.scenes.empty() && options.quality.empty() && options.benchmarks.empty())
+    throw Error(ExitCode::usage, "report: nothing to show; allowed: scenes, --quality or --bench");
   create_folder("DIR", options.folder);
   const fs::path output = fs::path(options.folder) / "index.html";
   check_writable(output);

@@ -17,6 +17,7 @@
 #include "pipeline/frame_stats.hpp"
 #include "pipeline/view.hpp"
 #include "quality/ground_truth.hpp"
+#include "quality/light_field.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -85,8 +86,9 @@ class Sequence {
       : options_(options),
         ranks_(ranks),
         moving_(options.request.scene, options.request.model),
-        resolved_(resolve_options(options.request.frame, moving_.scene())),
-        device_(ranks.device(shared.device)) {
+        resolved_(resolve_request(options.request, moving_.scene())),
+        device_(ranks.device(shared.device)),
+        compilation_(compilation_of(options.request, shared.device)) {
     log_scene(moving_.scene(), camera(), resolved_);
     if (!moving_.moves()) spdlog::warn("{}: nothing moves: all frames are equal", options.request.scene);
     Fingerprint print;
@@ -104,12 +106,14 @@ class Sequence {
     Progress progress("sequence", static_cast<std::uint64_t>(mine));
     for (int i = 0; i < options_.frames; ++i) {
       if (!ranks_.takes(static_cast<std::size_t>(i))) continue;
-      if (interrupted()) {
+      try {
+        stop_if_interrupted();
+        (render(i) ? rendered : there) += 1;  // a signal may also end it where it compiles kernels
+      } catch (const Interrupted&) {
         write_times();
         throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes", rendered + there,
                                       mine, options_.output));
       }
-      (render(i) ? rendered : there) += 1;
       progress.advance();
     }
     ranks_.sum(counts);
@@ -125,7 +129,7 @@ class Sequence {
 
   /// Writes stability.json. One rank renders all frames again, because an earlier run may have written most of them.
   void measure_stability() {
-    Renderer renderer(device_, moving_.scene(), resolved_);
+    Renderer renderer(device_, moving_.scene(), resolved_, compilation_);
     Stability stability(renderer.session, renderer.frame, options_.traced);
     for_all_frames("stability", "stability.json is not written", [&](int i) {
       moving_.pose(options_.time_of(i));
@@ -152,8 +156,8 @@ class Sequence {
   struct Renderer {
     Session session;
     Frame frame;
-    Renderer(const Device& device, const Scene& scene, const RenderOptions& options)
-        : session(device, ProgramCache::of_user()), frame(session, scene, options) {}
+    Renderer(const Device& device, const Scene& scene, const RenderOptions& options, Compilation compilation)
+        : session(device, ProgramCache::of_user(), std::move(compilation)), frame(session, scene, options) {}
   };
 
   /// `lost`: the data missing after an interrupted run.
@@ -200,7 +204,7 @@ class Sequence {
     const std::string key = this->key(description);
     if (holds_frame(options_.file(number), key)) return false;
     const bool first = !renderer_;
-    if (first) renderer_.emplace(device_, moving_.scene(), resolved_);
+    if (first) renderer_.emplace(device_, moving_.scene(), resolved_, compilation_);
     auto& [session, frame] = *renderer_;
     started = Clock::now();
     if (moving_.moves()) frame.scene_moved();
@@ -210,6 +214,7 @@ class Sequence {
     session.queue().finish();
     const double frame_ms = milliseconds_since(started);
     nlohmann::json stages = to_json(session.timeline().times());
+    if (first) warn_of_unreached(session, frame, camera().name);
     started = Clock::now();
     write(number, frame, description, key);
     times_[number] = {{"frame", number},
@@ -255,6 +260,7 @@ class Sequence {
   std::string still_;    ///< key of all static content
   SequenceTimes times_;  ///< of this rank's frames; at rank 0 also those of an earlier run
   Clock::time_point times_written_ = Clock::now();
+  Compilation compilation_;
   std::optional<Renderer> renderer_;  ///< empty before the first frame
 };
 
@@ -277,6 +283,14 @@ void check_outputs(const Options& options) {
   if (options.stability) check_writable(folder / "stability.json");
 }
 
+/// Warns if the folder holds frames of a longer run beyond this one's.
+void warn_of_later_frames(const Options& options) {
+  int last = options.frames;
+  while (fs::exists(options.file(last))) ++last;
+  if (last > options.frames)
+    spdlog::warn("{} also holds frames {} to {} of a longer run", options.output, options.frames, last - 1);
+}
+
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   check_outputs(options);
@@ -285,6 +299,7 @@ void run(const Options& options, Shared& shared) {
   Sequence sequence(options, shared, ranks);
   sequence.render();
   if (!ranks.is_root()) return;
+  warn_of_later_frames(options);
   if (options.stability) sequence.measure_stability();
   if (video) sequence.write_video(*video);
 }

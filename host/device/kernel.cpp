@@ -7,7 +7,13 @@
 namespace clpv {
 
 Kernel::Kernel(Session& session, const ProgramSource& source, std::string name)
-    : session_(&session), program_(session.describe(source)), name_(std::move(name)) {}
+    : session_(&session), program_(session.describe(source)), name_(std::move(name)) {
+  program_->kernels.insert(name_);
+}
+
+bool Kernel::claimed() const {
+  return session_->claims(*program_);
+}
 
 cl::Kernel& Kernel::built() {
   if (kernel_() == nullptr) {
@@ -18,11 +24,13 @@ cl::Kernel& Kernel::built() {
 }
 
 void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
+  if (!claimed()) return;
   if (argument_count_ != parameter_count_) {
     throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_, argument_count_,
                 parameter_count_);
   }
   session_->launch(built(), global, local);
+  session_->finish_first_launch(*program_, name_);
 }
 
 }  // namespace clpv

@@ -45,11 +45,13 @@ class Kernel {
   /// Sets the arguments that follow. Parameters that only some variants of a kernel have come last.
   template <KernelArgument... Arguments>
   Kernel& add(const Arguments&... arguments) {
+    if (!claimed()) return *this;
     (built().setArg(argument_count_++, as_cl(arguments)), ...);
     return *this;
   }
 
-  /// Session::launch() with the arguments set so far. Throws Error(run_time) if arguments are missing.
+  /// Session::launch() with the arguments set so far. Throws Error(run_time) if arguments are missing. Waits for the
+  /// first launch, which compiles on some drivers.
   void launch(const cl::NDRange& global, const cl::NDRange& local);
 
  private:
@@ -62,6 +64,7 @@ class Kernel {
     return memory.handle();
   }
   cl::Kernel& built();
+  bool claimed() const;  ///< Session::claims
 
   Session* session_;
   std::shared_ptr<Program> program_;

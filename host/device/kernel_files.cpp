@@ -2,6 +2,7 @@
 #include "device/kernel_files.hpp"
 
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 #include "support/error.hpp"
@@ -50,6 +51,9 @@ void append_file(std::string& out, const std::string& name, int depth) {
 std::string kernel_file(const std::string& name) {
   if (const char* folder = std::getenv("CLPV_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
     if (auto text = file_bytes(std::string(folder) + "/" + name)) return *text;
+    if (!std::filesystem::is_directory(folder))
+      throw Error(ExitCode::usage, "CLPV_KERNEL_DIR: found '{}', allowed: a folder with kernel files",
+                  folder);
   }
   const auto& files = detail::embedded_kernel_files();
   const auto found = files.find(name);

@@ -1,15 +1,34 @@
 // SPDX-License-Identifier: MIT
 #include "device/program.hpp"
 
+#include <chrono>
+#include <regex>
+#include <thread>
+
 #include "device/cl_error.hpp"
+#include "device/driver_cache.hpp"
 #include "device/kernel_files.hpp"
 
 namespace clpv {
 namespace {
 
 /// Retries of a build that fails without an error in the text. PoCL 3.1 fails so occasionally while another process
-/// compiles the same text for the first time, because both write to PoCL's cache.
-constexpr int kRetries = 2;
+/// compiles the same text, because both write to PoCL's cache. Waits double from kRetryWait on.
+constexpr int kRetries = 5;
+constexpr std::chrono::milliseconds kRetryWait{20};
+
+/// Returns true if the log blames a line of the text: "inject.cl:12:3: error:". Other errors are the driver's own.
+bool blames_text(const std::string& log) {
+  static const std::regex place(":[0-9]+: (fatal )?error:");
+  return std::regex_search(log, place);
+}
+
+/// A hint if the log shows that the driver cannot write its cache.
+std::string cache_advice(const std::string& log) {
+  if (log.find("No space left") != std::string::npos || driver_cache_is_full())
+    return "\nthe disk of the driver's cache is full; POCL_CACHE_DIR names another folder for PoCL's";
+  return {};
+}
 
 /// The compiler's log, or a note that the driver has none.
 std::string build_log(const cl::Program& program, const Device& device) {
@@ -40,9 +59,13 @@ cl::Program build_program(const cl::Context& context, const Device& device, cons
       return program;
     } catch (const cl::Error& error) {
       const std::string log = build_log(program, device);
-      if (left > 0 && log.find("error:") == std::string::npos) continue;
-      throw Error(ExitCode::run_time, "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}",
-                  source.file, device.name, device.driver, source.options, cl_error_name(error.err()), log);
+      if (left > 0 && !blames_text(log)) {
+        std::this_thread::sleep_for(kRetryWait * (1 << (kRetries - left)));
+        continue;
+      }
+      throw Error(ExitCode::run_time, "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}{}",
+                  source.file, device.name, device.driver, source.options, cl_error_name(error.err()), log,
+                  cache_advice(log));
     }
   }
 }

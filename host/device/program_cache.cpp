@@ -75,7 +75,10 @@ ProgramCache::ProgramCache(fs::path folder, std::uint64_t max_bytes)
 
 std::optional<ProgramCache> ProgramCache::of_user() {
   const char* setting = std::getenv("CLPV_PROGRAM_CACHE");
-  if (setting && std::string_view(setting) == "off") return std::nullopt;
+  const std::string_view value = setting == nullptr ? "" : setting;
+  if (value == "off") return std::nullopt;
+  if (!value.empty() && value != "on")
+    throw Error(ExitCode::usage, "CLPV_PROGRAM_CACHE: found '{}', allowed: on, off", value);
   if (const auto folder = user_cache_folder()) return ProgramCache(*folder);
   spdlog::debug("neither XDG_CACHE_HOME nor HOME is set: compiled programs are not cached");
   return std::nullopt;

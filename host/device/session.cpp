@@ -10,8 +10,10 @@
 #include "device/cl_error.hpp"
 #include "device/kernel.hpp"
 #include "support/fingerprint.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
+#include "support/progress.hpp"
 
 namespace clpv {
 namespace {
@@ -65,12 +67,14 @@ void dump(const ProgramSource& source, const std::string& text) {
 
 }  // namespace
 
-Session::Session(Device device, std::optional<ProgramCache> cache)
+Session::Session(Device device, std::optional<ProgramCache> cache, Compilation compilation)
     : device_(std::move(device)),
       context_(device_.handle),
       queue_(context_, device_.handle, device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
       timeline_(device_.profiling_valid),
-      cache_(std::move(cache)) {}
+      cache_(std::move(cache)),
+      compilation_(std::move(compilation)),
+      marks_(device_) {}
 
 // After an error, commands may be unfinished. Without this wait PoCL's threads continue to run and compile them while the
 // process ends, which crashed 1 of 8 such runs.
@@ -95,7 +99,63 @@ void Session::build_described() {
   std::erase_if(programs_, [](const auto& entry) {
     return entry.second->built() == nullptr && entry.second.use_count() == 1;
   });
+  if (compilation_.claims) return;  // a helper builds what it launches
+  compile_with_helpers();
   for (auto& [key, program] : programs_) build(*program);
+}
+
+/// Lets helpers compile all kernels that this session will launch, if the driver's cache has not got them.
+void Session::compile_with_helpers() {
+  if (compilation_.helpers.empty() || helper_count() == 0 || !marks_.available()) return;
+  std::size_t programs = 0, kernels = 0;
+  for (const auto& [key, program] : programs_) {
+    if (program->built() != nullptr || marks_.has(key)) continue;
+    ++programs;
+    kernels += program->kernels.size();
+  }
+  if (programs < 2) return;
+  spdlog::info("compiling {} kernels for {}: on the first run only", kernels, device_.name);
+  const auto start = std::chrono::steady_clock::now();
+  Progress progress("compiling kernels", kernels);
+  Helpers helpers(compilation_.helpers);
+  while (helpers.wait()) {
+    stop_if_interrupted("kernels were being compiled");
+    progress.reach(helpers.claims().finished_count());
+  }
+  helped_ = true;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  spdlog::debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
+                helpers.claims().finished_count(), elapsed.count());
+  if (!helpers.failures().empty())
+    spdlog::debug("a helper failed, so this process compiles the rest: {}", helpers.failures());
+}
+
+bool Session::claims(Program& program) {
+  if (!compilation_.claims) return true;
+  if (!program.claimed)
+    program.claimed =
+        !marks_.has(program.key) && compilation_.claims->take(Fingerprint().add(program.key).hex());
+  return *program.claimed;
+}
+
+void Session::finish_first_launch(Program& program, const std::string& name) {
+  if (!program.launched.insert(name).second) return;
+  const auto start = std::chrono::steady_clock::now();
+  const Uninterruptible compiling("this kernel");
+  queue_.finish();
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  spdlog::debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name, elapsed.count());
+  if (compilation_.claims)
+    compilation_.claims->finish(fmt::format("{}.{}", Fingerprint().add(program.key).hex(), name));
+  stop_if_interrupted("kernels were being compiled");
+}
+
+void Session::mark_compiled() {
+  for (const auto& [key, program] : programs_) {
+    if (!claims(*program)) continue;
+    build(*program);  // this frame launched none of its kernels, or it is built already
+    marks_.add(key);
+  }
 }
 
 cl::Kernel Session::kernel(Program& program, const std::string& name) {
@@ -105,13 +165,15 @@ cl::Kernel Session::kernel(Program& program, const std::string& name) {
 
 void Session::build(Program& program) {
   if (program.built() != nullptr) return;
+  stop_if_interrupted("kernels were being compiled");
   dump(program.source, program.text);
+  const Uninterruptible compiling("this kernel");
   const auto start = std::chrono::steady_clock::now();
   program.stored = load(program);
   if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
-  if (!program.stored && before_ms <= kNoticeMs && build_ms_ > kNoticeMs)
+  if (!program.stored && !marks_.has(program.key) && before_ms <= kNoticeMs && build_ms_ > kNoticeMs)
     spdlog::info("compiling kernels for {}: slow on the first run only", device_.name);
   spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
                 program.stored ? "from the cache" : "compiled", elapsed.count());
@@ -131,7 +193,7 @@ bool Session::load(Program& program) {
 }
 
 void Session::store_programs() {
-  if (!cache_) return;
+  if (!cache_ || helped_) return;  // after a first run the driver's own cache suffices; later runs store
   bool logged = false;
   const auto start = std::chrono::steady_clock::now();
   const auto limit = (start - kProcessStart) / kStoreShare;
@@ -172,6 +234,7 @@ Buffer Session::buffer(std::size_t bytes, const std::string& what) {
   try {
     const Buffer made(cl::Buffer(context_, CL_MEM_READ_WRITE, bytes),
                       std::make_shared<MemoryShare>(use_, bytes));
+    if (compilation_.claims) queue_.enqueueFillBuffer(made.handle(), cl_uchar{0}, 0, bytes);
     // Oclgrind 21.10's memory checker confuses a new buffer at a freed address with the old one and its size.
     if (oclgrind()) retained_.push_back(made);
     return made;

@@ -7,24 +7,40 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/driver_cache.hpp"
 #include "device/memory.hpp"
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
 #include "device/timeline.hpp"
+#include "support/helpers.hpp"
 
 namespace clpv {
 
 /// A program of a session: described first, built on first use.
 struct Program {
   ProgramSource source;
-  std::string text, key;  ///< program_text(source), ProgramCache::key
-  cl::Program built;      ///< null until built
-  bool stored = false;    ///< true if the cache has it
+  std::string text, key;                ///< program_text(source), ProgramCache::key
+  cl::Program built;                    ///< null until built
+  bool stored = false;                  ///< true if the cache has it
+  std::set<std::string> kernels = {};   ///< names of the kernels described so far
+  std::set<std::string> launched = {};  ///< names of the kernels launched so far
+  std::optional<bool> claimed = {};     ///< in a helper: true if it compiles this program
+};
+
+/// Who compiles a session's kernels.
+struct Compilation {
+  /// Arguments of clpv for helper processes that do what this session is about to do. Empty: the session itself
+  /// compiles.
+  std::vector<std::string> helpers;
+  /// In such a helper: claims of programs. The session builds and launches only the kernels of programs that it claims,
+  /// and all its buffers start with zeros.
+  std::optional<Claims> claims;
 };
 
 /// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.
@@ -32,7 +48,8 @@ class Session {
  public:
   /// `cache`: source of compiled programs and target of store_programs(). Without one every program is
   /// compiled.
-  explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt);
+  explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt,
+                   Compilation compilation = {});
   /// Waits for all enqueued commands.
   ~Session();
   Session(const Session&) = delete;
@@ -46,12 +63,23 @@ class Session {
   /// Returns the program of this source. build_described() or the first kernel() of it builds it, once per session.
   std::shared_ptr<Program> describe(const ProgramSource& source);
 
-  /// Builds all described programs that have an owner and are not built yet.
-  /// Throws Error(run_time) with the compiler's log, as does kernel().
+  /// Builds all described programs that have an owner and are not built yet, with helpers if they are many.
+  /// Throws Error(run_time) with the compiler's log, as does kernel(). Throws Interrupted after a signal.
   void build_described();
 
   /// Returns the kernel `name` of a program of describe(), which it builds if needed.
   cl::Kernel kernel(Program& program, const std::string& name);
+
+  /// In a helper: returns true if it builds and launches this program's kernels. Elsewhere always true.
+  bool claims(Program& program);
+
+  /// Waits for the first launch of a kernel, which compiles it on some drivers, so that a signal can end the process
+  /// there. Logs (debug) the time.
+  void finish_first_launch(Program& program, const std::string& name);
+
+  /// In a helper: marks the claimed programs as compiled, after the frame. First builds those whose kernels it did not
+  /// launch.
+  void mark_compiled();
 
   /// Stores compiled programs in the cache, for at most 1/10 of the process's run time; later runs store the rest.
   /// Call it last, after results are written: on PoCL, reading a program's binary takes about as long as its first
@@ -118,12 +146,16 @@ class Session {
   Timeline timeline_;
   void build(Program& program);
   bool load(Program& program);
+  void compile_with_helpers();
 
   void require_room(std::size_t bytes, const std::string& what) const;
 
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
 
   std::optional<ProgramCache> cache_;
+  Compilation compilation_;
+  CompiledMarks marks_;
+  bool helped_ = false;                                       ///< helpers compiled
   std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key
   std::vector<Buffer> retained_;                              ///< for Oclgrind, see buffer()
   struct TableImage {

@@ -239,6 +239,21 @@ const PresetOptions& fine_options() {
   return options;
 }
 
+std::string preset_note(const RenderOptions& options, std::string_view name) {
+  if (options.preset == PresetName::best) return {};
+  RenderOptions set;
+  apply_preset(set, options.preset);
+  const PresetOptions& preset = options.preset == PresetName::paper ? paper_options() : fine_options();
+  const auto value_in = [&](const RenderOptions& from) {
+    const std::vector<OptionDescription> list = list_options(from);
+    return std::ranges::find(list, name, &OptionDescription::name)->value;
+  };
+  if (std::ranges::count(preset, name, &PresetOptions::value_type::first) == 0 ||
+      value_in(set) != value_in(options))
+    return {};
+  return fmt::format(" (set by --preset {})", name_of(options.preset));
+}
+
 void apply_preset(RenderOptions& options, PresetName name) {
   const std::vector<OptionDescription> defaults = list_options(RenderOptions{});
   for (const PresetOptions* preset : {&paper_options(), &fine_options()}) {

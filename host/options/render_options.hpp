@@ -80,6 +80,9 @@ const PresetOptions& paper_options();
 /// Finer cells, and the near field of every pixel.
 const PresetOptions& fine_options();
 
+/// Returns " (set by --preset NAME)" if the option has the value that the preset gave it, else "". For errors.
+std::string preset_note(const RenderOptions& options, std::string_view name);
+
 /// Sets these options to their values in the preset, those of other presets to their defaults. Other options do not change.
 void apply_preset(RenderOptions& options, PresetName name);
 

@@ -15,13 +15,13 @@ bool sweeps(const RenderOptions& options) {
 void require_faces(const RenderOptions& options) {
   if (has_faces(options.transport)) return;
   if (options.state != State::coefficients) {
-    throw Error(ExitCode::usage, "state: found '{}' with transport '{}', allowed: coefficients",
-                name_of(options.state), name_of(options.transport));
+    throw Error(ExitCode::usage, "state: found '{}'{} with transport '{}', allowed: coefficients",
+                name_of(options.state), preset_note(options, "state"), name_of(options.transport));
   }
   if (options.lobe_time != LobeTime::host) {
     throw Error(ExitCode::usage,
-                "lobe-time: found '{}' with transport '{}', which has no lobes; allowed: host",
-                name_of(options.lobe_time), name_of(options.transport));
+                "lobe-time: found '{}'{} with transport '{}', which has no lobes; allowed: host",
+                name_of(options.lobe_time), preset_note(options, "lobe-time"), name_of(options.transport));
   }
 }
 
@@ -29,16 +29,17 @@ void require_faces(const RenderOptions& options) {
 void require_compatible(const RenderOptions& options) {
   if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
     throw Error(ExitCode::usage,
-                "blocking: found '{}' with blockers 'scene', allowed: areas (or blockers 'seen')",
-                name_of(options.blocking));
+                "blocking: found '{}'{} with blockers 'scene', allowed: areas (or blockers 'seen')",
+                name_of(options.blocking), preset_note(options, "blocking"));
   }
   if (!sweeps(options) && options.bounces != Bounces::one) {
     throw Error(ExitCode::usage, "bounces: found '{}' with transport '{}', allowed: 1 (or transport 'sweep')",
                 name_of(options.bounces), name_of(options.transport));
   }
   if (!sweeps(options) && options.near != Near::off) {
-    throw Error(ExitCode::usage, "near: found '{}' with transport '{}', allowed: off (or transport 'sweep')",
-                name_of(options.near), name_of(options.transport));
+    throw Error(ExitCode::usage,
+                "near: found '{}'{} with transport '{}', allowed: off (or transport 'sweep')",
+                name_of(options.near), preset_note(options, "near"), name_of(options.transport));
   }
   require_faces(options);
 }

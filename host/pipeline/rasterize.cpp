@@ -18,7 +18,8 @@ constexpr std::size_t kItemsARun = CLPV_CLUSTER / 8;  // a work-item sets up eig
 constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
 constexpr std::size_t kSpare = 4;        // lists grow by an extra 1/4, since cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
-const ProgramSource kBin{"bin_tiles.cl", {}, {}}, kDraw{"draw_tiles.cl", {}, {}};
+const ProgramSource kSetUp{"rasterize.cl", {}, {}}, kBin{"bin_tiles.cl", {}, {}},
+    kDraw{"draw_tiles.cl", {}, {}};
 
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
@@ -44,6 +45,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
     : session_(session),
       scene_(scene),
       max_listed_(max_listed),
+      set_up_(session, kSetUp, "set_up"),
+      set_up_clipped_(session, kSetUp, "set_up_clipped"),
       sum_slices_(session, kBin, "sum_slices"),
       scan_slices_(session, kBin, "scan_slices"),
       bin_entries_(session, kBin, "bin_entries"),
@@ -75,16 +78,6 @@ void Rasterizer::reserve_entries(std::size_t count) {
   count += count / kSpare;
   session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
-}
-
-Rasterizer::SetUp& Rasterizer::set_up_kernels(const ClpvView& view) {
-  const bool orthographic = view.orthographic != 0;
-  if (const auto found = set_up_.find(orthographic); found != set_up_.end()) return found->second;
-  const ProgramSource source{"rasterize.cl", Literals().flag("CLPV_ORTHOGRAPHIC", orthographic), {}};
-  return set_up_
-      .emplace(orthographic,
-               SetUp{Kernel(session_, source, "set_up"), Kernel(session_, source, "set_up_clipped")})
-      .first->second;
 }
 
 Kernel& Rasterizer::resolve(const Resolving& wanted) {
@@ -121,16 +114,15 @@ unsigned Rasterizer::list_clusters(const ClpvView& view) {
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
 void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
-  SetUp& kernels = set_up_kernels(pass.view);
   const cl_uint cull = pass.cull_back_faces ? 1 : 0;
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
   session_.fill_zero(slice_counts_, slice_count(pass.view) * sizeof(cl_uint));
   if (count == 0) return;
-  kernels.triangles
+  set_up_
       .set(pass.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
            scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, slice_counts_, to_clip_)
       .launch(count * kItemsARun, kRasterGroup);
-  kernels.clipped
+  set_up_clipped_
       .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, slice_counts_, to_clip_)
       .launch(kClippers, kRasterGroup);

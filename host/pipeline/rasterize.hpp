@@ -43,11 +43,6 @@ class Rasterizer {
     bool cull_back_faces;
   };
 
-  /// Kernels for one projection. A projection chosen at run time would take 8 % longer per RSM.
-  struct SetUp {
-    Kernel triangles, clipped;
-  };
-  SetUp& set_up_kernels(const ClpvView& view);
   /// Variant of the resolve kernel.
   struct Resolving {
     bool orthographic, from_light, paper, emissive;
@@ -71,7 +66,7 @@ class Rasterizer {
   Session& session_;
   SceneBuffers scene_;
   std::size_t max_listed_;
-  std::map<bool, SetUp> set_up_;  ///< by whether the projection is orthographic
+  Kernel set_up_, set_up_clipped_;
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;
   Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_, seen_;

@@ -54,13 +54,7 @@ std::optional<ClpvBox> within(ClpvBox box, int valid) {
   return box;
 }
 
-ProgramSource program(const VoxelMaskShape& shape) {
-  ProgramSource source{"voxel_masks.cl", {}, {}};
-  source.literals.integer("CLPV_MASK_CELLS", shape.cells)
-      .integer("CLPV_MASK_VALID", shape.valid)
-      .integer("CLPV_MASK_WORDS", static_cast<int>(shape.words));
-  return source;
-}
+const ProgramSource kMasks{"voxel_masks.cl", {}, {}};
 
 bool meet(const Bounds& a, const Bounds& b) {
   return glm::all(glm::lessThanEqual(a.lower, b.upper)) && glm::all(glm::lessThanEqual(b.lower, a.upper));
@@ -83,8 +77,8 @@ VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelM
       masks_(session.buffer(shape.bytes(), what)),
       clusters_(session.buffer(std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
                                what + ": clusters")),
-      move_(session, program(shape), "move_masks"),
-      clear_(session, program(shape), "clear_masks") {
+      move_(session, kMasks, "move_masks"),
+      clear_(session, kMasks, "clear_masks") {
   if (shape.valid == 0) session_.fill_zero(masks_, shape.bytes());  // no other code writes them
   if (shape.cascades > 1)
     spare_ = session.buffer(shape.words_a_cascade() * sizeof(cl_uint), what + ": moved");
@@ -175,13 +169,14 @@ void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
 void VoxelMasks::clear(std::size_t cascade, const ClpvRegion& region) {
   const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
   const std::size_t along = shape_.cells;
+  const auto words = static_cast<cl_int>(shape_.words);
   const cl::NDRange cells(along, along, along), group(kMaskGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(masks_, bytes, from);
   if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
-    move_.set(region, masks_, slot(cascade), spare_).launch(cells, group);
+    move_.set(region, shape_.cells, shape_.valid, words, masks_, slot(cascade), spare_).launch(cells, group);
     session_.copy(spare_, masks_, bytes, from);
   }
-  clear_.set(region, masks_, slot(cascade)).launch(cells, group);
+  clear_.set(region, shape_.cells, words, masks_, slot(cascade)).launch(cells, group);
 }
 
 bool VoxelMasks::is_whole(const ClpvRegion& region) const {

@@ -97,10 +97,17 @@ std::optional<GroundTruth> read_cached(const std::filesystem::path& file) {
   }
 }
 
-void check_place(const std::filesystem::path& file) {
+/// Returns false, with a warning, if the ground truth cannot be cached.
+bool can_be_cached(const std::filesystem::path& file) {
   std::error_code failure;  // check_writable reports any error of the folder
   std::filesystem::create_directories(file.parent_path(), failure);
-  check_writable(file);
+  try {
+    check_writable(file);
+    return true;
+  } catch (const Error& error) {
+    spdlog::warn("{}: the ground truth is not cached", error.what());
+    return false;
+  }
 }
 
 }  // namespace
@@ -113,9 +120,10 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
                            key(scene, camera, view, options));
   std::optional<GroundTruth> kept;
+  bool cached = false;
   const std::string found = ranks.from_root([&] {
     kept = read_cached(file);
-    if (!kept) check_place(file);
+    if (!kept) cached = can_be_cached(file);
     return kept ? "there" : "";
   });
   if (!found.empty()) {
@@ -126,7 +134,7 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
   GroundTruth truth{all_views(traced), file, true, traced.samples, traced.noise, scene.exposure};
   describe(truth.image, scene, camera, traced, options);
-  if (ranks.is_root()) write_exr(file, truth.image);
+  if (cached) write_exr(file, truth.image);  // at rank 0
   return truth;
 }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "reference/view.hpp"
 #include "support/error.hpp"
+#include "support/log.hpp"
 
 namespace clpv {
 namespace {
@@ -17,6 +19,13 @@ reference::Volume read_light(Session& session, const Volume& volume, double scal
   for (const float value : values) made.values.push_back(value / scale);
   return made;
 }
+
+bool in_reach(const ClpvGrid& grid, const glm::dvec3& position) {
+  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
+  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
+}
+
+constexpr double kFewUnreached = 0.001;  // specks at the horizon are no surprise
 
 }  // namespace
 
@@ -43,9 +52,31 @@ glm::dvec3 LightField::irradiance(const glm::dvec3& position, const glm::dvec3& 
 }
 
 bool LightField::reaches(const glm::dvec3& position) const {
-  const ClpvGrid& grid = cascades_.back().grid;
-  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
-  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(options_.grid) * double{grid.cell})));
+  return in_reach(cascades_.back().grid, position);
+}
+
+double unreached_share(Session& session, const Frame& frame) {
+  const Surface& seen = frame.seen();
+  const ClpvView& view = seen.view;
+  const ClpvGrid coarsest = frame.light().grids.back();
+  const std::vector<float> depths = session.read<float>(seen.depth, std::size_t{view.width} * view.height);
+  std::size_t surfaces = 0, unreached = 0;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (depths[i] == 0) continue;
+    ++surfaces;
+    unreached += !in_reach(coarsest, reference::surface_position(view, i, depths[i]));
+  }
+  return surfaces == 0 ? 0 : static_cast<double>(unreached) / static_cast<double>(surfaces);
+}
+
+void warn_of_unreached(Session& session, const Frame& frame, const std::string& camera) {
+  const double share = unreached_share(session, frame);
+  if (share <= kFewUnreached) return;
+  spdlog::warn(
+      "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect light; a "
+      "larger "
+      "--cascade-size or more --cascades reach farther",
+      camera, 100 * share);
 }
 
 }  // namespace clpv

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "device/session.hpp"
@@ -35,5 +36,12 @@ class LightField {
   std::vector<std::uint8_t> occluded_;  ///< empty if all cells light surfaces
   std::vector<reference::Cascade> cascades_;
 };
+
+/// Returns the share of the visible surfaces' pixels that no cascade of the last render reaches: they have no indirect
+/// light. 0 without a surface.
+double unreached_share(Session& session, const Frame& frame);
+
+/// Warns above 0.1 %.
+void warn_of_unreached(Session& session, const Frame& frame, const std::string& camera);
 
 }  // namespace clpv

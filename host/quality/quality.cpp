@@ -136,7 +136,12 @@ std::string quality_key(const reference::GroundTruth& truth, const Device& devic
 QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code failure;
   std::filesystem::create_directories(folder_, failure);  // check_writable reports any error
-  check_writable(file("probe"));
+  try {
+    check_writable(file("probe"));
+  } catch (const Error& error) {
+    writable_ = false;
+    spdlog::warn("{}: results are not cached", error.what());
+  }
 }
 
 std::filesystem::path QualityStore::file(const std::string& key) const {
@@ -155,6 +160,7 @@ std::optional<QualityCell> QualityStore::find(const std::string& key) const {
 }
 
 void QualityStore::keep(const std::string& key, const QualityCell& cell) const {
+  if (!writable_) return;
   write_file(file(key), to_json(cell).dump(2) + "\n");
 }
 

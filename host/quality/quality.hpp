@@ -64,7 +64,7 @@ std::string quality_key(const reference::GroundTruth& truth, const Device& devic
 /// Cells cached on disk, so that an interrupted run can resume.
 class QualityStore {
  public:
-  /// Creates the folder if it is missing. Throws Error(run_time) if it is not writable.
+  /// Creates the folder if it is missing. If it is not writable, warns, and keeps nothing.
   explicit QualityStore(std::filesystem::path folder);
 
   /// Empty if the cell is missing or unreadable; logs the latter.
@@ -75,6 +75,7 @@ class QualityStore {
   std::filesystem::path file(const std::string& key) const;
 
   std::filesystem::path folder_;
+  bool writable_ = true;
 };
 
 /// Means of a variant over all its views.

@@ -83,7 +83,7 @@ const std::vector<Rule>& rules() {
         number("/metres_per_unit", kTiny, 1e6),
         number("/exposure", -64, 64),
         object("/cascades"),
-        integer("/cascades/count", 1, 16),
+        integer("/cascades/count", 1, 8),
         number("/cascades/size_metres", 1e-3, kFar),
         text("/comment"),
         object("/sky"),

@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: MIT
 #include "support/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 
 namespace clpv {
 namespace {
 
 std::atomic<int> pending_signal{0};
+std::atomic<const char*> uninterruptible{nullptr};
+static_assert(std::atomic<const char*>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may write only lock-free atomics");
+
+/// Writes text to stderr; async-signal-safe.
+void say(const char* text) {
+  const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+  static_cast<void>(written);  // nowhere to report a failure
+}
 
 extern "C" void on_signal(int signal) {
   pending_signal = signal;
+  if (const char* what = uninterruptible) {
+    say("\nclpv: stopping after ");
+    say(what);
+    say("; once more to stop now\n");
+  }
   std::signal(signal, SIG_DFL);  // a second signal ends the process at once
 }
 
@@ -23,6 +39,12 @@ void catch_interrupts() {
     // A shell ignores SIGINT for background processes; keep that.
     if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
+}
+
+Uninterruptible::Uninterruptible(const char* what) : outer_(uninterruptible.exchange(what)) {}
+
+Uninterruptible::~Uninterruptible() {
+  uninterruptible = outer_;
 }
 
 bool interrupted() {

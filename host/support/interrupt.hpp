@@ -16,6 +16,18 @@ class Interrupted : public std::runtime_error {
 /// Installs the handler: the first SIGINT or SIGTERM sets interrupted(), a second one ends the process at once.
 void catch_interrupts();
 
+/// Work that cannot be interrupted, during its lifetime: a signal then logs "stopping after `what`".
+class Uninterruptible {
+ public:
+  explicit Uninterruptible(const char* what);
+  ~Uninterruptible();
+  Uninterruptible(const Uninterruptible&) = delete;
+  Uninterruptible& operator=(const Uninterruptible&) = delete;
+
+ private:
+  const char* outer_;
+};
+
 /// Returns true after a signal. For loops that must not throw, such as those of other threads.
 bool interrupted();
 

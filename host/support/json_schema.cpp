@@ -257,8 +257,11 @@ json parse_json(std::string_view text, const std::string& file) {
   check_extent(text, file);
   try {
     return json::parse(text);
-  } catch (const json::exception& error) {  // its text has line and column
-    std::string what = error.what();
+  } catch (const json::exception& error) {  // its text has line, column and what was expected
+    std::string what =
+        error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
+    if (const std::size_t tag = what.find("] "); what.starts_with('[') && tag != std::string::npos)
+      what.erase(0, tag + 2);
     std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
     reject(file, {}, "invalid JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
   }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <utility>
 
@@ -74,14 +75,23 @@ bool Process::feed(std::span<const std::byte> bytes) {
   return true;
 }
 
+bool Process::running() {
+  if (child_ < 0 || exited_) return false;
+  exited_ = ::waitpid(child_, &status_, WNOHANG) == child_;
+  return !exited_;
+}
+
+void Process::kill() {
+  if (running()) ::kill(child_, SIGKILL);
+}
+
 Process::Result Process::end() {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
   if (child_ < 0) return {-1, std::strerror(start_error_)};
-  int status = 0;
-  while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  while (!exited_ && ::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(output_.get())};
+  return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), contents(output_.get())};
 }
 
 }  // namespace clpv

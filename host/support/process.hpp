@@ -31,6 +31,11 @@ class Process {
   /// Writes `bytes` to its stdin; blocks while it reads slowly. Returns false if it has closed stdin.
   bool feed(std::span<const std::byte> bytes);
 
+  /// Returns true until the process has exited.
+  bool running();
+  /// Ends the process at once, with SIGKILL.
+  void kill();
+
   /// Closes its stdin and waits for it to exit.
   Result end();
 
@@ -41,6 +46,8 @@ class Process {
   std::unique_ptr<std::FILE, Close> output_;  ///< an unnamed temporary file
   int input_ = -1;
   pid_t child_ = -1;
+  int status_ = 0;  ///< of waitpid, once exited_
+  bool exited_ = false;
   int start_error_ = 0;  ///< errno of a failure to start
 };
 

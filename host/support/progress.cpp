@@ -39,11 +39,11 @@ std::string time_left(double share, double elapsed_seconds) {
   return share > 0 ? duration(elapsed_seconds * (1 - share) / share) + " left" : "";
 }
 
-/// The requested style, or `none` if the log is quiet or a bar has no terminal.
+/// The requested style; `none` if the log is quiet, and lines instead of a bar without a terminal.
 ProgressStyle effective_style() {
-  const bool logged = spdlog::should_log(spdlog::level::info);
-  const bool drawable = requested_style != ProgressStyle::bar || ::isatty(STDERR_FILENO) == 1;
-  return logged && drawable ? requested_style : ProgressStyle::none;
+  if (!spdlog::should_log(spdlog::level::info)) return ProgressStyle::none;
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  return requested_style == ProgressStyle::bar && !terminal ? ProgressStyle::lines : requested_style;
 }
 
 }  // namespace
@@ -55,8 +55,9 @@ void set_progress_style(ProgressStyle style) {
 std::string progress_words(const std::string& title, std::uint64_t done, std::uint64_t total,
                            double elapsed_seconds) {
   const double share = share_of(done, total);
-  return fmt::format("{}: {} of {}, {:.0f} %, {}", title, done, total, 100 * share,
-                     time_left(share, elapsed_seconds));
+  const std::string left = time_left(share, elapsed_seconds);
+  return fmt::format("{}: {} of {}, {:.0f} %{}{}", title, done, total, 100 * share, left.empty() ? "" : ", ",
+                     left);
 }
 
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,

@@ -14,8 +14,8 @@ enum class ProgressStyle { bar, lines, none };
 /// Sets the style of every Progress constructed later.
 void set_progress_style(ProgressStyle style);
 
-/// Counts work done out of a known total. Draws no bar during the first second, if stderr is no terminal or if the log is
-/// quiet (set_log_level). The destructor erases the bar. advance() and reach() are thread safe.
+/// Counts work done out of a known total. Draws no bar during the first second. Logs lines instead if stderr is no terminal,
+/// and nothing if the log is quiet (set_log_level). The destructor erases the bar. advance() and reach() are thread safe.
 class Progress {
  public:
   /// `title` names the work ("path tracing"); `total` is in the caller's units; a total of 0 counts as done.

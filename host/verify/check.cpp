@@ -18,6 +18,10 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
   return kChecks[static_cast<std::size_t>(stage)](session, scope);
 }
 
+CheckScope thorough_scope() {
+  return {.thorough = true, .bases = basis_names(), .formats = all_formats()};
+}
+
 std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
                                         const std::vector<VolumeFormat>& formats) {
   std::vector<VolumeFormat> supported;

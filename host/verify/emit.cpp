@@ -64,13 +64,19 @@ CheckResult check_scene(Session& session, const Scene& scene, const std::string&
 
 }  // namespace
 
-CheckResults check_emit(Session& session, const CheckScope&) {
+CheckResults check_emit(Session& session, const CheckScope& scope) {
   Scene plain = emissive_soup();
   for (Material& material : plain.materials) {
     material.flags = 0;
     material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
   }
-  return {check_scene(session, emissive_soup(), "textures and holes"), check_scene(session, plain, "plain")};
+  CheckResults results;
+  const auto add = [&](const Scene& scene, const char* variant) {
+    compare_selected(scope, "emit", variant, results, [&] { return check_scene(session, scene, variant); });
+  };
+  add(emissive_soup(), "textures and holes");
+  add(plain, "plain");
+  return results;
 }
 
 }  // namespace clpv::reference

@@ -79,11 +79,16 @@ CheckResult check_one(Session& session, const Basis& basis, TransportKind transp
   std::vector<glm::dvec4> expected;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image))
     expected.emplace_back(e, 0.0);
-  CheckResult result =
-      compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), expected, image.view.width,
-                     "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport), variant.name));
+  CheckResult result = compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), expected,
+                                      image.view.width, "gather", variant.name);
   result.allowed = tolerance(compared_as(variant), variant.format.storage);
   return result;
+}
+
+void compare(Session& session, const CheckScope& scope, const Basis& basis, TransportKind transport,
+             const Variant& variant, CheckResults& results) {
+  compare_selected(scope, "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport), variant.name),
+                   results, [&] { return check_one(session, basis, transport, variant); });
 }
 
 /// Tests all other volume formats; images both with the device's filter and from texels.
@@ -95,14 +100,14 @@ void check_formats(Session& session, const CheckScope& scope, CheckResults& resu
     Variant variant{.name = format_name(format), .format = format};
     if (format.layout == Layout::image) {
       variant.name += " filter";
-      results.push_back(check_one(session, *basis, transport, variant));
+      compare(session, scope, *basis, transport, variant, results);
       variant.name = format_name(format) + " texels";
       variant.filtered = false;
     }
-    results.push_back(check_one(session, *basis, transport, variant));
+    compare(session, scope, *basis, transport, variant, results);
     variant.gather = Gathering::visible;
     variant.name += " visible";
-    results.push_back(check_one(session, *basis, transport, variant));
+    compare(session, scope, *basis, transport, variant, results);
   }
 }
 
@@ -112,22 +117,22 @@ CheckResults check_gather(Session& session, const CheckScope& scope) {
   CheckResults results;
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
-    results.push_back(check_one(session, *basis, TransportKind::sampled, {"plain"}));
+    compare(session, scope, *basis, TransportKind::sampled, {"plain"}, results);
     if (scope.thorough || name == "sh3") {
-      results.push_back(check_one(session, *basis, TransportKind::sampled,
-                                  {.name = "visible", .gather = Gathering::visible}));
+      compare(session, scope, *basis, TransportKind::sampled,
+              {.name = "visible", .gather = Gathering::visible}, results);
     }
     if (basis->centres().empty()) continue;  // no table
     const LobeOptions functions{.table_functions = true};
-    results.push_back(check_one(session, *basis, TransportKind::sampled, {"table", functions}));
+    compare(session, scope, *basis, TransportKind::sampled, {"table", functions}, results);
     if (!session.device().images || (!scope.thorough && basis->size() > 4)) continue;
-    results.push_back(
-        check_one(session, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image}));
+    compare(session, scope, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image},
+            results);
   }
   const std::unique_ptr<Basis> swept = swept_basis();  // all bases of swept light
-  results.push_back(check_one(session, *swept, TransportKind::sweep, {"plain"}));
-  results.push_back(
-      check_one(session, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible}));
+  compare(session, scope, *swept, TransportKind::sweep, {"plain"}, results);
+  compare(session, scope, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible},
+          results);
   check_formats(session, scope, results);
   return results;
 }

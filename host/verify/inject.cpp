@@ -175,10 +175,12 @@ std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool 
 
 CheckResults check_inject(Session& session, const CheckScope& scope) {
   CheckResults results;
+  const auto add = [&](const Basis& basis, const InjectCase& c) {
+    compare_selected(scope, "inject", c.name(basis), results, [&] { return check_one(session, basis, c); });
+  };
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
-    for (const InjectCase& c : cases_of(session.device(), *basis, scope.thorough))
-      results.push_back(check_one(session, *basis, c));
+    for (const InjectCase& c : cases_of(session.device(), *basis, scope.thorough)) add(*basis, c);
   }
   // Independent of the basis: areas, points without a view, and all other volume formats.
   const InjectOptions areas{.blocking = Blocking::areas};
@@ -192,7 +194,7 @@ CheckResults check_inject(Session& session, const CheckScope& scope) {
     cases.push_back({.options = {.format = format}, .orthographic = false});
     cases.push_back({.options = {.format = format}, .light = false});
   }
-  for (const InjectCase& c : cases) results.push_back(check_one(session, *basis, c));
+  for (const InjectCase& c : cases) add(*basis, c);
   return results;
 }
 

@@ -11,8 +11,9 @@ namespace clpv::reference {
 namespace {
 
 std::string test_case(const CheckResult& result) {
-  const std::string head = fmt::format("    <testcase classname=\"clpv.{}\" name=\"{}\"",
-                                       xml_escaped(result.stage), xml_escaped(result.variant));
+  const std::string head =
+      fmt::format("    <testcase classname=\"clpv.{}\" name=\"{}\" time=\"{:.3f}\"",
+                  xml_escaped(result.stage), xml_escaped(result.variant), result.seconds);
   if (result.passed()) return head + "/>\n";
   return head +
          fmt::format(">\n      <failure message=\"{:.3e} &gt; {:.0e}\">{}</failure>\n    </testcase>\n",

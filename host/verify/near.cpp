@@ -142,14 +142,16 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
 
 CheckResults check_near(Session& session, const CheckScope& scope) {
   CheckResults results;
-  results.push_back(check_one_near(session, {.name = "full"}));
-  results.push_back(check_one_near(session, {.name = "half", .step = 2}));
-  results.push_back(check_one_near(session, {.name = "reflects", .reflects = true}));
+  const auto add = [&](const NearVariant& variant) {
+    compare_selected(scope, "near", variant.name, results, [&] { return check_one_near(session, variant); });
+  };
+  add({.name = "full"});
+  add({.name = "half", .step = 2});
+  add({.name = "reflects", .reflects = true});
   if (!scope.thorough) return results;
-  results.push_back(check_one_near(session, {.name = "1 ray", .rays = 1}));
-  results.push_back(check_one_near(session, {.name = "all cells", .gather = Gathering::all}));
-  results.push_back(
-      check_one_near(session, {.name = "half numbers", .format = {Layout::soa, Storage::float16}}));
+  add({.name = "1 ray", .rays = 1});
+  add({.name = "all cells", .gather = Gathering::all});
+  add({.name = "half numbers", .format = {Layout::soa, Storage::float16}});
   return results;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 #include <set>
@@ -23,8 +24,30 @@ constexpr int kGrid = 7;         // no multiple of a work-group: tests borders a
 constexpr int kFormatGrid = 17;  // whole blocks of 8 cells plus one cell
 constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
-CheckResult check_one(Session& session, const Basis& basis, const Transport& transport,
-                      const PropagateOptions& options, bool blockers) {
+/// One comparison: a basis, its transport, and options of the kernels.
+struct PropagateCase {
+  TransportKind kind;
+  LobeOptions lobes = {};
+  Blocking blocking = Blocking::one_sided;
+  PropagateOptions options = {};
+  bool blockers = true;
+
+  std::string name(const Basis& basis) const {
+    return fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(kind), name_of(options.state),
+                       !blockers                     ? "free"
+                       : blocking == Blocking::areas ? "areas"
+                                                     : "blockers",
+                       lobes.kind == LobeKind::rotate ? "/rotate" : "",
+                       options.lobe_time == LobeTime::host     ? ""
+                       : options.table == TableStorage::buffer ? "/kernel"
+                                                               : "/kernel image") +
+           (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
+  }
+};
+
+CheckResult check_one(Session& session, const Basis& basis, const PropagateCase& c) {
+  const PropagateOptions& options = c.options;
+  const Transport transport = make_transport(c.kind, basis, c.lobes, c.blocking);
   std::mt19937 random(7);
   const int n = options.grid;
   const Volume light = random_light(basis, n, random);
@@ -33,33 +56,26 @@ CheckResult check_one(Session& session, const Basis& basis, const Transport& tra
                      corners = on_device(session, geometry, options.format);
   clpv::Volume accumulated(session, {n, basis.size(), 3}, "check: accumulated light", options.format);
   Propagator propagator(session, basis, transport, options);
-  propagator.propagate({injected, blockers ? &corners : nullptr, accumulated}, kSteps);
-  const Propagation expected = propagate(transport, light, blockers ? &geometry : nullptr, kSteps);
+  propagator.propagate({injected, c.blockers ? &corners : nullptr, accumulated}, kSteps);
+  const Propagation expected = propagate(transport, light, c.blockers ? &geometry : nullptr, kSteps);
   const Comparison apart = compare_volumes(accumulated.read(session), expected.accumulated.values, n);
   const double allowed = options.lobe_time == LobeTime::kernel
                              ? tolerance("propagate-run-time-lobes")
                              : tolerance("propagate", options.format.storage);
-  const std::string variant =
-      fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(transport.kind), name_of(options.state),
-                  !blockers                               ? "free"
-                  : transport.blocking == Blocking::areas ? "areas"
-                                                          : "blockers",
-                  transport.lobes.kind == LobeKind::rotate ? "/rotate" : "",
-                  options.lobe_time == LobeTime::host     ? ""
-                  : options.table == TableStorage::buffer ? "/kernel"
-                                                          : "/kernel image") +
-      (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
-  return {"propagate", variant, apart.worst, allowed, apart.place};
+  return {"propagate", c.name(basis), apart.worst, allowed, apart.place};
 }
 
+/// Runs the comparison if the scope selects it.
+using Add = std::function<void(const Basis&, const PropagateCase&)>;
+
 /// `full`: tests every transport in both states, with and without blockers.
-void check_constants(Session& session, const Basis& basis, const LobeOptions& lobes, bool full,
-                     CheckResults& results) {
+void check_constants(const Basis& basis, const LobeOptions& lobes, bool full, const Add& compare) {
   for (const TransportKind kind : stepped_transports()) {
     if (!full && kind != TransportKind::sampled) continue;
-    const Transport transport = make_transport(kind, basis, lobes);
     const auto add = [&](State state, bool blockers) {
-      results.push_back(check_one(session, basis, transport, {.grid = kGrid, .state = state}, blockers));
+      compare(
+          basis,
+          {.kind = kind, .lobes = lobes, .options = {.grid = kGrid, .state = state}, .blockers = blockers});
     };
     // The first step never blocks, so a run with blockers tests both of its kernels. Fluxes differ: their first step is
     // a separate kernel.
@@ -70,12 +86,12 @@ void check_constants(Session& session, const Basis& basis, const LobeOptions& lo
 }
 
 /// Lobes computed in the kernel: exact and rotated ones, with the table as a buffer and as an image.
-void check_run_time_lobes(Session& session, const Basis& basis, bool full, CheckResults& results) {
+void check_run_time_lobes(const Device& device, const Basis& basis, bool full, const Add& compare) {
   const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
-    if (table == TableStorage::image && !session.device().images) return;
-    const LobeOptions lobes{.kind = kind, .table_functions = kind == LobeKind::rotate};
-    results.push_back(check_one(session, basis, make_transport(transport, basis, lobes),
-                                {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}, true));
+    if (table == TableStorage::image && !device.images) return;
+    compare(basis, {.kind = transport,
+                    .lobes = {.kind = kind, .table_functions = kind == LobeKind::rotate},
+                    .options = {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}});
   };
   add(TransportKind::sampled, LobeKind::rotate, TableStorage::buffer);
   if (!full) return;
@@ -84,24 +100,22 @@ void check_run_time_lobes(Session& session, const Basis& basis, bool full, Check
 }
 
 /// Blockers as areas: tests the sets of links, since the basis has little effect.
-void check_areas(Session& session, bool thorough, CheckResults& results) {
+void check_areas(bool thorough, const Add& compare) {
   for (const char* name : {"sh2", "bins24"}) {
     if (!thorough && std::string(name) != "sh2") continue;
     const std::unique_ptr<Basis> basis = make_basis(name);
     for (const TransportKind transport : stepped_transports()) {
-      results.push_back(check_one(session, *basis, make_transport(transport, *basis, {}, Blocking::areas),
-                                  {.grid = kGrid}, true));
+      compare(*basis, {.kind = transport, .blocking = Blocking::areas, .options = {.grid = kGrid}});
     }
   }
 }
 
 /// Tests all other volume formats with one basis and transport, which do not affect them.
-void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
+void check_formats(const Device& device, const CheckScope& scope, const Add& compare) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const Transport transport = make_transport(TransportKind::sampled, *basis);
   const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
-  for (const VolumeFormat& format : other_formats(session.device(), corners, scope.formats)) {
-    results.push_back(check_one(session, *basis, transport, {.grid = kFormatGrid, .format = format}, true));
+  for (const VolumeFormat& format : other_formats(device, corners, scope.formats)) {
+    compare(*basis, {.kind = TransportKind::sampled, .options = {.grid = kFormatGrid, .format = format}});
   }
 }
 
@@ -112,20 +126,24 @@ CheckResults check_propagate(Session& session, const CheckScope& scope) {
   // are tested singly, not in pairs, since building kernels dominates the time.
   const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
   CheckResults results;
+  const Add compare = [&](const Basis& basis, const PropagateCase& c) {
+    compare_selected(scope, "propagate", c.name(basis), results,
+                     [&] { return check_one(session, basis, c); });
+  };
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     const bool full = scope.thorough || in_full.count(name) > 0;
-    check_constants(session, *basis, {}, full, results);
+    check_constants(*basis, {}, full, compare);
     // In full for the cheapest basis with a table; otherwise without and with a table, and where errors are largest.
     const std::set<std::string> lobes = {"sh2", "srbf4", "srbf8v2", "srbf14"};
     if (scope.thorough || lobes.count(name) > 0)
-      check_run_time_lobes(session, *basis, scope.thorough || name == "srbf4", results);
+      check_run_time_lobes(session.device(), *basis, scope.thorough || name == "srbf4", compare);
     if (!basis->centres().empty() && scope.thorough) {
-      check_constants(session, *basis, {.kind = LobeKind::rotate, .table_functions = true}, true, results);
+      check_constants(*basis, {.kind = LobeKind::rotate, .table_functions = true}, true, compare);
     }
   }
-  check_areas(session, scope.thorough, results);
-  check_formats(session, scope, results);
+  check_areas(scope.thorough, compare);
+  check_formats(session.device(), scope, compare);
   return results;
 }
 

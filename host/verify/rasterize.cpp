@@ -224,18 +224,30 @@ ClpvLight spot() {
 
 }  // namespace
 
-CheckResults check_rasterize(Session& session, const CheckScope&) {
+CheckResults check_rasterize(Session& session, const CheckScope& scope) {
   CheckResults results;
   SceneMaker maker(3);
   const Scene soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();
   const Bounds bounds{glm::vec3(-12, -12, -12), glm::vec3(12, 12, 8)};
-  check_camera(session, soup, "soup", results);
-  check_camera(session, sheet, "sheet", results);
-  check_light(session, lattice, sun(), lattice_view(), "lattice", results);
+  const auto add = [&](const std::string& variant, const auto& compare) {
+    compare_selected(scope, "rasterize", variant, results, [&] {
+      CheckResults found;
+      compare(found);
+      return found;
+    });
+  };
+  add("camera/soup", [&](CheckResults& found) { check_camera(session, soup, "soup", found); });
+  add("camera/sheet", [&](CheckResults& found) { check_camera(session, sheet, "sheet", found); });
+  add("light/lattice",
+      [&](CheckResults& found) { check_light(session, lattice, sun(), lattice_view(), "lattice", found); });
   const ClpvGrid cascade{{-2, -2, -6}, 0.5f, 8, {}};
-  check_light(session, soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize), "directional",
-              results);
-  check_light(session, sheet, spot(), spot_view(spot(), kLightSize, bounds), "spot", results);
+  add("light/directional", [&](CheckResults& found) {
+    check_light(session, soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize), "directional",
+                found);
+  });
+  add("light/spot", [&](CheckResults& found) {
+    check_light(session, sheet, spot(), spot_view(spot(), kLightSize, bounds), "spot", found);
+  });
   return results;
 }
 

@@ -55,7 +55,7 @@ ShadowedLight upload(Session& session, const MappedLight& light) {
 
 }  // namespace
 
-CheckResults check_shade(Session& session, const CheckScope&) {
+CheckResults check_shade(Session& session, const CheckScope& scope) {
   std::mt19937 random(17);
   std::uniform_real_distribution<float> uniform(0, 5);
   const SurfaceImage image = random_surfaces(random);
@@ -72,13 +72,15 @@ CheckResults check_shade(Session& session, const CheckScope&) {
   Shader shader(session);
   CheckResults results;
   const auto check = [&](Show show, const std::vector<MappedLight>& lights, const std::string& variant) {
-    std::vector<ShadowedLight> shadowed;
-    for (const MappedLight& light : lights) shadowed.push_back(upload(session, light));
-    shader.light(camera, shadowed);
-    shader.show(show, camera, gathered, shown);
-    results.push_back(compare_pixels(session.read<cl_float4>(shown, pixels),
-                                     shade(show, image, direct_irradiance(lights, image), indirect),
-                                     image.view.width, "shade", variant));
+    compare_selected(scope, "shade", variant, results, [&] {
+      std::vector<ShadowedLight> shadowed;
+      for (const MappedLight& light : lights) shadowed.push_back(upload(session, light));
+      shader.light(camera, shadowed);
+      shader.show(show, camera, gathered, shown);
+      return compare_pixels(session.read<cl_float4>(shown, pixels),
+                            shade(show, image, direct_irradiance(lights, image), indirect), image.view.width,
+                            "shade", variant);
+    });
   };
   const std::vector<MappedLight> lights = {
       mapped(kSun, random), mapped(kSpot, random), mapped(kPoint, random), {kPoint, {}}};

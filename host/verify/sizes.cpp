@@ -44,9 +44,7 @@ constexpr Place kHost[] = {
 #undef CLPV_OFFSET
 };
 
-}  // namespace
-
-CheckResults check_sizes(Session& session, const CheckScope&) {
+CheckResult compare_sizes(Session& session) {
   const std::size_t count = std::size(kHost);
   Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
   Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
@@ -59,7 +57,15 @@ CheckResults check_sizes(Session& session, const CheckScope&) {
       return fmt::format("{}: {} bytes, host {}", kHost[i].name, device[i], kHost[i].bytes);
     });
   }
-  return {result};
+  return result;
+}
+
+}  // namespace
+
+CheckResults check_sizes(Session& session, const CheckScope& scope) {
+  CheckResults results;
+  compare_selected(scope, "sizes", "shared structs", results, [&] { return compare_sizes(session); });
+  return results;
 }
 
 }  // namespace clpv::reference

@@ -126,9 +126,11 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
   return result;
 }
 
-CheckResults check_all(Session& session, const std::vector<SweepCase>& cases, const char* stage) {
+CheckResults check_all(Session& session, const CheckScope& scope, const std::vector<SweepCase>& cases,
+                       const char* stage) {
   CheckResults results;
-  for (const SweepCase& c : cases) results.push_back(check_one(session, c, stage));
+  for (const SweepCase& c : cases)
+    compare_selected(scope, stage, c.name(), results, [&] { return check_one(session, c, stage); });
   return results;
 }
 
@@ -152,7 +154,7 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       for (const int parts : {1, 2, 3, 4}) cases.push_back({.basis = name, .grid = 6, .parts = {parts, 1}});
     }
   }
-  return check_all(session, cases, "sweep");
+  return check_all(session, scope, cases, "sweep");
 }
 
 CheckResults check_bounce(Session& session, const CheckScope& scope) {
@@ -169,7 +171,7 @@ CheckResults check_bounce(Session& session, const CheckScope& scope) {
     for (const std::string& name : basis_names())
       cases.push_back({.basis = name, .grid = 6, .parts = {2, 1}, .bounces = all});
   }
-  return check_all(session, cases, "bounce");
+  return check_all(session, scope, cases, "bounce");
 }
 
 }  // namespace clpv::reference

@@ -44,7 +44,7 @@ CheckResults check_blockers(Session& session, const CheckScope& scope) {
   const BlockerBounds expected = voxelize_blockers(scene, kCells);
   const VolumeShape shape{kGrid + 1, 3, 1};
   CheckResults results;
-  for (const VolumeFormat& format : formats_of(session, shape, scope)) {
+  const auto compare = [&](const VolumeFormat& format) {
     clpv::Volume geometry(session, shape, "check: blockers", format);
     BlockerVoxelizer(session, buffers, kGrid, 1, format).voxelize(0, kCells, geometry);
     const std::vector<float> found = geometry.read(session);
@@ -56,8 +56,10 @@ CheckResults check_blockers(Session& session, const CheckScope& scope) {
                            at / (found.size() / 3), share, lower, upper);
       });
     }
-    results.push_back(result);
-  }
+    return result;
+  };
+  for (const VolumeFormat& format : formats_of(session, shape, scope))
+    compare_selected(scope, "blockers", format_name(format), results, [&] { return compare(format); });
   return results;
 }
 
@@ -66,7 +68,7 @@ CheckResults check_reflectors(Session& session, const CheckScope& scope) {
   const SceneBuffers buffers = upload_scene(session, scene);
   const ReflectingAreas expected = voxelize_reflectors(scene, kCells);
   CheckResults results;
-  for (const VolumeFormat& format : formats_of(session, {kGrid, kCellFaces, 3}, scope)) {
+  const auto compare = [&](const VolumeFormat& format) {
     ReflectorVoxelizer reflector(session, buffers, kGrid, 1, format);
     reflector.voxelize(0, kCells);
     const std::vector<float> found = reflector.reflectors(0).read(session);
@@ -79,12 +81,16 @@ CheckResults check_reflectors(Session& session, const CheckScope& scope) {
                            plane % kCellFaces, plane / kCellFaces, found[at], wanted);
       });
     }
-    results.push_back(result);
-  }
+    return result;
+  };
+  for (const VolumeFormat& format : formats_of(session, {kGrid, kCellFaces, 3}, scope))
+    compare_selected(scope, "reflectors", format_name(format), results, [&] { return compare(format); });
   return results;
 }
 
-CheckResults check_visibility(Session& session, const CheckScope&) {
+namespace {
+
+CheckResult compare_visibility(Session& session) {
   constexpr std::size_t kCascade = 1;  // not the first
   const Scene scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
@@ -104,7 +110,15 @@ CheckResults check_visibility(Session& session, const CheckScope&) {
                          point % 64, bits, lower, upper);
     });
   }
-  return {result};
+  return result;
+}
+
+}  // namespace
+
+CheckResults check_visibility(Session& session, const CheckScope& scope) {
+  CheckResults results;
+  compare_selected(scope, "visibility", "triangles", results, [&] { return compare_visibility(session); });
+  return results;
 }
 
 }  // namespace clpv::reference

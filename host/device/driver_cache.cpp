@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "device/driver_cache.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#include "support/fingerprint.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kFullBytes = 1 << 20;  // less cannot hold a kernel and its temporary files
+
+std::optional<fs::path> folder_of(const char* variable, const char* below) {
+  const char* set = std::getenv(variable);
+  if (set == nullptr || *set == '\0') return std::nullopt;
+  return fs::path(set) / below;
+}
+
+}  // namespace
+
+std::optional<fs::path> driver_cache_folder() {
+  if (const auto given = folder_of("POCL_CACHE_DIR", "")) return given;
+  if (const auto cache = folder_of("XDG_CACHE_HOME", "pocl/kcache")) return cache;
+  return folder_of("HOME", ".cache/pocl/kcache");
+}
+
+bool driver_cache_is_full() {
+  const auto folder = driver_cache_folder();
+  if (!folder) return false;
+  std::error_code failed;
+  const fs::space_info space = fs::space(*folder, failed);
+  return !failed && space.available < kFullBytes;
+}
+
+CompiledMarks::CompiledMarks(const Device& device) {
+  if (device.platform != "Portable Computing Language") return;
+  if (const auto cache = driver_cache_folder()) folder_ = *cache / "clpv";
+}
+
+bool CompiledMarks::has(const std::string& key) const {
+  std::error_code failed;
+  return folder_ && fs::exists(file_of(key), failed);
+}
+
+void CompiledMarks::add(const std::string& key) const {
+  if (!folder_) return;
+  std::error_code failed;  // a mark that cannot be made costs only the helpers' start in later runs
+  fs::create_directories(*folder_, failed);
+  std::ofstream(file_of(key)).flush();
+}
+
+fs::path CompiledMarks::file_of(const std::string& key) const {
+  return *folder_ / Fingerprint().add(key).hex();
+}
+
+}  // namespace clpv

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Helper processes: the same program, started once per core, that shares out a list of jobs with its siblings.
+//
+// PoCL compiles one kernel at a time in a process, but processes compile side by side and share its cache.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace clpv {
+
+/// Sets the file of this program, which helpers run. Without it, as in a library, there are no helpers.
+void set_helper_program(std::string file);
+
+/// Number of helpers worth starting: one per core; 0 on one core or without a program.
+unsigned helper_count();
+
+/// Jobs of helpers that share a folder. Each job is taken by one of them.
+class Claims {
+ public:
+  explicit Claims(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// Returns true in the first process that takes the job `name`. Throws Error(run_time) if the folder cannot be written.
+  bool take(const std::string& name) const;
+  /// Records that the job `name` is done, with its result.
+  void finish(const std::string& name, const std::string& result = {}) const;
+  /// Returns true if some process finished the job.
+  bool finished(const std::string& name) const;
+  /// Returns the result of a finished job.
+  std::string result(const std::string& name) const;
+  std::size_t finished_count() const;
+  /// Number of this process among those that ask, from 0.
+  unsigned number() const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// helper_count() processes of this program, and the folder of their claims.
+class Helpers {
+ public:
+  /// Starts `clpv arguments... --claims FOLDER`. Throws Error(run_time) if the temporary folder cannot be made.
+  explicit Helpers(std::vector<std::string> arguments);
+  ~Helpers();  ///< ends helpers that still run, and removes the folder
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+
+  /// Waits a moment. Returns true while a helper runs.
+  bool wait();
+  const Claims& claims() const { return claims_; }
+  /// What failed helpers wrote, once wait() returned false; empty if all succeeded.
+  std::string failures() const { return failures_; }
+
+ private:
+  struct Child;
+  std::filesystem::path folder_;
+  Claims claims_;
+  std::vector<std::unique_ptr<Child>> children_;
+  std::string failures_;
+};
+
+/// In a helper: ends this process when its parent ends, and on a signal at once.
+void become_helper();
+
+}  // namespace clpv
