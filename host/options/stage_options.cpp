@@ -45,6 +45,7 @@ GatherOptions gather_options(const RenderOptions& options) {
 NearOptions near_options(const RenderOptions& options) {
   return {.gather = gather_options(options),
           .step = options.near_size == NearSize::half ? 2 : 1,
+          .rays = options.near_size == NearSize::half ? 4 : 2,
           .reflects = options.bounces != Bounces::one};
 }
 
