@@ -23,8 +23,8 @@
 namespace clpv {
 namespace pathtrace_command {
 
-struct Options {
-  std::string scene, model, camera, output, stats;
+struct Options : SceneRequest {
+  std::string output, stats;
   std::vector<Show> views = {Show::full};
   int width = 960, height = 540;
   double time = 0;
@@ -38,7 +38,7 @@ void check_outputs(const Options& options) {
   if (!options.stats.empty()) check_writable(options.stats);
 }
 
-nlohmann::json resolved(const Options& options, const Camera& camera) {
+nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
   nlohmann::json json = {{"scene", options.scene},
                          {"camera", camera.name},
                          {"time", options.time},
@@ -47,6 +47,7 @@ nlohmann::json resolved(const Options& options, const Camera& camera) {
                          {"bounces", options.tracing.bounces},
                          {"seed", options.tracing.values.seed}};
   if (!options.model.empty()) json["model"] = options.model;
+  options.changes.describe(json);
   if (options.tracing.values.samples > 0) {
     json["spp"] = options.tracing.values.samples;
   } else {
@@ -62,7 +63,7 @@ Image compose(const reference::TracedImage& traced, const std::vector<Show>& vie
   return image;
 }
 
-void write_outputs(const Options& options, const Camera& camera, const reference::TracedImage& traced,
+void write_outputs(const Options& options, const SceneCamera& camera, const reference::TracedImage& traced,
                    double seconds) {
   const nlohmann::json asked = resolved(options, camera);
   const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
@@ -86,11 +87,11 @@ void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   check_outputs(options);
-  MovingScene moving(options.scene, options.model);
+  MovingScene moving = options.open();
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
   moving.pose(options.time);
   const Scene& scene = moving.scene();
-  const Camera& camera = scene.camera(options.camera);
+  const SceneCamera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
   Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
@@ -108,12 +109,10 @@ void run(const Options& options, Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "-o,--output", "FILE.exr", options.output,
       "output image, linear EXR; one layer per view if several")
       ->required();
-  add(command, "--model", "PATH", options.model, "model file instead of the scene file's");
-  add(command, "--camera", "NAME", options.camera, "name of the camera (default: the scene's first)");
+  add_scene_request(command, options);
   add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
   add_choices(command, "--view", options.views, "views to write; several become layers of the EXR")
       ->default_str("full");

@@ -91,11 +91,11 @@ void run(const Options& options, const Shared& shared) {
   FrameStats stats;
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
-  MovingScene moving(request.scene, request.model);
+  MovingScene moving = request.open();
   const Scene& scene = moving.scene();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_options(request.frame, scene);
-  const Camera& camera = scene.camera(request.camera);
+  const SceneCamera& camera = scene.camera(request.camera);
   log_scene(scene, camera, resolved);
   progress.advance();
 

@@ -11,10 +11,22 @@
 
 namespace clpv {
 
-void add_render_request(CLI::App& command, RenderRequest& request) {
+MovingScene SceneRequest::open() const {
+  MovingScene moving(scene, model);
+  changes.apply(moving);
+  return moving;
+}
+
+void add_scene_request(CLI::App& command, SceneRequest& request) {
   command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
-  add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)");
+  CLI::Option* camera =
+      add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)");
+  add_scene_changes(command, request.changes, *camera);
+}
+
+void add_render_request(CLI::App& command, RenderRequest& request) {
+  add_scene_request(command, request);
   add_frame_options(command, request.frame);
 }
 
@@ -23,7 +35,7 @@ void add_shown_options(CLI::App& command, RenderRequest& request) {
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 
-void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOptions& options) {
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
@@ -40,7 +52,7 @@ void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& op
 }
 
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
-                        const Camera& camera, double seconds) {
+                        const SceneCamera& camera, double seconds) {
   nlohmann::json all = to_json(options);
   all.update({{"scene", request.scene},
               {"model", request.model},
@@ -48,6 +60,7 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
               {"time", seconds},
               {"exposure", request.exposure_of(shown)},
               {"tonemap", name_of(request.tonemap)}});
+  request.changes.describe(all);
   return all;
 }
 

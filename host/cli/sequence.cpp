@@ -84,7 +84,7 @@ class Sequence {
   Sequence(const Options& options, const Shared& shared, Ranks& ranks)
       : options_(options),
         ranks_(ranks),
-        moving_(options.request.scene, options.request.model),
+        moving_(options.request.open()),
         resolved_(resolve_options(options.request.frame, moving_.scene())),
         device_(ranks.device(shared.device)) {
     log_scene(moving_.scene(), camera(), resolved_);
@@ -170,7 +170,7 @@ class Sequence {
     return display_image(image, options_.request.exposure_of(moving_.scene()), options_.request.tonemap);
   }
 
-  const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
+  const SceneCamera& camera() const { return moving_.scene().camera(options_.request.camera); }
   fs::path times_file() const { return fs::path(options_.output) / "times.json"; }
 
   nlohmann::json described(double seconds) const {
@@ -186,7 +186,7 @@ class Sequence {
     print.add(still_).add(described.dump());
     print.add(std::vector{camera_view(camera(), resolved_.width, resolved_.height)});
     add_moving(print, posed);
-    for (const Light& light : posed.lights_for(camera())) print.add(std::vector{light.data});
+    for (const SceneLight& light : posed.lights_for(camera())) print.add(std::vector{light.data});
     return print.hex();
   }
 

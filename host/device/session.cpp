@@ -10,6 +10,7 @@
 #include "device/cl_error.hpp"
 #include "device/kernel.hpp"
 #include "support/fingerprint.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -95,7 +96,10 @@ void Session::build_described() {
   std::erase_if(programs_, [](const auto& entry) {
     return entry.second->built() == nullptr && entry.second.use_count() == 1;
   });
-  for (auto& [key, program] : programs_) build(*program);
+  for (auto& [key, program] : programs_) {
+    stop_if_interrupted();
+    build(*program);
+  }
 }
 
 cl::Kernel Session::kernel(Program& program, const std::string& name) {

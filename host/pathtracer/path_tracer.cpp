@@ -34,7 +34,7 @@ glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py
 /// Traces one image, tile by tile.
 class ImageTracer {
  public:
-  ImageTracer(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+  ImageTracer(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
               const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
@@ -180,7 +180,7 @@ class ImageTracer {
   RayScene rays_;
   Emitters emitters_;
   SkySampler sky_;
-  const std::vector<Light>& lights_;
+  const std::vector<SceneLight>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
   Ranks& ranks_;
@@ -193,7 +193,7 @@ class ImageTracer {
   double progress_start_ = 0, progress_end_ = 0;
 };
 
-void check(const Scene& scene, const std::vector<Light>& lights, const PathTracerOptions& options) {
+void check(const Scene& scene, const std::vector<SceneLight>& lights, const PathTracerOptions& options) {
   if (options.bounces < 0)
     throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
   if (options.samples > kMaxSamples)
@@ -217,7 +217,7 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 
 }  // namespace
 
-TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+TracedImage trace_paths(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, options);
   ImageTracer tracer(scene, lights, view, options, progress, ranks);

@@ -56,7 +56,7 @@ using TraceProgress = std::function<void(double)>;
 /// Traces `scene` lit by `lights`, which replace Scene::lights. All `ranks` call it; they share tiles and halves of
 /// paths, and each returns the whole image. Its bytes do not depend on the number of threads and ranks.
 /// Throws Error(bad_input) for a scene without surface or without light, Error(usage) for options out of range.
-TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+TracedImage trace_paths(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
                         Ranks& ranks = single_rank());
 

@@ -24,11 +24,11 @@ namespace {
 // Increment when the tracer's results change; this invalidates cached references.
 constexpr int kTracerRevision = 1;
 
-std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
+std::string key(const Scene& scene, const SceneCamera& camera, const ClpvView& view,
                 const PathTracerOptions& options) {
   Fingerprint print;
   print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
-  for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
   print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
   print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
   return print.hex();
@@ -49,7 +49,7 @@ Image all_views(const TracedImage& traced) {
   return image;
 }
 
-void describe(Image& image, const Scene& scene, const Camera& camera, const TracedImage& traced,
+void describe(Image& image, const Scene& scene, const SceneCamera& camera, const TracedImage& traced,
               const PathTracerOptions& options) {
   image.metadata["command"] = "pathtrace";
   image.metadata["version"] = version();
@@ -105,7 +105,7 @@ void check_place(const std::filesystem::path& file) {
 
 }  // namespace
 
-GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const SceneCamera& camera,
                                 int width, int height, const PathTracerOptions& options,
                                 const TraceProgress& progress, Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);

@@ -94,7 +94,7 @@ std::string describe(const Variant& variant) {
   return text;
 }
 
-QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::GroundTruth& truth,
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera, const reference::GroundTruth& truth,
                     Show show, int frames) {
   QualityCell cell;
   cell.compute_units = session.device().compute_units;

@@ -14,6 +14,7 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
+run(${WORK}/build/walk ${SOURCE}/scenes/cornell.json ${WORK}/walk.png)
 run(${WORK}/prefix/bin/clpv devices)
 # The same program with pkg-config, if installed.
 find_program(PKG_CONFIG pkg-config)
