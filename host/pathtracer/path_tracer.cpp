@@ -76,7 +76,8 @@ class ImageTracer {
       for_each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
         if (!hits_[i]) return;
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
-        for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half); ++s)
+        for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted();
+             ++s)
           rank_sums_[2 * i + half] += sampler.indirect(*hits_[i], s, stream);
       });
       const std::lock_guard lock(mutex_);
