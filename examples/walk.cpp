@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Walks through a scene with a camera and a light of its own, and prints times and light: walk scenes/cornell.json [IMAGE.png]
+// Moves a camera through a scene, replaces its lights, and prints times and light: walk scenes/cornell.json [IMAGE.png]
 #include <clpv/renderer.hpp>
 #include <iostream>
 

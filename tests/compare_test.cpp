@@ -120,7 +120,8 @@ TEST(Compare, FlipSeesAPatchAndHardlySmallErrors) {
   EXPECT_GT(compare(patch, "a", b, "b").flip.value(), 0.03);
   EXPECT_LT(compare(trace, "a", b, "b").flip.value(), 5e-3);
   EXPECT_GT(compare(patch, "a", b, "b", -3).flip.value(), 0.0);
-  EXPECT_LT(compare(patch, "a", b, "b", -3).flip.value(), compare(patch, "a", b, "b").flip.value()) << "in the dark";
+  EXPECT_LT(compare(patch, "a", b, "b", -3).flip.value(), compare(patch, "a", b, "b").flip.value())
+      << "in the dark";
   for (std::size_t p = 0; p < patch.pixel_count(); ++p) patch.pixels[4 * p + 3] = 0;
   EXPECT_FALSE(compare(patch, "a", b, "b").flip.has_value()) << "no valid pixel";
 }

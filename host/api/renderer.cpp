@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 void check_view(View view) {
   if (!name_of(view).empty()) return;
   throw Error(ExitCode::usage, "view: found {}, allowed: 0..{}", static_cast<int>(view),
-              static_cast<int>(View::depth));
+              static_cast<int>(View::cells));
 }
 
 glm::vec4 unit_normal(const glm::dvec3& normal, const glm::dvec3& position, std::size_t i) {
@@ -179,10 +179,11 @@ Stats Renderer::stats() const {
 
 Image pathtrace(const SceneFile& scene, View view, const CameraChoice& camera, const TraceOptions& options) {
   check_view(view);
+  require_traceable(view);
   constexpr int kMaxSide = 16384;
   if (options.width < 1 || options.width > kMaxSide || options.height < 1 || options.height > kMaxSide) {
-    throw Error(ExitCode::usage, "width and height: found {} x {}, allowed: 1..{}", options.width, options.height,
-                kMaxSide);
+    throw Error(ExitCode::usage, "width and height: found {} x {}, allowed: 1..{}", options.width,
+                options.height, kMaxSide);
   }
   const std::shared_lock scene_stays(scene.contents().mutex);
   PosedScene posed(scene);

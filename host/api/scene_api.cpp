@@ -23,7 +23,8 @@ std::vector<To> converted(const char* list, const std::vector<From>& given, std:
     const std::string place = fmt::format("{}[{}]", list, i);
     made.push_back(convert(given[i], rejected_in(place), 1.0));
     if (!given[i].name.empty() && !names.insert(given[i].name).second)
-      throw Error(ExitCode::usage, "{}: name: found duplicate '{}', allowed: unique names", place, given[i].name);
+      throw Error(ExitCode::usage, "{}: name: found duplicate '{}', allowed: unique names", place,
+                  given[i].name);
   }
   return made;
 }
@@ -49,8 +50,7 @@ std::vector<Light> SceneFile::lights() const {
 
 void SceneFile::set_cameras(const std::vector<Camera>& cameras) {
   if (cameras.empty()) throw Error(ExitCode::usage, "cameras: found none, allowed: at least one");
-  std::vector<SceneCamera> made =
-      converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
+  std::vector<SceneCamera> made = converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
   contents_->cameras = made;
   contents_->moving.set_cameras(std::move(made));

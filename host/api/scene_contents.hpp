@@ -15,7 +15,7 @@ namespace clpv {
 struct SceneFile::Contents {
   mutable std::shared_mutex mutex;  ///< shared by frames in progress; exclusive for changes
   MovingScene moving;               ///< at 0 s
-  /// What set_cameras() and set_lights() were given.
+  /// Arguments of the last set_cameras() and set_lights().
   std::optional<std::vector<SceneCamera>> cameras;
   std::optional<std::vector<SceneLight>> lights;
 

@@ -41,8 +41,8 @@ Light parse_sun(const std::string& text) {
   const auto lux = has_lux ? parse_number<double>(text.substr(third + 1)) : kSunIlluminance;
   const auto direction = parse_three<double>(has_lux ? text.substr(0, third) : text);
   if (!direction || !lux) {
-    throw Error(ExitCode::usage, "--sun: found '{}', allowed: a direction and an illuminance [lx] like 1,-3,0.5,10",
-                text);
+    throw Error(ExitCode::usage,
+                "--sun: found '{}', allowed: a direction and an illuminance [lx] like 1,-3,0.5,10", text);
   }
   Light sun;
   sun.name = "sun";
@@ -196,7 +196,8 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
   target->needs(eye);
   eye->needs(target);
   vector("--up", "X,Y,Z", changes.camera.up, "its upward direction (default: 0,1,0)")->needs(eye);
-  add(command, "--fov", "DEGREES", changes.camera.vertical_fov_degrees, "its vertical field of view [degrees]")
+  add(command, "--fov", "DEGREES", changes.camera.vertical_fov_degrees,
+      "its vertical field of view [degrees]")
       ->needs(eye)
       ->group(kGroup);
   add(command, "--near-plane", "M", changes.camera.near, "its nearest visible depth [m]")
@@ -206,8 +207,9 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
   command
       .add_option_function<std::string>(
           "--sun", take_sun,
-          fmt::format("direction of a sun's light and its illuminance [lx] (default: {}), in place of all lights",
-                      kSunIlluminance))
+          fmt::format(
+              "direction of a sun's light and its illuminance [lx] (default: {}), in place of all lights",
+              kSunIlluminance))
       ->type_name("X,Y,Z[,LUX]")
       ->group(kGroup);
 }

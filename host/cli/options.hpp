@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "device/device.hpp"
 #include "clpv/scene.hpp"
+#include "device/device.hpp"
 #include "options/render_options.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/scene_options.hpp"

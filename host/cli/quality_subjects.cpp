@@ -66,7 +66,9 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
     }
   }
   for (const std::string& name : given.cameras) {
-    const auto has = [&](const Subject& s) { return std::ranges::count(s.cameras, name, &SceneCamera::name) > 0; };
+    const auto has = [&](const Subject& s) {
+      return std::ranges::count(s.cameras, name, &SceneCamera::name) > 0;
+    };
     if (std::ranges::none_of(subjects, has))
       subjects[0].scene.camera(name);  // throws an error that lists the camera names
   }

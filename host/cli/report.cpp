@@ -97,8 +97,8 @@ nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const 
   return {{"image", stem + ".png"}, {"values", stem + ".npy"}};
 }
 
-Image render_indirect(Session& session, const Subject& subject, const SceneCamera& camera, const Options& options,
-                      const PageVariant& variant) {
+Image render_indirect(Session& session, const Subject& subject, const SceneCamera& camera,
+                      const Options& options, const PageVariant& variant) {
   Frame frame(session, subject.scene, resolve_options(sized(options, variant.given), subject.scene));
   frame.render(camera);
   return view_image(frame, Show::indirect);

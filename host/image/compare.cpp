@@ -77,7 +77,8 @@ Image shown(const Image& image, const std::vector<bool>& valid, float exposure) 
   return image.encoding == Encoding::srgb ? rgb : display_image(rgb, exposure, ToneMap::aces);
 }
 
-std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid, float exposure) {
+std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid,
+                                float exposure) {
   const std::vector<double> differences = flip(shown(a, valid, exposure), shown(b, valid, exposure));
   double sum = 0;
   for (std::size_t p = 0; p < valid.size(); ++p) sum += valid[p] ? differences[p] : 0;

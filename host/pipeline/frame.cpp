@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "basis/sweep.hpp"
+#include "pipeline/cells.hpp"
 #include "pipeline/frame_volumes.hpp"
 #include "pipeline/view.hpp"
 #include "support/error.hpp"
@@ -135,7 +136,8 @@ std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
   return session_.read<float>(irradiance, numbers);
 }
 
-std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> normals) {
+std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions,
+                                            std::vector<glm::vec4> normals) {
   if (light().grids.empty())
     throw Error(ExitCode::usage, "irradiance: no frame was rendered; allowed: after a render");
   const std::size_t count = positions.size();
@@ -154,7 +156,31 @@ std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions, st
   return irradiance;
 }
 
+/// Draws the spheres of visible_spheres() with the irradiance that gathering has at their cells' centres.
+void Frame::draw_cells(std::vector<float>& image) {
+  const std::size_t pixels = std::size_t(options_.width) * options_.height;
+  const CellSpheres spheres = visible_spheres(
+      camera_surface_->view, session_.read<float>(camera_surface_->depth, pixels), light().grids.front());
+  const double lift = gather_options(options_).gather_offset * double{light().grids.front().cell};
+  std::vector<glm::vec4> positions, normals;
+  for (std::size_t i = 0; i < spheres.pixels.size(); ++i) {
+    positions.emplace_back(glm::vec3(spheres.centres[i] - lift * spheres.normals[i]), 0);
+    normals.emplace_back(glm::vec3(spheres.normals[i]), 0);
+  }
+  const std::vector<glm::vec4> light = irradiance_at(std::move(positions), std::move(normals));
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    float* pixel = &image[4 * spheres.pixels[i]];
+    for (int channel = 0; channel < 3; ++channel) pixel[channel] = light[i][channel];
+    pixel[3] = 1;
+  }
+}
+
 std::vector<float> Frame::read(Show view) {
+  if (view == Show::cells) {
+    std::vector<float> image = read(Show::irradiance);
+    draw_cells(image);
+    return image;
+  }
   if (view != shown_) shader_.show(view, *camera_surface_, irradiance_, image_);
   shown_ = view;
   std::vector<float> image = session_.read<float>(image_, std::size_t(options_.width) * options_.height * 4);

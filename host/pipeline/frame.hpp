@@ -67,6 +67,7 @@ class Frame {
  private:
   void rasterize_camera(const SceneCamera& camera);
   void gather(const Surface& surface, Buffer& irradiance);
+  void draw_cells(std::vector<float>& image);
 
   Session& session_;
   const Scene& scene_;

@@ -102,8 +102,8 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   session_.write(grids_, grids);
   const bool points = camera.position.exists();
   Kernel& kernel = gather_kernel(grids.size(), points);
-  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()), 1 / scale,
-             irradiance);
+  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_,
+             static_cast<cl_uint>(grids.size()), 1 / scale, irradiance);
   if (packs()) {
     for (std::size_t c = 0; c < grids.size(); ++c) {
       if (changed.empty() || changed[c]) pack(*accumulated[c], c);

@@ -44,7 +44,7 @@ std::string in_file_name(std::string name) {
 
 Image all_views(const TracedImage& traced) {
   Image image;
-  for (const Show show : values_of<Show>())
+  for (const Show show : kSurfaceViews)
     append_layer(image, traced_view(traced, show), std::string(name_of(show)));
   return image;
 }
@@ -66,7 +66,8 @@ GroundTruth read_reference(const std::filesystem::path& file) {
   GroundTruth truth;
   truth.image = read_image(file);
   truth.file = file;
-  for (const std::string& name : names_of<Show>()) extract_layer(truth.image, name, file.string());  // throws
+  for (const Show show : kSurfaceViews)
+    extract_layer(truth.image, std::string(name_of(show)), file.string());  // throws
   truth.samples = static_cast<std::uint32_t>(std::stoul(truth.image.metadata.at("spp_traced")));
   truth.noise = std::stod(truth.image.metadata.at("noise_reached"));
   return truth;
@@ -105,9 +106,10 @@ void check_place(const std::filesystem::path& file) {
 
 }  // namespace
 
-GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const SceneCamera& camera,
-                                int width, int height, const PathTracerOptions& options,
-                                const TraceProgress& progress, Ranks& ranks) {
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
+                                const SceneCamera& camera, int width, int height,
+                                const PathTracerOptions& options, const TraceProgress& progress,
+                                Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const std::filesystem::path file =
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),

@@ -70,8 +70,8 @@ struct Scene {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;  ///< at least one if there are triangles
   std::vector<Texture> textures;
-  std::vector<MeshRange> moving;  ///< animated vertices and triangles
-  std::vector<SceneCamera> cameras;    ///< at least one after loading
+  std::vector<MeshRange> moving;     ///< animated vertices and triangles
+  std::vector<SceneCamera> cameras;  ///< at least one after loading
   std::vector<SceneLight> lights;
   std::shared_ptr<const Sky> sky;     ///< null without a sky
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]

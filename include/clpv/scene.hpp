@@ -22,8 +22,8 @@ struct Camera {
   Vec3 up{0, 1, 0};                  ///< of any length; need not be perpendicular to the viewing direction
   double vertical_fov_degrees = 60;  ///< 0.01 to 179.9
   double near = 0.05;                ///< nearest visible depth [m], 1e-6 to 1e7
-  std::string name;                  ///< in the scene's list of cameras
-  std::string light;                 ///< name of the only light for this camera; empty: all lights
+  std::string name{};                ///< in the scene's list of cameras
+  std::string light{};               ///< name of the only light for this camera; empty: all lights
 };
 
 /// Name of one of the scene's cameras, empty for the first; or a camera that the scene need not have.
@@ -39,7 +39,7 @@ struct Light {
   Vec3 intensity{1, 1, 1};  ///< directional: irradiance across the direction [W/m^2]; others: radiant intensity [W/sr]
   double range = 0;         ///< [m], no light beyond it; 0: unlimited
   double inner_cone_degrees = 0, outer_cone_degrees = 45;  ///< spot: full and no light at this angle; inner < outer <= 90
-  std::string name;
+  std::string name{};
 };
 
 /// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data and its changes. Thread-safe:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 _Path = str | os.PathLike[str]
 _Vector = Sequence[float] | NDArray[Any]
-_View = Literal["full", "direct", "indirect", "irradiance", "albedo", "normal", "depth"]
+_View = Literal["full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"]
 __version__: str
 
 class Error(Exception):
@@ -141,8 +141,8 @@ class Comparison:
     def energy_ratio(self) -> float | None:
         """Sum of the image over that of the reference."""
     @property
-    def perceptual_failures(self) -> int:
-        """Pixels with a visible difference (Yee 1999)."""
+    def flip(self) -> float | None:
+        """Mean FLIP, what an observer sees, 0 to 1 (Andersson et al. 2020)."""
 
 class Image:
     """Image(array, channels=None, encoding='linear'): copies an array (height, width, channels) of real numbers.
@@ -226,7 +226,8 @@ class Renderer:
     def render(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> Image:
         """render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.
 
-        view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal or depth [m];
+        view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or cells: irradiance with
+        the finest cascade's cells as spheres;
         camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene.
         """
     def show(self, view: _View) -> Image:
@@ -298,8 +299,9 @@ class Volume:
 def bases() -> list[str]:
     """bases() -> list of the names of all bases."""
 
-def compare(image: Image | ArrayLike, reference: Image | ArrayLike) -> Comparison:
-    """compare(image, reference) -> Comparison. Both: an Image, or an array (height, width, channels).
+def compare(image: Image | ArrayLike, reference: Image | ArrayLike, exposure: float = 0.0) -> Comparison:
+    """compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array (height, width, channels).
+    exposure [EV]: of linear images, for FLIP.
     Raises InputError for other sizes, channels or encodings, and for values that are not finite.
     """
 

@@ -14,7 +14,7 @@ import time
 
 import clpv
 
-VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth"
+VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
 STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers", "visibility", "propagate",
           "gather", "near", "shade")
 MOVING_HEIGHT, RESTING_HEIGHT = 288, 720  # [pixels]

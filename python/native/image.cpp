@@ -72,20 +72,21 @@ void add_comparison(py::module_& module) {
   type.def_readonly("nrmse_best_gain", &Comparison::nrmse_best_gain, "nrmse with that factor.");
   type.def_readonly("energy_ratio", &Comparison::energy_ratio,
                     "Sum of the image over that of the reference.");
-  type.def_readonly("perceptual_failures", &Comparison::perceptual_failures,
-                    "Pixels with a visible difference (Yee 1999).");
+  type.def_readonly("flip", &Comparison::flip,
+                    "Mean FLIP, what an observer sees, 0 to 1 (Andersson et al. 2020).");
   type.def("__repr__", [](const Comparison& c) {
     return fmt::format("Comparison(rmse={}, nrmse={}, identical={})", c.rmse,
                        c.nrmse ? fmt::format("{}", *c.nrmse) : "None", c.identical ? "True" : "False");
   });
   module.def(
       "compare",
-      [](const py::object& image, const py::object& reference) {
+      [](const py::object& image, const py::object& reference, float exposure) {
         const Image a = given_image(image), b = given_image(reference);
-        return interruptible([&] { return compare(a, b); });
+        return interruptible([&] { return compare(a, b, exposure); });
       },
-      py::arg("image"), py::arg("reference"),
-      "compare(image, reference) -> Comparison. Both: an Image, or an array (height, width, channels).\n"
+      py::arg("image"), py::arg("reference"), py::arg("exposure") = 0.0f,
+      "compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array (height, width, channels).\n"
+      "exposure [EV]: of linear images, for FLIP.\n"
       "Raises InputError for other sizes, channels or encodings, and for values that are not finite.");
 }
 

@@ -121,7 +121,8 @@ void add_renderer(py::module_& module) {
       },
       py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
       "render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.\n\n"
-      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal or depth [m];\n"
+      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or cells: irradiance with\n"
+      "the finest cascade's cells as spheres;\n"
       "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene.");
   type.def(
       "show",
