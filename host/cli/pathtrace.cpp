@@ -7,10 +7,12 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
+#include "cli/tev.hpp"
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -24,7 +26,7 @@ namespace clpv {
 namespace pathtrace_command {
 
 struct Options : SceneRequest {
-  std::string output, stats;
+  std::string output, stats, tev;
   std::vector<Show> views = {Show::full};
   int width = 960, height = 540;
   double time = 0;
@@ -33,6 +35,7 @@ struct Options : SceneRequest {
 
 /// Checks the output options before any tracing.
 void check_outputs(const Options& options) {
+  for (const Show view : options.views) require_traceable(view);
   require_extension("--output", options.output, {".exr"});
   check_writable(options.output);
   if (!options.stats.empty()) check_writable(options.stats);
@@ -85,7 +88,7 @@ void write_outputs(const Options& options, const SceneCamera& camera, const refe
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
-  const reference::PathTracerOptions tracing = options.tracing.resolved();
+  reference::PathTracerOptions tracing = options.tracing.resolved();
   check_outputs(options);
   MovingScene moving = options.open();
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
@@ -93,11 +96,18 @@ void run(const Options& options, Shared& shared) {
   const Scene& scene = moving.scene();
   const SceneCamera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
+  std::optional<Tev> tev;
+  if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
+  const auto show = [&](const reference::TracedImage& traced) {
+    for (const Show view : options.views) tev->show(tev_name(scene, camera, view), traced_view(traced, view));
+  };
+  if (tev) tracing.observer = show;
   Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
+  if (tev) show(traced);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
@@ -123,6 +133,7 @@ void add_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
+  add_tev(command, options.tev);
   add(command, "--stats", "FILE.json", options.stats,
       "output file for paths, noise, rays and time [s], as JSON");
 }

@@ -8,6 +8,7 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
+#include "cli/tev.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   RenderRequest request;
-  std::string output, stats, dump, normals;
+  std::string output, stats, dump, normals, tev;
   int frames = 5;
   double time = 0;
   std::vector<Show> views = {Show::full};
@@ -123,6 +124,10 @@ void run(const Options& options, const Shared& shared) {
   }
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
+  if (!options.tev.empty()) {
+    Tev tev(options.tev);
+    for (const Show view : options.views) tev.show(tev_name(scene, camera, view), view_image(frame, view));
+  }
   write_images(frame, options, request.exposure_of(scene), metadata_of(described));
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
@@ -158,6 +163,7 @@ void add_render(CLI::App& app, Shared& shared) {
       "output folder for accumulated light of each cascade: cascadeN.npy (3,N,z,y,x), .vti [W/sr]");
   add(*command, "--dump-normals", "FILE.json", options->normals,
       "output file for lit surface normals, weighted by reflected flux, for clpv basis --weights");
+  add_tev(*command, options->tev);
   command->callback([options, &shared] { run(*options, shared); });
 }
 

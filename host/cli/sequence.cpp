@@ -11,6 +11,7 @@
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
 #include "cli/sequence_report.hpp"
+#include "cli/tev.hpp"
 #include "cli/video.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -46,7 +47,7 @@ constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.jso
 /// Frame i shows `from` + i / `frames_per_second` [s].
 struct Options {
   RenderRequest request;
-  std::string output, video;
+  std::string output, video, tev;
   int frames = 0;
   double frames_per_second = 0, from = 0;
   Show view = Show::full;
@@ -92,6 +93,7 @@ class Sequence {
     Fingerprint print;
     print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
     still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
+    if (!options.tev.empty() && ranks.is_root()) tev_.emplace(options.tev);
     if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
   }
 
@@ -224,8 +226,9 @@ class Sequence {
     return true;
   }
 
-  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) const {
+  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) {
     Image image = view_image(frame, options_.view);
+    if (tev_) tev_->show(tev_name(moving_.scene(), camera(), options_.view), image);
     image.metadata = metadata_of(description);
     image.metadata[kKey] = key;
     if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);
@@ -256,6 +259,7 @@ class Sequence {
   SequenceTimes times_;  ///< of this rank's frames; at rank 0 also those of an earlier run
   Clock::time_point times_written_ = Clock::now();
   std::optional<Renderer> renderer_;  ///< empty before the first frame
+  std::optional<Tev> tev_;
 };
 
 /// Checks the options before the scene is read.
@@ -317,6 +321,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add(*command, "--traced", "SPP", options->traced,
       "paths per pixel for the path-traced noise of --stability")
       ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples));
+  add_tev(*command, options->tev);
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(
