@@ -69,14 +69,14 @@ Scene make_hall(int triangles) {
   }
   scene.lower = {-kHalf, -kThick, -kHalf};
   scene.upper = {kHalf, kHeight, kHalf};
-  Camera camera;
+  SceneCamera camera;
   camera.name = "hall";
   camera.eye = {0.3f, 2.2f, 9};
   camera.forward = glm::normalize(glm::vec3(-0.05f, -0.1f, -1));
   const glm::vec3 right = glm::normalize(glm::cross(camera.forward, glm::vec3(0, 1, 0)));
   camera.up = glm::cross(right, camera.forward);
   scene.cameras.push_back(camera);
-  Light sun{"sun", {}};
+  SceneLight sun{"sun", {}};
   const glm::vec3 down = glm::normalize(glm::vec3(0.45f, -1, 0.2f));
   for (int a = 0; a < 3; ++a) {
     sun.data.direction[a] = down[a];

@@ -23,7 +23,7 @@ class Inputs {
  public:
   /// Rasterises `scene` from `camera` and from the first light that applies there. `options` gives sizes and cascades. Throws
   /// Error(bad_input) if no light applies.
-  Inputs(Session& session, const Scene& scene, const Camera& camera, const RenderOptions& options);
+  Inputs(Session& session, const Scene& scene, const SceneCamera& camera, const RenderOptions& options);
 
   /// Views of one cascade, on the device and on the host.
   struct CascadeViews {

@@ -37,14 +37,14 @@ struct RasterTask {
 
 RasterTask make_task(std::shared_ptr<const Scene> scene, const std::string& camera_name, Pass pass,
                      const RenderOptions& options) {
-  const Camera& camera = scene->camera(camera_name);
+  const SceneCamera& camera = scene->camera(camera_name);
   const Bounds bounds = bounds_of(scene->vertices, scene->triangles);
   RasterTask task{std::move(scene), pass, {}, {}};
   if (pass == Pass::rasterize_camera) {
     task.views = {camera_view(camera, options.width, options.height)};
     return task;
   }
-  const std::vector<Light> lights = task.scene->lights_for(camera);
+  const std::vector<SceneLight> lights = task.scene->lights_for(camera);
   if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light; bench needs one", task.scene->name);
   task.light = lights.front().data;
   if (pass == Pass::rasterize_shadow) {

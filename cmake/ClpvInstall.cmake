@@ -17,8 +17,6 @@ if(CLPV_BUILD_PROGRAM)
     message(STATUS "help2man not found: no man page")
   endif()
 endif()
-install(DIRECTORY tools/clpv_draw DESTINATION ${CMAKE_INSTALL_DATADIR}/clpv
-        FILES_MATCHING PATTERN "*.py" PATTERN "*.html" PATTERN __pycache__ EXCLUDE)
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/clpv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)

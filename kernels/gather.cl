@@ -6,7 +6,7 @@
 // docs/method.md, 'Gathering'. g depends on basis and transport (has_faces, host/basis/transport.hpp); cascades.h has the
 // weights of cascades.
 //
-// In:   depths [m], normals   the camera's surface (surface.h)
+// In:   depths [m], normals   the camera's surface (surface.h); with CLPV_POINTS positions [m] instead of depths
 //       grids       ClpvGrid of each of `cascades` cascades, finest first
 //       unit        [W/sr] of a stored 1
 //       CLPV_GATHERED_VOLUMES   accumulated volumes: packed records and occlusion bits (CLPV_PACKED 1), or images
@@ -23,6 +23,18 @@
 // CLPV_AND_TABLE), g(n). If g comes from a look-up table, it is the last argument.
 #include "cascades.h"
 #include "surface_row.h"
+
+#ifndef CLPV_POINTS
+#define CLPV_POINTS 0  // 1: points without a view
+#endif
+
+#if CLPV_POINTS
+typedef float4 Place;
+#define CLPV_LOAD_SURFACES points
+#else
+typedef float Place;
+#define CLPV_LOAD_SURFACES surfaces
+#endif
 
 // E s^2 of one volume at point i.
 CLPV_INLINE float4 clpv_irradiance(CLPV_GATHERED volume, const SamplePoints* points, const int i,
@@ -57,13 +69,13 @@ CLPV_INLINE void clpv_add_cascade(Gathering* g, __global const ClpvGrid* of, CLP
   }
 }
 
-__kernel void gather(const ClpvView view, __global const float* depths, __global const float4* normals,
+__kernel void gather(const ClpvView view, __global const Place* places, __global const float4* normals,
                      __global const ClpvGrid* grids, const uint cascades, const float unit, __global float4* irradiance
                      CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
   const PixelRow p = this_row(view);
   if (p.count == 0) return;
   Gathering g;
-  surfaces(view, p, depths, normals, &g.surfaces);
+  CLPV_LOAD_SURFACES(view, p, places, normals, &g.surfaces);
   g.remaining = g.surfaces.depth > (float8)(0.0f) ? (float8)(1.0f) : (float8)(0.0f);
   const VecLanes normal = unpack((int8)(-1), g.surfaces.normal);
   for (int i = 0; i < CLPV_ABREAST; ++i) {

@@ -56,6 +56,19 @@ static inline void surfaces(const ClpvView view, const PixelRow p, __global cons
   s->position = positions(view, p, s->depth);
 }
 
+// Loads eight points without a view; depth 1.
+static inline void points(const ClpvView view, const PixelRow p, __global const float4* at,
+                          __global const float4* normals, Surfaces* s) {
+  s->first = p.py * view.width + p.px;
+  const uint8 pixel = s->first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
+  Rows rows;
+  gather_rows(at, pixel, &rows);
+  s->position = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  gather_rows(normals, pixel, &rows);
+  s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  s->depth = (float8)(1.0f);
+}
+
 #if CLPV_SURFACE_PAPER
 typedef uchar Number;
 typedef uchar8 Numbers;

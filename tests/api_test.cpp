@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
+#include <limits>
 
+#include "clpv/compare.hpp"
+#include "clpv/pathtrace.hpp"
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -85,11 +89,234 @@ TEST(Api, ImagesAreSavedByTheirExtension) {
   EXPECT_THROW(save_image(folder.path() / "image.tga", image), Error);
 }
 
-TEST(Api, ScenesListTheirCameras) {
+/// Greatest difference of two images, relative to the greatest value of the second.
+double difference(const Image& a, const Image& b) {
+  double most = 0, greatest = 0;
+  for (std::size_t i = 0; i < b.pixels.size(); ++i) {
+    most = std::max(most, std::abs(double{a.pixels[i]} - b.pixels[i]));
+    greatest = std::max(greatest, std::abs(double{b.pixels[i]}));
+  }
+  return most / greatest;
+}
+
+Camera front() {
+  const auto all = SceneFile(kCornell).cameras();
+  return *std::ranges::find(all, "front", &Camera::name);
+}
+
+TEST(Api, AnyCameraRenders) {
   const SceneFile scene(kCornell);
-  EXPECT_THAT(scene.cameras(), ::testing::Contains("front"));
   Renderer renderer(scene, small());
   EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
+  const Image named = renderer.render(View::full, "front"), given = renderer.render(View::full, front());
+  EXPECT_LT(difference(given, named), 1e-4);
+  EXPECT_EQ(named.metadata.at("camera"), "front");
+  EXPECT_THAT(given.metadata.at("camera"), ::testing::StartsWith("eye 0.278")) << "its numbers";
+  Camera aside = front();
+  aside.target[0] += 0.1;
+  EXPECT_GT(difference(renderer.render(View::full, aside), named), 0.1);
+}
+
+TEST(Api, BadCamerasAreRejectedWithTheirMember) {
+  Renderer renderer(SceneFile(kCornell), small());
+  const auto rejected = [&](const std::string& member, auto change) {
+    Camera camera = front();
+    change(camera);
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.render(View::full, camera); }),
+                ::testing::AllOf(HasSubstr("camera: " + member + ": found"), HasSubstr("allowed")));
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  rejected("target", [](Camera& c) { c.target = c.eye; });
+  rejected("eye", [](Camera& c) { c.eye[1] = NAN; });
+  rejected("target", [&](Camera& c) { c.target[2] = -infinity; });
+  rejected("up", [](Camera& c) { c.up = {0, 0, 0}; });
+  rejected("up", [](Camera& c) { c.up = {0, 0, 2}; });
+  rejected("light", [](Camera& c) { c.light = "none of this name"; });
+  for (const double angle : {0.0, 180.0, -1.0, double{NAN}})
+    rejected("vertical_fov_degrees", [&](Camera& c) { c.vertical_fov_degrees = angle; });
+  for (const double near : {0.0, -1.0, infinity}) rejected("near", [&](Camera& c) { c.near = near; });
+}
+
+TEST(Api, CamerasOfASceneCanBeChanged) {
+  SceneFile scene(kCornell);
+  Renderer renderer(scene, small());
+  const Image before = renderer.render(View::full, "front");
+  std::vector<Camera> cameras = scene.cameras();
+  Camera added = front();
+  added.name = "added";
+  cameras.push_back(added);
+  scene.set_cameras(cameras);
+  EXPECT_LT(difference(renderer.render(View::full, "added"), before), 1e-4);
+  EXPECT_THROW(scene.set_cameras({}), Error);
+  cameras.push_back(added);
+  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { scene.set_cameras(cameras); }),
+              HasSubstr("duplicate 'added'"));
+  EXPECT_EQ(scene.cameras().back().name, "added") << "unchanged after an error";
+}
+
+TEST(Api, AChangedLightRecomputesOnlyItsLight) {
+  SceneFile scene(kCornell);
+  Renderer renderer(scene, small());
+  const Image before = renderer.render(View::indirect);
+  std::vector<Light> lights = scene.lights();
+  ASSERT_FALSE(lights.empty());
+  for (Light& light : lights) {
+    for (double& channel : light.intensity) channel *= 3;
+  }
+  scene.set_lights(lights);
+  const Image brighter = renderer.render(View::indirect);
+  EXPECT_NEAR(mean(brighter, 1), 3 * mean(before, 1), 0.01 * mean(before, 1));
+  const Stats stats = renderer.stats();
+  EXPECT_GT(stats.stages.at("propagate"), 0);
+  EXPECT_GT(stats.stages.at("rasterize-rsm"), 0);
+  for (const char* kept : {"rasterize-shadow", "blockers", "visibility"})
+    EXPECT_EQ(stats.stages.at(kept), 0) << kept;
+  scene.set_lights(lights);
+  renderer.render();
+  EXPECT_EQ(renderer.stats().stages.at("propagate"), 0) << "the same lights";
+  Renderer fresh(scene, small());
+  EXPECT_EQ(fresh.render(View::indirect).pixels, brighter.pixels);
+  scene.set_lights({});
+  EXPECT_EQ(mean(renderer.render(), 1), 0) << "dark";
+}
+
+TEST(Api, LightsKeepTheirNumbers) {
+  SceneFile scene(kCornell);
+  const Light spot{LightKind::spot, {1, 2, 3}, {0, 0, -2}, {1, 2, 4}, 5, 20, 60, "a"};
+  const Light sun{.direction = {1, -1, 0}, .name = "b"};
+  scene.set_lights({spot, sun});
+  const auto lights = scene.lights();
+  ASSERT_EQ(lights.size(), 2u);
+  EXPECT_EQ(lights[0].kind, LightKind::spot);
+  EXPECT_EQ(lights[0].position, spot.position);
+  EXPECT_EQ(lights[0].direction, (Vec3{0, 0, -1})) << "unit";
+  EXPECT_EQ(lights[0].intensity, spot.intensity);
+  EXPECT_EQ(lights[0].range, 5);
+  EXPECT_NEAR(lights[0].inner_cone_degrees, 20, 0.01);
+  EXPECT_NEAR(lights[0].outer_cone_degrees, 60, 0.01);
+  EXPECT_EQ(lights[1].name, "b");
+  const auto rejected = [&](const std::string& member, Light light) {
+    EXPECT_THAT(test::error_of(ExitCode::usage,
+                               [&] {
+                                 scene.set_lights({sun, light});
+                               }),
+                HasSubstr("lights[1]: " + member));
+  };
+  rejected("direction", {.direction = {0, 0, 0}});
+  rejected("intensity", {.intensity = {1, -1, 1}});
+  rejected("intensity", {.intensity = {1, 1, NAN}});
+  rejected("position", {.kind = LightKind::point, .position = {NAN, 0, 0}});
+  rejected("range", {.kind = LightKind::point, .range = -1});
+  rejected("found inner_cone_degrees 50",
+           {.kind = LightKind::spot, .inner_cone_degrees = 50, .outer_cone_degrees = 40});
+  rejected("kind", {.kind = static_cast<LightKind>(7)});
+  EXPECT_THROW(scene.set_lights(std::vector<Light>(65)), Error);
+}
+
+TEST(Api, ARendererOutlivesItsSceneHandle) {
+  auto scene = std::make_unique<SceneFile>(kCornell);
+  Renderer renderer(*scene, small());
+  const Image before = renderer.render();
+  scene.reset();
+  EXPECT_EQ(renderer.render().pixels, before.pixels);
+}
+
+TEST(Api, CallsFromSeveralThreadsRunOneAfterTheOther) {
+  SceneFile scene(kCornell);
+  Renderer renderer(scene, small());
+  const Image expected = renderer.render();
+  std::vector<std::future<Image>> images;
+  for (int i = 0; i < 4; ++i)
+    images.push_back(std::async(std::launch::async, [&] { return renderer.render(); }));
+  scene.set_lights(scene.lights());
+  for (auto& image : images) EXPECT_EQ(image.get().pixels, expected.pixels);
+}
+
+TEST(Api, VolumesHoldTheLight) {
+  Renderer renderer(SceneFile(kCornell), small());
+  EXPECT_THROW(renderer.volumes(), Error) << "before the first frame";
+  renderer.render();
+  const auto volumes = renderer.volumes();
+  ASSERT_FALSE(volumes.empty());
+  for (const LightVolume& v : volumes) {
+    EXPECT_EQ(v.n, 16);
+    EXPECT_EQ(v.coefficients, 9);
+    EXPECT_EQ(v.basis, "sh3");
+    EXPECT_EQ(v.values.size(), 3u * 9 * 16 * 16 * 16);
+  }
+  EXPECT_GT(volumes.back().cell, volumes.front().cell);
+  // At the centre of a cell: the 0th harmonic of radiance L is L sqrt(4 pi), the mean irradiance pi L where L varies little.
+  const LightVolume& v = volumes.front();
+  const Vec3 about{0.1, 0.4, 0.1};
+  std::size_t cell[3];
+  Vec3 centre;
+  for (int i = 0; i < 3; ++i) {
+    cell[i] = static_cast<std::size_t>((about[i] - v.origin[i]) / v.cell);
+    centre[i] = v.origin[i] + (static_cast<double>(cell[i]) + 0.5) * v.cell;
+  }
+  const double c0 = v.values[(cell[2] * 16 + cell[1]) * 16 + cell[0]];
+  const double radiance = c0 / std::sqrt(4 * M_PI) / (v.cell * v.cell);
+  double irradiance = 0;
+  for (const Vec3& n :
+       {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
+    irradiance += renderer.irradiance(centre, n)[0] / 6;
+  EXPECT_NEAR(irradiance / (M_PI * radiance), 1, 0.1);
+}
+
+TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
+  Renderer renderer(SceneFile(kCornell), small());
+  renderer.render();
+  std::vector<std::array<float, 3>> positions, normals;
+  for (int i = 0; i < 1100; ++i) {  // more than a row of the points' image
+    positions.push_back({0.1f + 0.0003f * i, 0.27f, 0.3f});
+    normals.push_back({0, i % 2 == 0 ? -1.0f : 3.0f, 0});
+  }
+  const auto all = renderer.irradiance(positions, normals);
+  ASSERT_EQ(all.size(), positions.size());
+  for (const std::size_t i : {0u, 1u, 7u, 1023u, 1024u, 1099u}) {
+    const auto one = renderer.irradiance(Vec3{positions[i][0], positions[i][1], positions[i][2]},
+                                         Vec3{0, normals[i][1], 0});
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(all[i][c], static_cast<float>(one[c])) << i;
+  }
+  EXPECT_TRUE(renderer.irradiance(std::span(positions).first(0), std::span(normals).first(0)).empty());
+  normals.pop_back();
+  EXPECT_THROW(renderer.irradiance(positions, normals), Error);
+  normals.push_back({0, 0, 0});
+  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.irradiance(positions, normals); }),
+              HasSubstr("point 1099"));
+}
+
+TEST(Api, OtherViewsOfTheLastFrame) {
+  Renderer renderer(SceneFile(kCornell), small());
+  EXPECT_THROW(renderer.show(View::depth), Error);
+  renderer.render(View::full, front());
+  const Image depth = renderer.show(View::depth);
+  EXPECT_EQ(depth.pixels, renderer.render(View::depth, front()).pixels);
+}
+
+TEST(Api, PathtraceIsComparable) {
+  const SceneFile scene(kCornell);
+  TraceOptions options;
+  options.width = 48;
+  options.height = 27;
+  options.samples = 16;
+  double progress = 0;
+  options.progress = [&](double share) { progress = share; };
+  const Image truth = pathtrace(scene, View::indirect, front(), options);
+  EXPECT_GT(progress, 0);
+  EXPECT_EQ(truth.metadata.at("spp_traced"), "16");
+  EXPECT_EQ(pathtrace(scene, View::indirect, front(), options).pixels, truth.pixels);
+  Renderer renderer(scene, small());
+  const Comparison errors = compare(renderer.render(View::indirect, front()), truth);
+  EXPECT_GT(errors.nrmse.value(), 0.01);
+  EXPECT_LT(errors.nrmse.value(), 1);
+  EXPECT_TRUE(compare(truth, truth).identical);
+  options.width = 24;
+  EXPECT_THROW(compare(pathtrace(scene, View::indirect, front(), options), truth), Error);
+  for (const int bad : {0, -1, 1 << 20}) {
+    options.height = bad;
+    EXPECT_THROW(pathtrace(scene, View::full, {}, options), Error);
+  }
 }
 
 TEST(Api, OptionsAreThoseOfTheProgram) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Commands that draw with tools/clpv_draw: `clpv report`, `clpv basis --figures` and `clpv bench --plot`, and their errors where
+// Commands that draw with python/clpv/draw: `clpv report`, `clpv basis --figures` and `clpv bench --plot`, and their errors where
 // Python or a module is missing. tests/draw has the charts and the page.
 #include <gmock/gmock.h>
 
@@ -29,7 +29,7 @@ TEST_F(Drawing, MissingPythonOrModulesAreReportedBeforeTheWork) {
     const test::Outcome outcome =
         test::run(environment + " " CLPV_PROGRAM " basis sh2 --figures " + file("out"));
     EXPECT_EQ(outcome.exit_code, 1) << words;
-    EXPECT_THAT(outcome.err, HasSubstr(std::string("--figures: python3 -m clpv_draw ") + words));
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("--figures: python3 -m clpv.draw ") + words));
   }
 }
 

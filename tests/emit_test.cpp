@@ -208,7 +208,7 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
 
 TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   Scene scene = lamp_over_floor();
-  const auto passes = [](Frame& frame, const Camera& camera) {
+  const auto passes = [](Frame& frame, const SceneCamera& camera) {
     frame.render(camera);
     int emitted = 0, injected = 0;
     for (const StageTime& time : test_session().timeline().times()) {
@@ -219,7 +219,7 @@ TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
   };
   scene.moving = {{4, 4, 2, 2}};  // the lamp
   Frame frame(test_session(), scene, small_frame());
-  Camera camera = scene.cameras[0];
+  SceneCamera camera = scene.cameras[0];
   EXPECT_EQ(passes(frame, camera), std::pair(1, 2));
   EXPECT_EQ(passes(frame, camera), std::pair(0, 0));
   for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].position[1] -= 0.3f;

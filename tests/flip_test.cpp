@@ -47,7 +47,9 @@ TEST(Flip, StripesAndEdges) {
   EXPECT_NEAR(mean(flip(stripes(2), grey)), 0.26794, 1e-4);
   EXPECT_NEAR(mean(flip(stripes(16), grey)), 0.66732, 1e-4);
   const auto edge = [](int at, float blue) {
-    return drawn(64, 48, [=](int x, int y) { return x + y < at ? glm::vec3(0.8f, 0.6f, blue) : glm::vec3(0.1f, 0.2f, 0.3f); });
+    return drawn(64, 48, [=](int x, int y) {
+      return x + y < at ? glm::vec3(0.8f, 0.6f, blue) : glm::vec3(0.1f, 0.2f, 0.3f);
+    });
   };
   EXPECT_NEAR(mean(flip(edge(50, 0.2f), edge(53, 0.25f))), 0.15884, 1e-4);
 }

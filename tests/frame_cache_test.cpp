@@ -59,20 +59,20 @@ class CachedFrame : public ::testing::Test {
     return options;
   }
 
-  Camera show(const Instants& at) {
+  SceneCamera show(const Instants& at) {
     moving_.pose(at.sun);
     scene_.lights = moving_.scene().lights;
     moving_.pose(at.wall);
     scene_.vertices = moving_.scene().vertices;
     frame_.scene_moved();
-    Camera camera = moving_.scene().camera("");
+    SceneCamera camera = moving_.scene().camera("");
     camera.eye = at.eye;
     return camera;
   }
 
   /// A frame's images and light volumes.
   using Found = std::vector<std::vector<float>>;
-  static Found rendered(Session& session, Frame& frame, const Camera& camera) {
+  static Found rendered(Session& session, Frame& frame, const SceneCamera& camera) {
     frame.render(camera);
     Found found{frame.read(Show::full), frame.read(Show::irradiance)};
     for (const Volume* volume : frame.light().accumulated) found.push_back(volume->read(session));
@@ -81,7 +81,7 @@ class CachedFrame : public ::testing::Test {
 
   /// The passes of the frame at those instants, which is held against the same frame rendered alone.
   Passes passes(const Instants& at) {
-    const Camera camera = show(at);
+    const SceneCamera camera = show(at);
     const Found kept = rendered(session_, frame_, camera);
     Passes passes;
     for (const StageTime& time : session_.timeline().times()) passes.insert(time.mark.pass);

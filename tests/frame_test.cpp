@@ -113,7 +113,7 @@ TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
   const Image usual = render(scene, options, Show::indirect);
   for (const float brightness : {1e-5f, 1e6f}) {
     Scene other = scene;
-    for (Light& light : other.lights) light.data = scaled(light.data, brightness);
+    for (SceneLight& light : other.lights) light.data = scaled(light.data, brightness);
     Image image = render(other, options, Show::indirect);
     for (std::size_t at = 0; at < image.pixels.size(); ++at)
       if (at % 4 != 3) image.pixels[at] /= brightness;
@@ -184,7 +184,7 @@ TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
 /// Accumulated light of the finest cascade, seen from `eye`.
 std::vector<float> finest_light(const Scene& scene, const RenderOptions& options, const glm::vec3& eye) {
   Frame frame(test::test_session(), scene, options);
-  Camera camera = scene.camera("");
+  SceneCamera camera = scene.camera("");
   camera.eye = eye;
   std::vector<float> light;
   frame.render(camera, [&](const CascadeVolumes& volumes) {

@@ -271,7 +271,7 @@ TEST_F(GltfTest, CamerasLookAlongMinusZ) {
   model.add("nodes", {{"camera", 1}});
   const Scene scene = load();
   ASSERT_EQ(scene.cameras.size(), 2u);
-  const Camera& camera = scene.camera("wide");
+  const SceneCamera& camera = scene.camera("wide");
   EXPECT_THAT(camera.eye, IsNear(glm::vec3(1, 2, 3), kClose));
   EXPECT_THAT(camera.forward, IsNear(-kX, kClose));
   EXPECT_THAT(camera.up, IsNear(kY, kClose));

@@ -207,7 +207,7 @@ Scene lit_corner() {
   const unsigned material = add_material(scene, {0.8f, 0.6f, 0.4f});
   add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, material);
   add_quad(scene, {1, 0, -2}, {0, 0, 4}, {0, 3, 0}, material);
-  Camera camera;
+  SceneCamera camera;
   camera.eye = {-1.5f, 1.2f, 1.5f};
   camera.forward = glm::normalize(glm::vec3(1, -0.5f, -0.6f));
   camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, glm::vec3(0, 1, 0)), camera.forward));

@@ -94,7 +94,7 @@ class CachedReference : public ::testing::Test {
   test::TemporaryFolder temporary_;
   const fs::path folder_ = temporary_ / "references";
   Scene scene_;
-  Camera camera_;
+  SceneCamera camera_;
   PathTracerOptions options_;
 };
 

@@ -63,8 +63,7 @@ QualityCell cell(const std::string& basis, const std::string& camera, double nrm
 
 QualityCell rejected(const std::string& basis, const std::string& camera) {
   QualityCell c = cell(basis, camera, 0, 0);
-  c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(),
-      c.flip.reset();
+  c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(), c.flip.reset();
   c.stage_ms.clear();
   c.rejected = "a \"quoted\" reason, with a comma";
   return c;

@@ -4,8 +4,9 @@
 
 #include <cstdlib>
 
+#include "pipeline/cascade.hpp"
+#include "pipeline/frame.hpp"
 #include "pipeline/view.hpp"
-#include "quality/light_field.hpp"
 #include "quality/points_file.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"
@@ -38,7 +39,7 @@ struct PixelOfFrame {
 };
 
 /// Every seventh surface in the frame's images.
-std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
+std::vector<PixelOfFrame> pixels_of(Frame& frame, const SceneCamera& camera) {
   const int width = frame.options().width, height = frame.options().height;
   const ClpvView view = camera_view(camera, width, height);
   const std::vector<float> depth = frame.read(Show::depth), normal = frame.read(Show::normal),
@@ -56,28 +57,33 @@ std::vector<PixelOfFrame> pixels_of(Frame& frame, const Camera& camera) {
   return pixels;
 }
 
-TEST(LightField, EqualsTheCamerasIrradiance) {
+TEST(IrradianceAtPoints, EqualsTheCamerasIrradiance) {
   const Scene scene = load_scene(kCornell);
-  const Camera& camera = scene.camera("");
+  const SceneCamera& camera = scene.camera("");
   for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
     Session& session = test_session();
     Frame frame(session, scene, options);
-    EXPECT_THROW(LightField(session, frame), Error) << "there is no light before a frame";
+    EXPECT_THROW(frame.irradiance_at({glm::vec4(0)}, {glm::vec4(0, 1, 0, 0)}), Error)
+        << "there is no light before a frame";
     frame.render(camera);
-    const LightField light(session, frame);
     const std::vector<PixelOfFrame> pixels = pixels_of(frame, camera);
     ASSERT_GT(pixels.size(), 100u);
-    double brightest = 0, worst = 0;
+    std::vector<glm::vec4> positions, normals;
     for (const PixelOfFrame& pixel : pixels) {
-      const glm::dvec3 e = light.irradiance(pixel.position, pixel.normal);
-      brightest = std::max(brightest, pixel.irradiance.x);
-      worst = std::max(worst, glm::length(e - pixel.irradiance));
-      EXPECT_TRUE(light.reaches(pixel.position));
+      positions.emplace_back(glm::vec3(pixel.position), 0);
+      normals.emplace_back(glm::vec3(pixel.normal), 0);
+      EXPECT_TRUE(reaches(frame.light().grids.back(), pixel.position));
+    }
+    const std::vector<glm::vec4> light = frame.irradiance_at(positions, normals);
+    double brightest = 0, worst = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      brightest = std::max(brightest, pixels[i].irradiance.x);
+      worst = std::max(worst, glm::length(glm::dvec3(light[i]) - pixels[i].irradiance));
     }
     EXPECT_GT(brightest, 0.1) << name_of(transport);
-    // Positions and weights are rounded to floats on the device; light changes by much over a cell.
+    // Positions are rounded to floats; light changes by much over a cell.
     EXPECT_LT(worst, 1e-3 * brightest) << name_of(transport);
   }
 }

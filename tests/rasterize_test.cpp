@@ -26,8 +26,8 @@ using test::directional_light;
 using test::expect_passed;
 using test::test_session;
 
-Camera camera_at(const glm::vec3& eye, const glm::vec3& forward, const glm::vec3& up = {0, 1, 0}) {
-  Camera camera;
+SceneCamera camera_at(const glm::vec3& eye, const glm::vec3& forward, const glm::vec3& up = {0, 1, 0}) {
+  SceneCamera camera;
   camera.eye = eye;
   camera.forward = glm::normalize(forward);
   camera.up = up;
@@ -203,7 +203,7 @@ TEST(Rasterize, NearPlaneCutsWithoutHoles) {
       scene.triangles.push_back({{a, a + 8, a + 7}, material});
     }
   }
-  Camera camera = camera_at({0, 0, 0}, {0, -1, -1}, {0, 0.7071068f, -0.7071068f});
+  SceneCamera camera = camera_at({0, 0, 0}, {0, -1, -1}, {0, 0.7071068f, -0.7071068f});
   camera.vertical_fov = 1.4f;
   const ClpvView view = camera_view(camera, 36, 36);
   const std::vector<int> count = coverage(scene, view);

@@ -105,7 +105,7 @@ Scene clutter() {
 // Pixel by pixel, or else every comparison would measure two different pictures.
 TEST(RayScene, SeesWhatTheRasteriserSees) {
   const Scene scene = clutter();
-  const ClpvView view = camera_view(Camera{}, 160, 90);
+  const ClpvView view = camera_view(SceneCamera{}, 160, 90);
   PathTracerOptions options;
   options.samples = 1;
   const TracedImage traced = trace_paths(scene, view, options);

@@ -40,7 +40,7 @@ TEST_F(SceneKeysTest, ACameraWalks) {
   moving.pose(1.5);
   EXPECT_THAT(moving.scene().cameras[0].eye, IsNear(glm::vec3(0.5f, 0, 0), kClose)) << "in metres";
   moving.pose(4);
-  const Camera& camera = moving.scene().cameras[0];
+  const SceneCamera& camera = moving.scene().cameras[0];
   EXPECT_THAT(camera.eye, IsNear(glm::vec3(2, 2, 0), kClose));
   EXPECT_THAT(camera.forward, IsNear(glm::normalize(glm::vec3(-4, -4, -100)), kClose)) << "the target stands";
   EXPECT_NEAR(camera.vertical_fov, glm::radians(82.5), kClose)

@@ -74,12 +74,12 @@ TEST_F(SceneTest, AllKeysOfASceneFile) {
 TEST_F(SceneTest, CamerasAreScaledToMetres) {
   const Scene scene = load(kFull);
   ASSERT_EQ(scene.cameras.size(), 2u);
-  const Camera& a = scene.cameras[0];
+  const SceneCamera& a = scene.cameras[0];
   EXPECT_EQ(a.eye, glm::vec3(1, 2, 3));
   EXPECT_THAT(a.forward, IsNear(glm::vec3(0, 0, -1), kClose));
   EXPECT_NEAR(a.vertical_fov, glm::half_pi<float>(), kClose);
   EXPECT_EQ(a.near_depth, 0.25f);
-  const Camera& b = scene.cameras[1];
+  const SceneCamera& b = scene.cameras[1];
   EXPECT_THAT(b.up, IsNear(glm::vec3(0, 0, 1), kClose)) << "made perpendicular";
   EXPECT_NEAR(b.vertical_fov, glm::pi<float>() / 3, kClose) << "60 degrees by default";
 }
@@ -150,7 +150,7 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   EXPECT_EQ(scene.lights[0].data.kind, static_cast<unsigned>(CLPV_LIGHT_DIRECTIONAL));
   EXPECT_LT(scene.lights[0].data.direction[1], -0.5f);
   EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("no camera"), HasSubstr("no light")));
-  const Camera& camera = scene.cameras[0];
+  const SceneCamera& camera = scene.cameras[0];
   for (const Vertex& vertex : scene.vertices) {  // every corner is in view, in a square image
     const glm::vec3 d = glm::vec3(vertex.position[0], vertex.position[1], vertex.position[2]) - camera.eye;
     EXPECT_GT(glm::dot(d, camera.forward), camera.near_depth);

@@ -59,7 +59,7 @@ TEST(Scenes, MatchTheirDescriptions) {
     EXPECT_EQ(scene.lights.size(), card.lights);
     EXPECT_LT(glm::length(scene.upper - scene.lower - card.size), 0.02f);
     std::vector<std::string> cameras;
-    for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+    for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.name);
     EXPECT_EQ(cameras, card.cameras);
     EXPECT_THAT(scene.notes, ::testing::IsEmpty());
   }

@@ -100,7 +100,7 @@ TEST(Shade, EachViewShowsItsShare) {
   }
   const std::vector<glm::dvec3> direct_light = reference::direct_irradiance({sun({0, -1, 0}, 7)}, image);
   std::vector<std::vector<glm::dvec4>> shown;
-  for (const Show view : values_of<Show>())
+  for (const Show view : kSurfaceViews)
     shown.push_back(reference::shade(view, image, direct_light, indirect));
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
     const bool background = image.depth[pixel] <= 0;

@@ -23,7 +23,7 @@ constexpr int kWidth = 64, kHeight = 36;
 
 /// G-buffer of the floor y = 0 and, where `box` > 0, of a box's top at that height over |x|, |z| < 1.
 SurfaceImage view_of_floor(const glm::vec3& eye, double box = 0) {
-  Camera camera;
+  SceneCamera camera;
   camera.eye = eye;
   camera.forward = glm::normalize(glm::vec3(0.1f, -0.6f, -1));
   camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, {0, 1, 0}), camera.forward));
@@ -135,7 +135,7 @@ class SteadyFrame : public ::testing::Test {
   }
 
   Scene scene_ = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/cornell.json");
-  Camera camera_ = scene_.camera("");
+  SceneCamera camera_ = scene_.camera("");
   Frame frame_{test_session(), scene_, small_options()};
   SurfaceImage before_;
   std::vector<float> irradiance_;
@@ -159,7 +159,7 @@ TEST_F(SteadyFrame, LightChangesLittleAsTheEyeMovesAndAsMuchAsTheLight) {
   const double across = after(1).mean.value();
   EXPECT_GT(across, 0.0) << "another cell";
   EXPECT_LT(across, 0.08);
-  for (Light& light : scene_.lights) light.data = scaled(light.data, 1.25f);
+  for (SceneLight& light : scene_.lights) light.data = scaled(light.data, 1.25f);
   EXPECT_NEAR(after(0).mean.value(), 0.25, 1e-3) << "halves round";
 }
 

@@ -64,7 +64,7 @@ SurfaceImage image_of(Scene scene, int size, const glm::vec2& from, const glm::v
   for (Vertex& v : scene.vertices) {
     for (int i = 0; i < 2; ++i) v.uv[i] = from[i] + v.uv[i] * (to[i] - from[i]);
   }
-  ClpvView view = camera_view(Camera{}, size, size);
+  ClpvView view = camera_view(SceneCamera{}, size, size);
   view.eye[0] = view.eye[1] = 0.5f;
   view.orthographic = 1;
   view.half_width = view.half_height = 0.5f;

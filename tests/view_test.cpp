@@ -60,7 +60,7 @@ void expect_orthonormal(const ClpvView& view) {
 }
 
 TEST(View, CameraSeesItsFieldOfView) {
-  Camera camera;
+  SceneCamera camera;
   camera.eye = {1, 2, 3};
   camera.forward = glm::normalize(glm::vec3(1, -0.2f, -2));
   const ClpvView view = camera_view(camera, 960, 540);

@@ -37,7 +37,7 @@ constexpr int kPathFrames = 24;
 constexpr double kTurn = 0.6, kSway = 0.5;  // amplitudes of turn [rad] and sway [m], one period per path
 
 /// The camera of a frame on a closed path of kPathFrames: it turns and sways left and right.
-Camera path_camera(Camera camera, int frame, double sway) {
+SceneCamera path_camera(SceneCamera camera, int frame, double sway) {
   const double phase = 2 * 3.14159265358979 * frame / kPathFrames;
   const glm::mat4 turn =
       glm::rotate(glm::mat4(1.0f), static_cast<float>(kTurn * std::sin(phase)), glm::vec3(0, 1, 0));
@@ -51,7 +51,7 @@ Camera path_camera(Camera camera, int frame, double sway) {
 /// Frames rendered along a camera path, and their stage times.
 struct FrameSequence {
   std::shared_ptr<const Scene> scene;
-  Camera start;
+  SceneCamera start;
   Recompute recompute;
   Frame frame;
   int next = 0;
@@ -66,7 +66,7 @@ struct FrameSequence {
         frame(session, *scene, options) {}
 
   /// The camera of frame `number`. With Recompute::nothing it does not sway, so that cascades do not move.
-  Camera camera(int number) const {
+  SceneCamera camera(int number) const {
     return path_camera(start, number, recompute == Recompute::nothing ? 0 : kSway);
   }
 

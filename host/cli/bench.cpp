@@ -26,6 +26,7 @@ namespace bench_command {
 struct Options {
   double fail_above = 0;  ///< 0: not given
   std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
+  SceneChanges changes;
   bench::BenchOptions bench;
 };
 
@@ -99,7 +100,9 @@ void load_suite_scene(Options& options, const bench::Suite& suite) {
     return;
   }
   const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
-  const auto scene = std::make_shared<const Scene>(load_scene(file, options.model));
+  MovingScene loaded(file, options.model);
+  options.changes.apply(loaded);
+  const auto scene = std::make_shared<const Scene>(std::move(loaded).take());
   options.bench.suite.scene = scene;
   if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
@@ -165,8 +168,9 @@ void add_bench(CLI::App& app, Shared& shared) {
   add(*command, "--scene", "SCENE", options->scene,
       "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");
-  add(*command, "--camera", "NAME", options->bench.suite.camera,
-      "name of the camera (default: the scene's first)");
+  CLI::Option* camera = add(*command, "--camera", "NAME", options->bench.suite.camera,
+                            "name of the camera (default: the scene's first)");
+  add_scene_changes(*command, options->changes, *camera);
   add(*command, "--basis", "NAME", options->bench.suite.bases,
       "comma-separated bases (default: those of the suite); table1 adds them to its own")
       ->delimiter(',');

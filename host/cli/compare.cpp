@@ -83,7 +83,8 @@ void add_compare(CLI::App& app, Shared&) {
       "is rmse over\n"
       "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and "
       "flip are over the\n"
-      "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et al. 2020) is "
+      "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et al. 2020) "
+      "is "
       "the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
       "Different sizes and values that are not finite exit with 3.");

@@ -17,12 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folder of the package clpv_draw: next to the installed program, or in the source tree.
+/// Folder of the Python package clpv: under the prefix of the installed program, or in the source tree.
 fs::path package_folder() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  const fs::path installed = program.parent_path().parent_path() / "share/clpv";
-  return fs::exists(installed / "clpv_draw", failed) ? installed : fs::path(CLPV_DRAW_FOLDER);
+  for (const char* folder : {CLPV_PYTHON_FOLDERS}) {
+    const fs::path installed = program.parent_path().parent_path() / folder;
+    if (fs::exists(installed / "clpv/draw", failed)) return installed;
+  }
+  return CLPV_PYTHON_SOURCE;
 }
 
 }  // namespace
@@ -49,7 +52,7 @@ void Drawing::draw(const fs::path& output) const {
   run({folder_.string(), output.string()});
 }
 
-/// `python3 -m clpv_draw KIND arguments...`. -B: no bytecode is written to the package.
+/// `python3 -m clpv.draw KIND arguments...`. -B: no bytecode is written to the package.
 void Drawing::run(const std::vector<std::string>& arguments) const {
   const char* path = std::getenv("PYTHONPATH");
   std::vector<std::string> words{
@@ -57,7 +60,7 @@ void Drawing::run(const std::vector<std::string>& arguments) const {
       "python3",
       "-B",
       "-m",
-      "clpv_draw",
+      "clpv.draw",
       kind_};
   words.insert(words.end(), arguments.begin(), arguments.end());
   Process::Result ended = Process("/usr/bin/env", words).end();
@@ -65,7 +68,7 @@ void Drawing::run(const std::vector<std::string>& arguments) const {
   while (ended.output.ends_with('\n')) ended.output.pop_back();
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.output);
-  throw Error(ExitCode::run_time, "{}: python3 -m clpv_draw ended with {}: {}", asked_by_, ended.code,
+  throw Error(ExitCode::run_time, "{}: python3 -m clpv.draw ended with {}: {}", asked_by_, ended.code,
               ended.output);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs the Python package tools/clpv_draw, which draws images and pages from JSON, NPY and PNG files.
+// Runs the Python package python/clpv/draw, which draws images and pages from JSON, NPY and PNG files.
 #pragma once
 
 #include <filesystem>

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "scene/bounds.hpp"
+#include "scene/view_values.hpp"
 #include "support/error.hpp"
 #include "support/text.hpp"
 
@@ -31,6 +32,23 @@ std::optional<glm::vec<3, T>> parse_three(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return values;
+}
+
+/// Parses a direction and an optional illuminance [lx].
+Light parse_sun(const std::string& text) {
+  const auto third = text.find(',', text.find(',', text.find(',') + 1) + 1);
+  const bool has_lux = std::ranges::count(text, ',') == 3;
+  const auto lux = has_lux ? parse_number<double>(text.substr(third + 1)) : kSunIlluminance;
+  const auto direction = parse_three<double>(has_lux ? text.substr(0, third) : text);
+  if (!direction || !lux) {
+    throw Error(ExitCode::usage,
+                "--sun: found '{}', allowed: a direction and an illuminance [lx] like 1,-3,0.5,10", text);
+  }
+  Light sun;
+  sun.name = "sun";
+  sun.direction = {direction->x, direction->y, direction->z};
+  sun.intensity = {*lux, *lux, *lux};
+  return sun;
 }
 
 CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
@@ -156,6 +174,59 @@ void create_folder(const std::string& option, const std::filesystem::path& folde
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(ExitCode::run_time, "{} {}: {}", option, folder.string(), failed.message());
+}
+
+void SceneChanges::apply(MovingScene& scene) const {
+  if (eye && target) {
+    Camera given = camera;
+    given.eye = *eye;
+    given.target = *target;
+    given.name = text_of(given);
+    scene.set_cameras({scene_camera(given, rejected_in("camera"))});
+  }
+  if (sun) scene.set_lights({scene_light(*sun, rejected_in("--sun"))});
+}
+
+void SceneChanges::describe(nlohmann::json& inputs) const {
+  if (sun) inputs["sun"] = fmt::format("{},{}", fmt::join(sun->direction, ","), sun->intensity[0]);
+}
+
+void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera) {
+  constexpr const char* kGroup = "Camera and light by numbers";
+  const auto vector = [&](const std::string& name, const char* type, auto& to, const char* help) {
+    return command
+        .add_option_function<std::string>(
+            name,
+            [&to, name](const std::string& text) {
+              const glm::dvec3 v = parse_dvec3(text, name.c_str());
+              to = Vec3{v.x, v.y, v.z};
+            },
+            help)
+        ->type_name(type)
+        ->group(kGroup);
+  };
+  CLI::Option* eye = vector("--eye", "X,Y,Z", changes.eye, "position of a camera [m], in place of --camera");
+  eye->excludes(&camera);
+  CLI::Option* target = vector("--target", "X,Y,Z", changes.target, "point that this camera looks at [m]");
+  target->needs(eye);
+  eye->needs(target);
+  vector("--up", "X,Y,Z", changes.camera.up, "its upward direction (default: 0,1,0)")->needs(eye);
+  add(command, "--fov", "DEGREES", changes.camera.vertical_fov_degrees,
+      "its vertical field of view [degrees]")
+      ->needs(eye)
+      ->group(kGroup);
+  add(command, "--near-plane", "M", changes.camera.near, "its nearest visible depth [m]")
+      ->needs(eye)
+      ->group(kGroup);
+  const auto take_sun = [&changes](const std::string& text) { changes.sun = parse_sun(text); };
+  command
+      .add_option_function<std::string>(
+          "--sun", take_sun,
+          fmt::format(
+              "direction of a sun's light and its illuminance [lx] (default: {}), in place of all lights",
+              kSunIlluminance))
+      ->type_name("X,Y,Z[,LUX]")
+      ->group(kGroup);
 }
 
 reference::PathTracerOptions TracingOptions::resolved() const {

@@ -8,15 +8,18 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "clpv/scene.hpp"
 #include "device/device.hpp"
 #include "options/render_options.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/scene_options.hpp"
+#include "scene/load.hpp"
 #include "support/named_enum.hpp"
 #include "support/progress.hpp"
 
@@ -100,6 +103,21 @@ void require_extension(const std::string& option, const std::filesystem::path& f
 
 /// Creates the folder of an option if it is missing. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);
+
+/// A camera and a sun given by numbers, in place of the scene's.
+struct SceneChanges {
+  std::optional<Vec3> eye, target;  ///< both or none
+  Camera camera;                    ///< its other numbers
+  std::optional<Light> sun;
+
+  /// Throws Error(usage) for numbers that no camera or light has.
+  void apply(MovingScene& scene) const;
+  /// Adds the sun to the inputs of an image; the camera's name has its numbers.
+  void describe(nlohmann::json& inputs) const;
+};
+
+/// Adds --eye, --target, --up, --fov, --near-plane and --sun. `camera`: the option that excludes --eye.
+void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera);
 
 /// The options of path tracing, shared by `pathtrace`, `quality` and `report`.
 struct TracingOptions {

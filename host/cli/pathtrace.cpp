@@ -7,10 +7,12 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
+#include "cli/tev.hpp"
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -23,8 +25,8 @@
 namespace clpv {
 namespace pathtrace_command {
 
-struct Options {
-  std::string scene, model, camera, output, stats;
+struct Options : SceneRequest {
+  std::string output, stats, tev;
   std::vector<Show> views = {Show::full};
   int width = 960, height = 540;
   double time = 0;
@@ -33,12 +35,13 @@ struct Options {
 
 /// Checks the output options before any tracing.
 void check_outputs(const Options& options) {
+  for (const Show view : options.views) require_traceable(view);
   require_extension("--output", options.output, {".exr"});
   check_writable(options.output);
   if (!options.stats.empty()) check_writable(options.stats);
 }
 
-nlohmann::json resolved(const Options& options, const Camera& camera) {
+nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
   nlohmann::json json = {{"scene", options.scene},
                          {"camera", camera.name},
                          {"time", options.time},
@@ -47,6 +50,7 @@ nlohmann::json resolved(const Options& options, const Camera& camera) {
                          {"bounces", options.tracing.bounces},
                          {"seed", options.tracing.values.seed}};
   if (!options.model.empty()) json["model"] = options.model;
+  options.changes.describe(json);
   if (options.tracing.values.samples > 0) {
     json["spp"] = options.tracing.values.samples;
   } else {
@@ -62,7 +66,7 @@ Image compose(const reference::TracedImage& traced, const std::vector<Show>& vie
   return image;
 }
 
-void write_outputs(const Options& options, const Camera& camera, const reference::TracedImage& traced,
+void write_outputs(const Options& options, const SceneCamera& camera, const reference::TracedImage& traced,
                    double seconds) {
   const nlohmann::json asked = resolved(options, camera);
   const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
@@ -84,19 +88,26 @@ void write_outputs(const Options& options, const Camera& camera, const reference
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
-  const reference::PathTracerOptions tracing = options.tracing.resolved();
+  reference::PathTracerOptions tracing = options.tracing.resolved();
   check_outputs(options);
-  MovingScene moving(options.scene, options.model);
+  MovingScene moving = options.open();
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
   moving.pose(options.time);
   const Scene& scene = moving.scene();
-  const Camera& camera = scene.camera(options.camera);
+  const SceneCamera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
+  std::optional<Tev> tev;
+  if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
+  const auto show = [&](const reference::TracedImage& traced) {
+    for (const Show view : options.views) tev->show(tev_name(scene, camera, view), traced_view(traced, view));
+  };
+  if (tev) tracing.observer = show;
   Progress progress("path tracing", kTraceSteps);
   const reference::TracedImage traced = reference::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
+  if (tev) show(traced);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
@@ -108,12 +119,10 @@ void run(const Options& options, Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "-o,--output", "FILE.exr", options.output,
       "output image, linear EXR; one layer per view if several")
       ->required();
-  add(command, "--model", "PATH", options.model, "model file instead of the scene file's");
-  add(command, "--camera", "NAME", options.camera, "name of the camera (default: the scene's first)");
+  add_scene_request(command, options);
   add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
   add_choices(command, "--view", options.views, "views to write; several become layers of the EXR")
       ->default_str("full");
@@ -124,6 +133,7 @@ void add_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
+  add_tev(command, options.tev);
   add(command, "--stats", "FILE.json", options.stats,
       "output file for paths, noise, rays and time [s], as JSON");
 }

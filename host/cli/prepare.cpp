@@ -20,7 +20,7 @@ struct Options {
 /// Does everything that rendering does, but launches only the kernels of claimed programs.
 void run(const Options& options, const Shared& shared) {
   become_helper();
-  MovingScene moving(options.request.scene, options.request.model);
+  MovingScene moving = options.request.open();
   moving.pose(0);
   const RenderOptions resolved = resolve_options(options.request.frame, moving.scene());
   Session session(choose_device(shared.device), std::nullopt, {{}, Claims(options.claims)});

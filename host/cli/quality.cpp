@@ -23,7 +23,7 @@
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
 #include "clpv/version.hpp"
-#include "quality/light_field.hpp"
+#include "quality/unreached.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/output_file.hpp"

@@ -33,8 +33,9 @@ std::filesystem::path model_for(const std::string& scene, const QualitySubjects&
 void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
   add(command, "--model", "[STEM=]PATH", subjects.models,
       "model file instead of the scene file's; for several scenes: STEM=PATH, repeatable");
-  add(command, "--camera", "NAME", subjects.cameras,
-      "name of a camera, repeatable (default: all cameras of all scenes)");
+  CLI::Option* camera = add(command, "--camera", "NAME", subjects.cameras,
+                            "name of a camera, repeatable (default: all cameras of all scenes)");
+  add_scene_changes(command, subjects.changes, *camera);
   add_seconds(command, "--time", subjects.time, "time in the scene's animation [s]");
 }
 
@@ -55,16 +56,19 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
   for (const std::string& path : given.scenes) {
     Subject& subject = subjects.emplace_back();
     MovingScene moving(path, model_for(path, given));
+    given.changes.apply(moving);
     moving.pose(given.time);
     subject.scene = std::move(moving).take();
     for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
-    for (const Camera& camera : subject.scene.cameras) {
+    for (const SceneCamera& camera : subject.scene.cameras) {
       const bool chosen = given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;
       if (chosen) subject.cameras.push_back(camera);
     }
   }
   for (const std::string& name : given.cameras) {
-    const auto has = [&](const Subject& s) { return std::ranges::count(s.cameras, name, &Camera::name) > 0; };
+    const auto has = [&](const Subject& s) {
+      return std::ranges::count(s.cameras, name, &SceneCamera::name) > 0;
+    };
     if (std::ranges::none_of(subjects, has))
       subjects[0].scene.camera(name);  // throws an error that lists the camera names
   }
@@ -73,7 +77,7 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
 
 void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
                   const std::filesystem::path& folder, Ranks& ranks) {
-  for (const Camera& camera : subject.cameras) {
+  for (const SceneCamera& camera : subject.cameras) {
     Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name), kTraceSteps);
     subject.truths.push_back(reference::cached_ground_truth(folder, subject.scene, camera, width, height,
                                                             options, trace_progress(progress), ranks));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/options.hpp"
 #include "quality/ground_truth.hpp"
 #include "scene/scene.hpp"
 
@@ -17,16 +18,17 @@ struct QualitySubjects {
   std::vector<std::string> scenes;   ///< files
   std::vector<std::string> models;   ///< "STEM=PATH", STEM of a scene file; for one scene also "PATH"
   std::vector<std::string> cameras;  ///< names; empty: all
+  SceneChanges changes;              ///< of all scenes
   double time = 0;                   ///< time of the frame [s]
 };
 
-/// Adds --model, --camera and --time.
+/// Adds --model, --camera, the options of add_scene_changes() and --time.
 void add_subject_options(CLI::App& command, QualitySubjects& subjects);
 
 /// A scene, the selected cameras, and the ground truth of each view.
 struct Subject {
   Scene scene;
-  std::vector<Camera> cameras;
+  std::vector<SceneCamera> cameras;
   std::vector<reference::GroundTruth> truths;  ///< one per camera, after tracing
 };
 

@@ -8,7 +8,8 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
-#include "quality/light_field.hpp"
+#include "pipeline/cascade.hpp"
+#include "pipeline/frame.hpp"
 #include "quality/points_file.hpp"
 #include "scene/load.hpp"
 #include "support/log.hpp"
@@ -23,14 +24,21 @@ struct Options {
   double time = 0;
 };
 
-std::string table_of(const std::vector<SurfacePoint>& points, const LightField& light) {
+std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
+  std::vector<glm::vec4> positions, normals;
+  for (const auto& [p, n] : points) {
+    positions.emplace_back(glm::vec3(p), 0);
+    normals.emplace_back(glm::vec3(n), 0);
+  }
+  const std::vector<glm::vec4> light = frame.irradiance_at(std::move(positions), std::move(normals));
+  const ClpvGrid coarsest = frame.light().grids.back();
   std::string text = "x,y,z,nx,ny,nz,red,green,blue\n";
   std::size_t outside = 0;
-  for (const auto& [p, n] : points) {
-    const glm::dvec3 e = light.irradiance(p, n);
-    outside += !light.reaches(p);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [p, n] = points[i];
+    outside += !reaches(coarsest, p);
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", p.x, p.y, p.z, n.x, n.y, n.z,
-                   static_cast<float>(e.x), static_cast<float>(e.y), static_cast<float>(e.z));
+                   light[i].x, light[i].y, light[i].z);
   }
   if (outside > 0)
     spdlog::warn("{} of {} points lie outside the cascades, where there is no light", outside, points.size());
@@ -41,16 +49,16 @@ void run(const Options& options, const Shared& shared) {
   if (!options.output.empty()) check_writable(options.output);
   const std::vector<SurfacePoint> points = read_points(options.points);
   const RenderRequest& request = options.request;
-  MovingScene moving(request.scene, request.model);
+  MovingScene moving = request.open();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, moving.scene());
-  const Camera& camera = moving.scene().camera(request.camera);
+  const SceneCamera& camera = moving.scene().camera(request.camera);
   log_scene(moving.scene(), camera, resolved);
   Session session(choose_device(shared.device), ProgramCache::of_user(),
                   compilation_of(request, shared.device));
   Frame frame(session, moving.scene(), resolved);
   frame.render(camera);
-  const std::string table = table_of(points, LightField(session, frame));
+  const std::string table = table_of(points, frame);
   if (options.output.empty()) {
     std::cout << table;
   } else {

@@ -8,10 +8,11 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
+#include "cli/tev.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
-#include "quality/light_field.hpp"
+#include "quality/unreached.hpp"
 #include "quality/normal_weights.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   RenderRequest request;
-  std::string output, stats, dump, normals;
+  std::string output, stats, dump, normals, tev;
   int frames = 5;
   double time = 0;
   std::vector<Show> views = {Show::full};
@@ -99,11 +100,11 @@ void run(const Options& options, const Shared& shared) {
   FrameStats stats;
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
-  MovingScene moving(request.scene, request.model);
+  MovingScene moving = request.open();
   const Scene& scene = moving.scene();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, scene);
-  const Camera& camera = scene.camera(request.camera);
+  const SceneCamera& camera = scene.camera(request.camera);
   log_scene(scene, camera, resolved);
   progress.advance();
 
@@ -135,6 +136,10 @@ void run(const Options& options, const Shared& shared) {
   }
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
+  if (!options.tev.empty()) {
+    Tev tev(options.tev);
+    for (const Show view : options.views) tev.show(tev_name(scene, camera, view), view_image(frame, view));
+  }
   write_images(frame, options, request.exposure_of(scene), metadata_of(described));
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
@@ -180,6 +185,7 @@ void add_render(CLI::App& app, Shared& shared) {
       "origin and cell");
   add(*command, "--dump-normals", "FILE.json", options->normals,
       "output file for lit surface normals, weighted by reflected flux, for clpv basis --weights");
+  add_tev(*command, options->tev);
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -18,11 +18,23 @@ namespace {
 constexpr double kMaxExposure = 64;  // 2^64: beyond any scene, and finite
 }
 
-void add_render_request(CLI::App& command, RenderRequest& request) {
+MovingScene SceneRequest::open() const {
+  MovingScene moving(scene, model);
+  changes.apply(moving);
+  return moving;
+}
+
+void add_scene_request(CLI::App& command, SceneRequest& request) {
   command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
   add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
-  add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)")
-      ->check([](const std::string& name) { return name.empty() ? "found '', allowed: a name" : ""; });
+  CLI::Option* camera =
+      add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)")
+          ->check([](const std::string& name) { return name.empty() ? "found '', allowed: a name" : ""; });
+  add_scene_changes(command, request.changes, *camera);
+}
+
+void add_render_request(CLI::App& command, RenderRequest& request) {
+  add_scene_request(command, request);
   add_frame_options(command, request.frame);
 }
 
@@ -103,13 +115,14 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
     if (!value.empty()) arguments.push_back(fmt::format("--{}={}", name, value));
   };
   add("model", request.model);
-  add("camera", request.camera);
+  if (const auto& sun = request.changes.sun)  // a camera's numbers change no kernel
+    add("sun", fmt::format("{},{},{}", sun->direction.x, sun->direction.y, sun->direction.z));
   add("device", device);
   for (const auto& [name, value] : request.frame) add(name, value);
   return {std::move(arguments), std::nullopt};
 }
 
-void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOptions& options) {
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
@@ -126,7 +139,7 @@ void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& op
 }
 
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
-                        const Camera& camera, double seconds) {
+                        const SceneCamera& camera, double seconds) {
   nlohmann::json all = to_json(options);
   all.update({{"scene", request.scene},
               {"model", request.model},
@@ -134,6 +147,7 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
               {"time", seconds},
               {"exposure", request.exposure_of(shown)},
               {"tonemap", name_of(request.tonemap)}});
+  request.changes.describe(all);
   return all;
 }
 

@@ -13,11 +13,23 @@
 #include "image/image.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
+#include "scene/load.hpp"
 
 namespace clpv {
 
-struct RenderRequest {
+/// Scene, camera and sun, as given on the command line.
+struct SceneRequest {
   std::string scene, model, camera;
+  SceneChanges changes;
+
+  /// Loads the scene with these changes. A camera given by its numbers is then the only one.
+  MovingScene open() const;
+};
+
+/// Adds SCENE, --model, --camera and the options of add_scene_changes(); the request must outlive the parse, as below.
+void add_scene_request(CLI::App& command, SceneRequest& request);
+
+struct RenderRequest : SceneRequest {
   ToneMap tonemap = ToneMap::aces;
   std::optional<float> exposure;
   OptionValues frame;
@@ -25,7 +37,7 @@ struct RenderRequest {
   float exposure_of(const Scene& shown) const { return exposure.value_or(shown.exposure); }
 };
 
-/// Adds the options for scene, camera and frames; the request must outlive the parse, as below.
+/// Adds the options for scene, camera and frames.
 void add_render_request(CLI::App& command, RenderRequest& request);
 
 /// Adds the options for image display.
@@ -39,11 +51,11 @@ RenderOptions resolve_request(const RenderRequest& request, const Scene& scene);
 Compilation compilation_of(const RenderRequest& request, const std::string& device);
 
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
-void log_scene(const Scene& scene, const Camera& camera, const RenderOptions& options);
+void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOptions& options);
 
 /// Returns all inputs of an image of `shown` at a time [s], by name.
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
-                        const Camera& camera, double seconds);
+                        const SceneCamera& camera, double seconds);
 
 /// Returns the same as image metadata.
 std::map<std::string, std::string> metadata_of(const nlohmann::json& described);

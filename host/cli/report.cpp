@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clpv report: HTML page with images and ground truth, errors over times, and benchmarks; uses tools/clpv_draw.
+// clpv report: HTML page with images and ground truth, errors over times, and benchmarks; uses python/clpv/draw.
 #include <fmt/format.h>
 
 #include <array>
@@ -97,8 +97,8 @@ nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const 
   return {{"image", stem + ".png"}, {"values", stem + ".npy"}};
 }
 
-Image render_indirect(Session& session, const Subject& subject, const Camera& camera, const Options& options,
-                      const PageVariant& variant) {
+Image render_indirect(Session& session, const Subject& subject, const SceneCamera& camera,
+                      const Options& options, const PageVariant& variant) {
   Frame frame(session, subject.scene, resolve_options(sized(options, variant.given), subject.scene));
   frame.render(camera);
   return view_image(frame, Show::indirect);
@@ -107,7 +107,7 @@ Image render_indirect(Session& session, const Subject& subject, const Camera& ca
 /// View of one camera: the ground truth, and each variant's image with its errors.
 nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
                     const Drawing& drawing, const std::string& stem, Progress& progress) {
-  const Camera& camera = subject.cameras[index];
+  const SceneCamera& camera = subject.cameras[index];
   const reference::GroundTruth& traced = subject.truths[index];
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
   const float exposure = exposure_of(truth);

@@ -11,13 +11,14 @@
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
 #include "cli/sequence_report.hpp"
+#include "cli/tev.hpp"
 #include "cli/video.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame_stats.hpp"
 #include "pipeline/view.hpp"
 #include "quality/ground_truth.hpp"
-#include "quality/light_field.hpp"
+#include "quality/unreached.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -47,7 +48,7 @@ constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.jso
 /// Frame i shows `from` + i / `frames_per_second` [s].
 struct Options {
   RenderRequest request;
-  std::string output, video;
+  std::string output, video, tev;
   int frames = 0;
   double frames_per_second = 0, from = 0;
   Show view = Show::full;
@@ -85,7 +86,7 @@ class Sequence {
   Sequence(const Options& options, const Shared& shared, Ranks& ranks)
       : options_(options),
         ranks_(ranks),
-        moving_(options.request.scene, options.request.model),
+        moving_(options.request.open()),
         resolved_(resolve_request(options.request, moving_.scene())),
         device_(ranks.device(shared.device)),
         compilation_(compilation_of(options.request, shared.device)) {
@@ -94,6 +95,7 @@ class Sequence {
     Fingerprint print;
     print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
     still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
+    if (!options.tev.empty() && ranks.is_root()) tev_.emplace(options.tev);
     if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
   }
 
@@ -174,7 +176,7 @@ class Sequence {
     return display_image(image, options_.request.exposure_of(moving_.scene()), options_.request.tonemap);
   }
 
-  const Camera& camera() const { return moving_.scene().camera(options_.request.camera); }
+  const SceneCamera& camera() const { return moving_.scene().camera(options_.request.camera); }
   fs::path times_file() const { return fs::path(options_.output) / "times.json"; }
 
   nlohmann::json described(double seconds) const {
@@ -190,7 +192,7 @@ class Sequence {
     print.add(still_).add(described.dump());
     print.add(std::vector{camera_view(camera(), resolved_.width, resolved_.height)});
     add_moving(print, posed);
-    for (const Light& light : posed.lights_for(camera())) print.add(std::vector{light.data});
+    for (const SceneLight& light : posed.lights_for(camera())) print.add(std::vector{light.data});
     return print.hex();
   }
 
@@ -229,8 +231,9 @@ class Sequence {
     return true;
   }
 
-  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) const {
+  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) {
     Image image = view_image(frame, options_.view);
+    if (tev_) tev_->show(tev_name(moving_.scene(), camera(), options_.view), image);
     image.metadata = metadata_of(description);
     image.metadata[kKey] = key;
     if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);
@@ -262,6 +265,7 @@ class Sequence {
   Clock::time_point times_written_ = Clock::now();
   Compilation compilation_;
   std::optional<Renderer> renderer_;  ///< empty before the first frame
+  std::optional<Tev> tev_;
 };
 
 /// Checks the options before the scene is read.
@@ -332,6 +336,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add(*command, "--traced", "SPP", options->traced,
       "paths per pixel for the path-traced noise of --stability")
       ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples));
+  add_tev(*command, options->tev);
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(

@@ -77,7 +77,8 @@ Image shown(const Image& image, const std::vector<bool>& valid, float exposure) 
   return image.encoding == Encoding::srgb ? rgb : display_image(rgb, exposure, ToneMap::aces);
 }
 
-std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid, float exposure) {
+std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid,
+                                float exposure) {
   const std::vector<double> differences = flip(shown(a, valid, exposure), shown(b, valid, exposure));
   double sum = 0;
   for (std::size_t p = 0; p < valid.size(); ++p) sum += valid[p] ? differences[p] : 0;
@@ -141,7 +142,8 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
     const float *pa = pixel(a, p), *pb = pixel(b, p);
     is_valid[p] = (!alpha_a || pa[*alpha_a] > 0) && (!alpha_b || pb[*alpha_b] > 0);
     result.valid_pixels += is_valid[p];
-    result.mean_luminance += glm::dvec2(pixel_luminance(pa, in_a), pixel_luminance(pb, in_b));
+    result.mean_luminance[0] += pixel_luminance(pa, in_a);
+    result.mean_luminance[1] += pixel_luminance(pb, in_b);
     for (std::size_t c = 0; c < channels; ++c) {
       const double x = pa[in_a[c]], y = pb[in_b[c]], error = std::abs(x - y);
       all.add(x, y);
@@ -158,7 +160,7 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
   result.nrmse = normalised(all.squared_error, all.bb);
   result.relative_mse = relative / values;
   if (result.rmse > 0) result.psnr_db = -20 * std::log10(result.rmse);
-  result.mean_luminance /= static_cast<double>(pixels);
+  for (double& mean : result.mean_luminance) mean /= static_cast<double>(pixels);
   result.identical = result.max_error == 0;
   set_valid_errors(result, valid);
   result.flip = mean_flip(a, b, is_valid, exposure);
@@ -173,8 +175,8 @@ nlohmann::json to_json(const Comparison& c) {
   nlohmann::json json = c;
   json.update({{"schema", 1},
                {"encoding", c.encoding == Encoding::linear ? "linear" : "srgb"},
-               {"max_error_at", {c.max_error_at.x, c.max_error_at.y}},
-               {"mean_luminance", {c.mean_luminance.x, c.mean_luminance.y}}});
+               {"max_error_at", c.max_error_at},
+               {"mean_luminance", c.mean_luminance}});
   return json;
 }
 

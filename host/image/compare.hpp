@@ -2,37 +2,13 @@
 // Comparison of an image with its reference: errors and difference image.
 #pragma once
 
-#include <cstdint>
-#include <glm/vec2.hpp>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 
+#include "clpv/compare.hpp"
 #include "image/image.hpp"
 
 namespace clpv {
-
-/// Errors of image A against the reference B, over the colour channels: R, G and B, or else all channels but alpha. Pixels
-/// with alpha above 0 in both images are valid; without alpha all are. Empty values (null in JSON) are undefined: errors
-/// relative to a black reference, decibels without error.
-struct Comparison {
-  int width = 0, height = 0, channels = 0;
-  Encoding encoding = Encoding::linear;
-  double rmse = 0;
-  std::optional<double> nrmse;    ///< rmse over the root mean square of B
-  double relative_mse = 0;        ///< mean of (a - b)^2 / (b^2 + 0.01)
-  std::optional<double> psnr_db;  ///< peak signal-to-noise ratio with peak 1 [dB]
-  double max_error = 0;
-  glm::ivec2 max_error_at{0};      ///< x, y from the top left corner
-  glm::dvec2 mean_luminance{0};    ///< of A and of B (Rec. 709; with one channel, its mean)
-  bool identical = false;          ///< all colour channels have equal values
-  std::uint64_t valid_pixels = 0;  ///< number of valid pixels, over which the following values are
-  std::optional<double> nrmse_valid;
-  std::optional<double> best_gain;        ///< factor g that minimises |g A - B|
-  std::optional<double> nrmse_best_gain;  ///< nrmse of g A
-  std::optional<double> energy_ratio;     ///< sum of A over sum of B
-  std::optional<double> flip;  ///< mean difference that an observer sees, from 0 to 1 (image/flip.hpp); empty without valid pixels
-};
 
 /// Compares A with the reference B; messages contain `a_name` and `b_name`. Throws Error(bad_input) for different sizes,
 /// numbers of colour channels or encodings, and for values that are not finite.

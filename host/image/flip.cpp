@@ -185,8 +185,7 @@ std::vector<double> flip(const Image& a, const Image& b, double pixels_per_degre
   const double largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColourExponent);
   std::vector<double> result;
   for (std::size_t p = 0; p < a.pixel_count(); ++p) {
-    const double colour =
-        spread(std::pow(hyab(in_a.colours[p], in_b.colours[p]), kColourExponent), largest);
+    const double colour = spread(std::pow(hyab(in_a.colours[p], in_b.colours[p]), kColourExponent), largest);
     const double feature = std::max(std::abs(in_a.features.edges[p] - in_b.features.edges[p]),
                                     std::abs(in_a.features.points[p] - in_b.features.points[p]));
     result.push_back(std::pow(colour, 1 - std::pow(feature / std::numbers::sqrt2, kFeatureExponent)));

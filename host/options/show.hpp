@@ -2,8 +2,11 @@
 // Quantities that an image can show: View with its names. kernels/shared/shade.h has meaning and units.
 #pragma once
 
+#include <array>
+
 #include "clpv/renderer.hpp"
 #include "kernels/shared/shade.h"
+#include "support/error.hpp"
 #include "support/named_enum.hpp"
 
 namespace clpv {
@@ -20,6 +23,17 @@ constexpr bool shows_sky(Show show) {
 
 template <>
 inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "irradiance", "albedo", "normal",
-                                               "depth");
+                                               "depth", "cells");
+
+/// Views of surfaces, which kernels shade and the path tracer traces; `cells` is drawn by pipeline/cells.
+inline constexpr std::array kSurfaceViews{Show::full,   Show::direct, Show::indirect, Show::irradiance,
+                                          Show::albedo, Show::normal, Show::depth};
+
+/// Throws Error(usage) for a view that the path tracer does not have.
+inline void require_traceable(Show show) {
+  if (show == Show::cells)
+    throw Error(ExitCode::usage,
+                "view: found 'cells', which path tracing does not have; allowed: the others");
+}
 
 }  // namespace clpv

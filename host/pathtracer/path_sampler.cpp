@@ -51,7 +51,7 @@ bool PathSampler::shadowed(const ClpvLight& light, const glm::vec3& origin, cons
 glm::dvec3 PathSampler::direct(const Hit& hit) {
   const glm::vec3 origin = rays_.offset_origin(hit);
   glm::dvec3 sum(0);
-  for (const Light& light : lights_) {
+  for (const SceneLight& light : lights_) {
     const Incident in = light_at(light.data, glm::dvec3(hit.position));
     const double cosine = glm::dot(glm::dvec3(hit.normal), in.towards);
     if (cosine <= 0 || glm::dot(glm::dvec3(hit.geometric), in.towards) <= 0) continue;

@@ -17,7 +17,7 @@ namespace clpv::reference {
 /// Borrows its arguments. Each thread has its own, for its count of rays.
 class PathSampler {
  public:
-  PathSampler(const RayScene& rays, const std::vector<Light>& lights, const Emitters& emitters,
+  PathSampler(const RayScene& rays, const std::vector<SceneLight>& lights, const Emitters& emitters,
               const SkySampler& sky, const PathTracerOptions& options)
       : rays_(rays), lights_(lights), emitters_(emitters), sky_(sky), options_(options) {}
 
@@ -41,7 +41,7 @@ class PathSampler {
   bool shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const;
 
   const RayScene& rays_;
-  const std::vector<Light>& lights_;
+  const std::vector<SceneLight>& lights_;
   const Emitters& emitters_;
   const SkySampler& sky_;
   const PathTracerOptions& options_;

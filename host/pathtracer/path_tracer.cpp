@@ -2,6 +2,7 @@
 // Path tracer: distributes tiles over threads and ranks, and adds paths until the noise is reached.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -31,10 +32,13 @@ glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py
   return glm::normalize(surface_position(view, px, py, 1) - surface_position(view, px, py, 0));
 }
 
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kObserveEvery{1};
+
 /// Traces one image, tile by tile.
 class ImageTracer {
  public:
-  ImageTracer(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+  ImageTracer(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
               const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
@@ -44,7 +48,8 @@ class ImageTracer {
         progress_(progress),
         ranks_(ranks),
         hits_(std::size_t{view.width} * view.height),
-        rank_sums_(2 * hits_.size(), glm::dvec3(0)) {
+        rank_sums_(2 * hits_.size(), glm::dvec3(0)),
+        counts_(rank_sums_.size(), 0) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
     threads_ = options.threads > 0 ? options.threads : ranks.processors();
@@ -73,14 +78,24 @@ class ImageTracer {
     std::size_t done = 0;
     parallel_for(items, [&](PathSampler& sampler, std::size_t item) {
       const auto half = static_cast<std::uint32_t>(item % 2);
+      std::vector<std::pair<std::size_t, glm::dvec3>>
+          sums;  // by index, stored under the lock: observe() reads them
       for_each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
         if (!hits_[i]) return;
+        glm::dvec3 sum = rank_sums_[2 * i + half];
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
-        for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half); ++s)
-          rank_sums_[2 * i + half] += sampler.indirect(*hits_[i], s, stream);
+        for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted();
+             ++s)
+          sum += sampler.indirect(*hits_[i], s, stream);
+        sums.emplace_back(2 * i + half, sum);
       });
       const std::lock_guard lock(mutex_);
+      for (const auto& [index, sum] : sums) {
+        rank_sums_[index] = sum;
+        counts_[index] = half_of(samples, half);
+      }
       done += count;
+      observe();
       if (progress_ && ranks_.is_root())
         progress_(progress_start_ +
                   (progress_end_ - progress_start_) * std::min(1.0, static_cast<double>(done) / items.end));
@@ -99,6 +114,20 @@ class ImageTracer {
     ranks_.sum({&rays, 1});
     image_.rays = static_cast<std::uint64_t>(rays);
     return std::move(image_);
+  }
+
+  /// Shows the paths so far to the observer, if the last time is a second ago.
+  void observe() {
+    const Clock::time_point now = Clock::now();
+    if (!options_.observer || !ranks_.is_root() || now - observed_ < kObserveEvery) return;
+    TracedImage partial = image_;
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      const std::uint32_t count = counts_[2 * i] + counts_[2 * i + 1];
+      if (count > 0)
+        partial.irradiance[i] = glm::vec3((rank_sums_[2 * i] + rank_sums_[2 * i + 1]) / double(count));
+    }
+    options_.observer(partial);
+    observed_ = Clock::now();
   }
 
   double current_noise() const { return image_.noise; }
@@ -180,20 +209,22 @@ class ImageTracer {
   RayScene rays_;
   Emitters emitters_;
   SkySampler sky_;
-  const std::vector<Light>& lights_;
+  const std::vector<SceneLight>& lights_;
   const PathTracerOptions& options_;
   const TraceProgress& progress_;
   Ranks& ranks_;
   std::vector<std::optional<Hit>> hits_;  // primary hits, one per pixel
   // Irradiance [W/m^2] summed over paths, of this rank and of all ranks: two independent halves per pixel.
   std::vector<glm::dvec3> rank_sums_, sums_;
+  std::vector<std::uint32_t> counts_;  // paths in rank_sums_
+  Clock::time_point observed_ = Clock::now();
   TracedImage image_;
   std::mutex mutex_;
   int threads_ = 1;
   double progress_start_ = 0, progress_end_ = 0;
 };
 
-void check(const Scene& scene, const std::vector<Light>& lights, const PathTracerOptions& options) {
+void check(const Scene& scene, const std::vector<SceneLight>& lights, const PathTracerOptions& options) {
   if (options.bounces < 0)
     throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
   if (options.samples > kMaxSamples)
@@ -217,7 +248,7 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 
 }  // namespace
 
-TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+TracedImage trace_paths(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, options);
   ImageTracer tracer(scene, lights, view, options, progress, ranks);
@@ -259,6 +290,8 @@ glm::vec3 shown(const TracedImage& t, std::size_t i, Show show) {
       return t.normal[i];
     case Show::depth:
       return glm::vec3(t.depth[i]);
+    case Show::cells:  // require_traceable()
+      break;
   }
   return glm::vec3(0);
 }

@@ -21,6 +21,8 @@
 
 namespace clpv::reference {
 
+struct TracedImage;
+
 struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
   static constexpr std::uint32_t kMaxSamples = 1u << 24;
@@ -31,6 +33,9 @@ struct PathTracerOptions {
   double noise = 0.02;        ///< with samples 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
   int threads = 0;  ///< per rank; 0: one per available processor
+  /// Receives the image of the paths so far about once a second, on rank 0 by one thread at a time. With several ranks it lacks
+  /// the paths of the others.
+  std::function<void(const TracedImage&)> observer = {};
 };
 
 /// A traced image: one value per pixel, row 0 first, 0 where there is no surface.
@@ -56,7 +61,7 @@ using TraceProgress = std::function<void(double)>;
 /// Traces `scene` lit by `lights`, which replace Scene::lights. All `ranks` call it; they share tiles and halves of
 /// paths, and each returns the whole image. Its bytes do not depend on the number of threads and ranks.
 /// Throws Error(bad_input) for a scene without surface or without light, Error(usage) for options out of range.
-TracedImage trace_paths(const Scene& scene, const std::vector<Light>& lights, const ClpvView& view,
+TracedImage trace_paths(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
                         Ranks& ranks = single_rank());
 

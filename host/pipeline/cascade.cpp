@@ -56,6 +56,11 @@ bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double s
   });
 }
 
+bool reaches(const ClpvGrid& grid, const glm::dvec3& position) {
+  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
+  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
+}
+
 std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
   if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
     throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,

@@ -28,6 +28,9 @@ std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& fi
 /// edge with which the coarsest cascade encloses the box.
 double fitting_cascade_size(const Scene& scene, int count, double size);
 
+/// Returns true if light at `position` [m] may come from the cascade, the coarsest one of a frame.
+bool reaches(const ClpvGrid& grid, const glm::dvec3& position);
+
 /// Returns true if triangles may lie in the coarsest cascade around `eye`. If false, there is no indirect light.
 bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double size, int cells);
 

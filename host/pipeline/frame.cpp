@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/frame.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 #include "basis/sweep.hpp"
+#include "pipeline/cells.hpp"
 #include "pipeline/frame_volumes.hpp"
 #include "pipeline/view.hpp"
 #include "support/error.hpp"
@@ -15,6 +19,8 @@ void require_sweep(const RenderOptions& options, const Scene& scene) {
   throw Error(ExitCode::usage, "transport: found '{}' with a sky, allowed: sweep (or a scene without a sky)",
               name_of(options.transport));
 }
+
+constexpr std::size_t kPointsPerRow = 1024;  // of the image that irradiance_at() makes of points
 
 /// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most visible with a sky.
 constexpr double kClosedUnderASky = 0.75;
@@ -80,7 +86,7 @@ void Frame::invalidate() {
   buffers_.clusters->invalidate();
 }
 
-void Frame::rasterize_camera(const Camera& camera) {
+void Frame::rasterize_camera(const SceneCamera& camera) {
   const StageScope scope(session_, {Pass::rasterize_camera});
   const ClpvView view = camera_view(camera, options_.width, options_.height);
   if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, buffers_.emissive);
@@ -97,7 +103,7 @@ void Frame::gather(const Surface& surface, Buffer& irradiance) {
                    gathered.occluded, changed);
 }
 
-void Frame::render(const Camera& camera, const CascadeObserver& observer) {
+void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
   session_.timeline().clear();  // otherwise the events of all frames would accumulate
   const std::vector<ClpvGrid> grids =
       cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
@@ -122,14 +128,59 @@ void Frame::render(const Camera& camera, const CascadeObserver& observer) {
 }
 
 std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
-  const std::size_t numbers = surfaces.depth.size() * 4;
-  const Surface there = upload_surface(session_, {surfaces.view, surfaces.depth, surfaces.normal, {}, {}});
+  const std::size_t numbers = surfaces.normal.size() * 4;
+  const Surface there =
+      upload_surface(session_, {surfaces.view, surfaces.depth, surfaces.normal, {}, {}, surfaces.position});
   Buffer irradiance = session_.buffer(numbers * sizeof(float), "irradiance on given surfaces");
   gather(there, irradiance);
   return session_.read<float>(irradiance, numbers);
 }
 
+std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions,
+                                            std::vector<glm::vec4> normals) {
+  if (light().grids.empty())
+    throw Error(ExitCode::usage, "irradiance: no frame was rendered; allowed: after a render");
+  const std::size_t count = positions.size();
+  if (count == 0) return {};
+  SurfaceImage points;
+  points.view.width = static_cast<unsigned>(std::min(count, kPointsPerRow));
+  points.view.height = static_cast<unsigned>((count + kPointsPerRow - 1) / kPointsPerRow);
+  const std::size_t pixels = std::size_t{points.view.width} * points.view.height;
+  positions.resize(pixels, positions.back());
+  normals.resize(pixels, normals.back());
+  points.position = std::move(positions);
+  points.normal = std::move(normals);
+  const std::vector<float> found = irradiance_on(points);
+  std::vector<glm::vec4> irradiance(count);
+  std::memcpy(irradiance.data(), found.data(), count * sizeof(glm::vec4));
+  return irradiance;
+}
+
+/// Draws the spheres of visible_spheres() with the irradiance that gathering has at their cells' centres.
+void Frame::draw_cells(std::vector<float>& image) {
+  const std::size_t pixels = std::size_t(options_.width) * options_.height;
+  const CellSpheres spheres = visible_spheres(
+      camera_surface_->view, session_.read<float>(camera_surface_->depth, pixels), light().grids.front());
+  const double lift = gather_options(options_).gather_offset * double{light().grids.front().cell};
+  std::vector<glm::vec4> positions, normals;
+  for (std::size_t i = 0; i < spheres.pixels.size(); ++i) {
+    positions.emplace_back(glm::vec3(spheres.centres[i] - lift * spheres.normals[i]), 0);
+    normals.emplace_back(glm::vec3(spheres.normals[i]), 0);
+  }
+  const std::vector<glm::vec4> light = irradiance_at(std::move(positions), std::move(normals));
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    float* pixel = &image[4 * spheres.pixels[i]];
+    for (int channel = 0; channel < 3; ++channel) pixel[channel] = light[i][channel];
+    pixel[3] = 1;
+  }
+}
+
 std::vector<float> Frame::read(Show view) {
+  if (view == Show::cells) {
+    std::vector<float> image = read(Show::irradiance);
+    draw_cells(image);
+    return image;
+  }
   if (view != shown_) shader_.show(view, *camera_surface_, irradiance_, image_);
   shown_ = view;
   std::vector<float> image = session_.read<float>(image_, std::size_t(options_.width) * options_.height * 4);

@@ -38,7 +38,7 @@ class Frame {
   /// Enqueues the stages whose results are not cached. Clears the session's timeline and records the stages on it.
   /// Shaded views are complete once the queue has finished. The result is bit-identical whatever was rendered before.
   /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
-  void render(const Camera& camera, const CascadeObserver& observer = {});
+  void render(const SceneCamera& camera, const CascadeObserver& observer = {});
 
   /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps. After
   /// invalidate() it recomputes everything, including blockers and visibility.
@@ -51,8 +51,10 @@ class Frame {
   /// G-buffer of the last render's camera. Undefined before the first render.
   const Surface& seen() const { return *camera_surface_; }
 
-  /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of Gatherer.
+  /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of Gatherer, without the near field.
   std::vector<float> irradiance_on(const SurfaceImage& surfaces);
+  /// The same at points: position [m] and unit normal of each; one value per point. Throws Error(usage) before the first render.
+  std::vector<glm::vec4> irradiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> normals);
 
   /// One view of the last render as RGBA float, top row first.
   std::vector<float> read(Show view);
@@ -63,8 +65,9 @@ class Frame {
   const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
 
  private:
-  void rasterize_camera(const Camera& camera);
+  void rasterize_camera(const SceneCamera& camera);
   void gather(const Surface& surface, Buffer& irradiance);
+  void draw_cells(std::vector<float>& image);
 
   Session& session_;
   const Scene& scene_;

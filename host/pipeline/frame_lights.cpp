@@ -34,7 +34,7 @@ FrameLights::FrameLights(Session& session, const Scene& scene, const SceneBuffer
   if (emits(scene)) emission_.emplace(session, scene, buffers);
 }
 
-void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& grids) {
+void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids) {
   find_lights(camera);
   find_scale(grids.back());
   for (Lit& lit : lights_) {
@@ -52,13 +52,13 @@ void FrameLights::prepare(const Camera& camera, const std::vector<ClpvGrid>& gri
 }
 
 /// Keeps the buffers while the set of lights is unchanged.
-void FrameLights::find_lights(const Camera& camera) {
-  const std::vector<Light> shining = scene_.lights_for(camera);
+void FrameLights::find_lights(const SceneCamera& camera) {
+  const std::vector<SceneLight> shining = scene_.lights_for(camera);
   if (lights_.size() != shining.size() || lit_by_ != camera.light) lights_.clear();
   lit_by_ = camera.light;
   lights_.resize(shining.size());
   for (std::size_t i = 0; i < shining.size(); ++i) {
-    const auto found = std::ranges::find(scene_.lights, shining[i].name, &Light::name);
+    const auto found = std::ranges::find(scene_.lights, shining[i].name, &SceneLight::name);
     lights_[i].light = shining[i].data;
     lights_[i].index = found - scene_.lights.begin();
   }

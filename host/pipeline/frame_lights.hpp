@@ -30,7 +30,7 @@ class FrameLights {
               const RenderOptions& options);
 
   /// Prepares the lights of `camera` at the scene's current time, for cascades at `grids`.
-  void prepare(const Camera& camera, const std::vector<ClpvGrid>& grids);
+  void prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids);
 
   /// Update the shadow maps, the RSMs of a cascade, or its RSMs and the points on emissive surfaces.
   void rasterize_shadows();
@@ -73,7 +73,7 @@ class FrameLights {
   };
   /// Views that do not follow a cascade are shared by all cascades.
   static std::size_t slot(const Lit& lit, int cascade);
-  void find_lights(const Camera& camera);
+  void find_lights(const SceneCamera& camera);
   void find_scale(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
   void rasterize(const Lit& lit, const std::vector<ClpvView>& views, std::vector<Surface>& surfaces);

@@ -56,15 +56,16 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
   ProgramSource pack{"pack.cl", stencil_.literals(), pack_source(basis)};
   pack.literals.integer("CLPV_PAIRS", pairs_);
   pack_.emplace(session, pack, "pack");
-  gather_.try_emplace(0, session, source_, "gather");
+  gather_kernel(0, false);
 }
 
-Kernel& Gatherer::gather_kernel(std::size_t cascades) {
-  if (packs()) return gather_.at(0);
-  if (const auto found = gather_.find(cascades); found != gather_.end()) return found->second;
+Kernel& Gatherer::gather_kernel(std::size_t cascades, bool points) {
+  const std::pair key(packs() ? 0 : cascades, points);
+  if (const auto found = gather_.find(key); found != gather_.end()) return found->second;
   ProgramSource source = source_;
-  source.generated += cascade_macro(cascades);
-  return gather_.try_emplace(cascades, session_, source, "gather").first->second;
+  if (points) source.literals.flag("CLPV_POINTS", true);
+  if (!packs()) source.generated += cascade_macro(cascades);
+  return gather_.try_emplace(key, session_, source, "gather").first->second;
 }
 
 void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
@@ -99,9 +100,10 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   reserve(grids.size());
   cascades_ = grids.size();
   session_.write(grids_, grids);
-  Kernel& kernel = gather_kernel(grids.size());
-  kernel.set(camera.view, camera.depth, camera.normal, grids_, static_cast<cl_uint>(grids.size()), 1 / scale,
-             irradiance);
+  const bool points = camera.position.exists();
+  Kernel& kernel = gather_kernel(grids.size(), points);
+  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_,
+             static_cast<cl_uint>(grids.size()), 1 / scale, irradiance);
   if (packs()) {
     for (std::size_t c = 0; c < grids.size(); ++c) {
       if (changed.empty() || changed[c]) pack(*accumulated[c], c);

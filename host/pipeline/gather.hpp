@@ -31,7 +31,8 @@ class Gatherer {
  public:
   Gatherer(Session& session, const Basis& basis, TransportKind transport, const GatherOptions& options);
 
-  /// Finest cascade first; `accumulated` has one volume per grid. `camera` has format float32.
+  /// Finest cascade first; `accumulated` has one volume per grid. `camera` has format float32;
+  /// points without a view are allowed.
   /// `irradiance`: float4 per pixel, E of red, green, blue [W/m^2] and 0; all 0 without a surface.
   /// `scale`: factor by which the volumes scale the light (light_scale.hpp).
   /// `occluded`: CellVisibility::occluded() of these grids, if GatherOptions::gather is `visible`.
@@ -50,7 +51,7 @@ class Gatherer {
   bool sees() const { return options_.gather == Gathering::visible; }
   /// Images are sampled directly, unless gathering selects single cells or another stage needs packed volumes.
   bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
-  Kernel& gather_kernel(std::size_t cascades);
+  Kernel& gather_kernel(std::size_t cascades, bool points);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;
   void reserve(std::size_t cascades);
@@ -63,7 +64,8 @@ class Gatherer {
   ProgramSource source_;
   Stencil stencil_;  ///< stencil of the packing kernel
   std::optional<Kernel> pack_;
-  std::map<std::size_t, Kernel> gather_;  ///< by number of cascades; only unpacked volumes depend on it
+  /// By number of cascades, 0 for packed volumes, and whether surfaces are points without a view.
+  std::map<std::pair<std::size_t, bool>, Kernel> gather_;
   Buffer packed_, grids_;
   cl_uint cascades_ = 0;
 };

@@ -108,7 +108,7 @@ ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, i
 
 }  // namespace
 
-ClpvView camera_view(const Camera& camera, int width, int height) {
+ClpvView camera_view(const SceneCamera& camera, int width, int height) {
   ClpvView view = make_view(axes(glm::normalize(glm::dvec3(camera.forward)), glm::dvec3(camera.up)),
                             glm::dvec3(camera.eye), width, height);
   const double tangent = std::tan(0.5 * camera.vertical_fov);

@@ -19,7 +19,7 @@ static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW && sizeof(ClpvGrid) == CLPV_S
 inline constexpr double kWidestSpotView = 1.0472;  // 60 degrees
 
 /// Returns the camera's view of `width` x `height` square pixels. It has no far plane.
-ClpvView camera_view(const Camera& camera, int width, int height);
+ClpvView camera_view(const SceneCamera& camera, int width, int height);
 
 /// Returns false only if `bounds` lies outside one of the view's borders, by a margin for rounding.
 bool may_be_visible(const ClpvView& view, const Bounds& bounds);

@@ -24,11 +24,11 @@ namespace {
 // Increment when the tracer's results change; this invalidates cached references.
 constexpr int kTracerRevision = 1;
 
-std::string key(const Scene& scene, const Camera& camera, const ClpvView& view,
+std::string key(const Scene& scene, const SceneCamera& camera, const ClpvView& view,
                 const PathTracerOptions& options) {
   Fingerprint print;
   print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
-  for (const Light& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
   print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
   print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
   return print.hex();
@@ -44,12 +44,12 @@ std::string in_file_name(std::string name) {
 
 Image all_views(const TracedImage& traced) {
   Image image;
-  for (const Show show : values_of<Show>())
+  for (const Show show : kSurfaceViews)
     append_layer(image, traced_view(traced, show), std::string(name_of(show)));
   return image;
 }
 
-void describe(Image& image, const Scene& scene, const Camera& camera, const TracedImage& traced,
+void describe(Image& image, const Scene& scene, const SceneCamera& camera, const TracedImage& traced,
               const PathTracerOptions& options) {
   image.metadata["command"] = "pathtrace";
   image.metadata["version"] = version();
@@ -66,7 +66,8 @@ GroundTruth read_reference(const std::filesystem::path& file) {
   GroundTruth truth;
   truth.image = read_image(file);
   truth.file = file;
-  for (const std::string& name : names_of<Show>()) extract_layer(truth.image, name, file.string());  // throws
+  for (const Show show : kSurfaceViews)
+    extract_layer(truth.image, std::string(name_of(show)), file.string());  // throws
   truth.samples = static_cast<std::uint32_t>(std::stoul(truth.image.metadata.at("spp_traced")));
   truth.noise = std::stod(truth.image.metadata.at("noise_reached"));
   return truth;
@@ -112,9 +113,10 @@ bool can_be_cached(const std::filesystem::path& file) {
 
 }  // namespace
 
-GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
-                                int width, int height, const PathTracerOptions& options,
-                                const TraceProgress& progress, Ranks& ranks) {
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
+                                const SceneCamera& camera, int width, int height,
+                                const PathTracerOptions& options, const TraceProgress& progress,
+                                Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const std::filesystem::path file =
       folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),

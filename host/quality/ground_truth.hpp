@@ -25,9 +25,10 @@ struct GroundTruth {
 /// An unreadable file is traced again, with a warning.
 /// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
 /// Throws like trace_paths, and Error(run_time) where the folder cannot be written (before tracing).
-GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
-                                int width, int height, const PathTracerOptions& options,
-                                const TraceProgress& progress = {}, Ranks& ranks = single_rank());
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
+                                const SceneCamera& camera, int width, int height,
+                                const PathTracerOptions& options, const TraceProgress& progress = {},
+                                Ranks& ranks = single_rank());
 
 /// Hash of all scene content that affects light: geometry, materials, textures.
 std::string scene_fingerprint(const Scene& scene);

@@ -65,14 +65,14 @@ class Patches {
 
 }  // namespace
 
-std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const Camera& camera,
+std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const SceneCamera& camera,
                                               const RenderOptions& options) {
   const SceneBuffers buffers = upload_scene(session, scene);
   Rasterizer rasterizer(session, buffers);
   Patches patches;
   const std::vector<ClpvGrid> grids =
       cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid);
-  for (const Light& light : scene.lights_for(camera)) {
+  for (const SceneLight& light : scene.lights_for(camera)) {
     // All cascades share the maps of a light that is not a sun.
     const std::size_t cascades = light.data.kind == CLPV_LIGHT_DIRECTIONAL ? grids.size() : 1;
     for (std::size_t cascade = 0; cascade < cascades; ++cascade) {

@@ -14,7 +14,7 @@ namespace clpv {
 
 /// Groups the normals of all texels that injection reads for this camera, in all cascades, by patches of the sphere.
 /// Returns each patch's mean normal, weighted by its share of the flux. Empty if no surface is lit.
-std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const Camera& camera,
+std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const SceneCamera& camera,
                                               const RenderOptions& options);
 
 /// Writes the format that load_aims reads.

@@ -94,8 +94,8 @@ std::string describe(const Variant& variant) {
   return text;
 }
 
-QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::GroundTruth& truth,
-                    Show show, int frames) {
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
+                    const reference::GroundTruth& truth, Show show, int frames) {
   QualityCell cell;
   cell.compute_units = session.device().compute_units;
   std::map<std::string, std::vector<double>> samples;
@@ -185,8 +185,7 @@ void add(QualitySummary& sum, const QualityCell& cell) {
 void divide(QualitySummary& sum) {
   const int rendered = sum.views - sum.rejected;
   if (rendered == 0) return;
-  for (double* value :
-       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.flip, &sum.frame_ms}) {
+  for (double* value : {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.flip, &sum.frame_ms}) {
     *value /= rendered;
   }
   for (auto& [stage, ms] : sum.stage_ms) ms /= rendered;

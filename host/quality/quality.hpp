@@ -53,8 +53,8 @@ struct QualityCell {
 
 /// Renders a warm-up frame and `frames` timed ones, and compares the view `show` of the last with the ground truth.
 /// Sets all fields except names and variant. Throws the errors of Frame and compare.
-QualityCell measure(Session& session, Frame& frame, const Camera& camera, const reference::GroundTruth& truth,
-                    Show show, int frames);
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
+                    const reference::GroundTruth& truth, Show show, int frames);
 
 /// Cache key over all inputs of a cell: ground truth, device (but not the number of its sub-devices), options, view,
 /// number of timed frames, kernels and program.

@@ -72,8 +72,7 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 }  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain, nrmse_best_gain,
-                                   energy_ratio, flip, frame_ms, stage_ms, compute_units, setup_s,
-                                   measured_s)
+                                   energy_ratio, flip, frame_ms, stage_ms, compute_units, setup_s, measured_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse, nrmse_best_gain,
                                    energy_ratio, flip, frame_ms, stage_ms)
 

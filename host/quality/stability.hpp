@@ -52,7 +52,7 @@ class Stability {
       : session_(session), frame_(frame), traced_(traced) {}
 
   /// Adds the last rendered frame, with the current state of `scene`.
-  void add(int number, double seconds, const Scene& scene, const Camera& camera);
+  void add(int number, double seconds, const Scene& scene, const SceneCamera& camera);
   const std::vector<StabilityStep>& steps() const { return steps_; }
 
  private:
@@ -62,7 +62,7 @@ class Stability {
     std::vector<ClpvGrid> grids;
     std::uint64_t content;  ///< hash of lights and triangles
   };
-  std::optional<double> noise(const Scene& scene, const Camera& camera,
+  std::optional<double> noise(const Scene& scene, const SceneCamera& camera,
                               const std::vector<bool>& counted) const;
 
   Session& session_;

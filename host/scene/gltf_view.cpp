@@ -26,7 +26,7 @@ class ViewReader {
     if (scene_.cameras.size() == bounds::kCameras) {
       reject(document_.file, place_of(node), "one more camera", fmt::format("at most {}", bounds::kCameras));
     }
-    Camera made;
+    SceneCamera made;
     made.name = unique(given.name.empty() ? source.name : given.name, "camera", camera_names_);
     place_camera(made, to_world, document_.file, node);
     made.vertical_fov = static_cast<float>(given.perspective.yfov);
@@ -40,7 +40,7 @@ class ViewReader {
     if (scene_.lights.size() == bounds::kLights) {
       reject(document_.file, place_of(node), "one more light", fmt::format("at most {}", bounds::kLights));
     }
-    Light made;
+    SceneLight made;
     made.name = unique(given.name.empty() ? source.name : given.name, "light", light_names_);
     ClpvLight& data = made.data;
     const LightKind kind = named<LightKind>("type", given.type);

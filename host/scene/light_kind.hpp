@@ -7,17 +7,16 @@
 #include <cmath>
 #include <string_view>
 
+#include "clpv/scene.hpp"
 #include "kernels/shared/light.h"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 
 namespace clpv {
 
-enum class LightKind : unsigned {
-  directional = CLPV_LIGHT_DIRECTIONAL,
-  spot = CLPV_LIGHT_SPOT,
-  point = CLPV_LIGHT_POINT,
-};
+static_assert(static_cast<unsigned>(LightKind::directional) == CLPV_LIGHT_DIRECTIONAL &&
+              static_cast<unsigned>(LightKind::spot) == CLPV_LIGHT_SPOT &&
+              static_cast<unsigned>(LightKind::point) == CLPV_LIGHT_POINT);
 
 template <>
 inline constexpr auto kNames<LightKind> = name_list("directional", "spot", "point");

@@ -64,7 +64,7 @@ void find_bounds(Scene& scene) {
 
 void check_camera_lights(const Scene& scene) {
   std::vector<std::string> names;
-  for (const Light& light : scene.lights) names.push_back("'" + light.name + "'");
+  for (const SceneLight& light : scene.lights) names.push_back("'" + light.name + "'");
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     if (!scene.cameras[i].light.empty() && scene.lights_for(scene.cameras[i]).empty()) {
       reject(scene.path, fmt::format("/cameras/{}/light", i), "'" + scene.cameras[i].light + "'",
@@ -83,17 +83,16 @@ std::vector<MeshRange> ranges_of(const std::vector<Instance>& meshes) {
   return ranges;
 }
 
-// Default light of a model without lights: a steep sun from behind and to the right of the default camera. With 10 lux, a
+// Default light of a model without lights: a steep sun from behind and to the right of the default camera. With 10 lx, a
 // white floor has radiance 3.2, so that diffuse walls fill the tone curve's range at exposure 0.
 constexpr glm::vec3 kSunDirection{-0.35f, -0.85f, -0.4f};
-constexpr float kSunIlluminance = 10;
 
 // Default camera of a model without cameras: from above and the side, with the bounding sphere just within its view.
 constexpr glm::vec3 kFramingDirection{-0.5f, -0.35f, -1.0f};  // viewing direction
 constexpr float kFramingFov = static_cast<float>(std::numbers::pi) / 4;
 
-Camera framing_camera(const Scene& scene) {
-  Camera camera;
+SceneCamera framing_camera(const Scene& scene) {
+  SceneCamera camera;
   camera.name = "framing";
   camera.forward = glm::normalize(kFramingDirection);
   const glm::vec3 up(0, 1, 0);
@@ -106,14 +105,14 @@ Camera framing_camera(const Scene& scene) {
   return camera;
 }
 
-Light added_sun() {
-  Light sun;
+SceneLight added_sun() {
+  SceneLight sun;
   sun.name = "sun";
   sun.data.kind = CLPV_LIGHT_DIRECTIONAL;
   const glm::vec3 direction = glm::normalize(kSunDirection);
   for (int i = 0; i < 3; ++i) {
     sun.data.direction[i] = direction[i];
-    sun.data.intensity[i] = kSunIlluminance;
+    sun.data.intensity[i] = static_cast<float>(kSunIlluminance);
   }
   return sun;
 }
@@ -160,6 +159,30 @@ void MovingScene::set_views(SceneViews views) {
   if (views.lights) scene_.lights = std::move(*views.lights);
 }
 
+void MovingScene::forget_missing_lights() {
+  for (SceneCamera& camera : scene_.cameras) {
+    if (scene_.lights_for(camera).empty()) camera.light.clear();
+  }
+}
+
+void MovingScene::set_cameras(std::vector<SceneCamera> cameras) {
+  motion_.cameras.clear();
+  description_.cameras.reset();
+  scene_.cameras = std::move(cameras);
+  forget_missing_lights();
+  if (scene_.start_reach) {
+    scene_.start_reach.reset();
+    scene_.start_reach = scene_.reach();
+  }
+}
+
+void MovingScene::set_lights(std::vector<SceneLight> lights) {
+  motion_.lights.clear();
+  description_.lights.reset();
+  scene_.lights = std::move(lights);
+  forget_missing_lights();
+}
+
 MovingScene::MovingScene(const std::filesystem::path& path, const std::filesystem::path& replacement) {
   Notes notes;
   const std::string extension = extension_of(path);
@@ -186,7 +209,9 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
 void MovingScene::pose(double seconds) {
   motion_.pose(scene_, seconds);
   if (!motion_.meshes.empty()) find_bounds(scene_);
-  if (description_.moves()) set_views(views_at(description_, seconds));
+  if (!description_.moves()) return;
+  set_views(views_at(description_, seconds));
+  forget_missing_lights();
 }
 
 Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model) {

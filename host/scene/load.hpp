@@ -31,16 +31,24 @@ class MovingScene {
   /// Poses the scene at a time. Throws Error(bad_input) if values leave their bounds.
   void pose(double seconds);
 
+  /// Replace all cameras (at least one) or lights; they are then not animated. A camera whose only light is gone gets all.
+  /// Call before pose().
+  void set_cameras(std::vector<SceneCamera> cameras);
+  void set_lights(std::vector<SceneLight> lights);
+
   Scene take() && { return std::move(scene_); }
 
  private:
   void load_scene_file(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
   void set_views(SceneViews views);
+  void forget_missing_lights();
 
   Motion motion_;
   SceneDescription description_;  ///< empty without a scene file
   Scene scene_;
 };
+
+inline constexpr double kSunIlluminance = 10;  ///< of the sun that a model without lights gets [lx]
 
 /// Returns true if the scene is a model without a scene file, and thus without settings of cascades.
 bool is_bare_model(const Scene& scene);

@@ -186,7 +186,7 @@ void place(const Instance& instance, PosedTree& posed, Scene& scene) {
   place_triangles(instance, glm::determinant(glm::dmat3(placement.to_world)) < 0, scene);
 }
 
-void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string& file, int node) {
+void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file, int node) {
   const NodeTransform transform{to_world, file, fmt::format("/nodes/{}", node)};
   camera.eye = position(transform);
   camera.forward = axis(transform, {0, 0, -1}, "/camera");

@@ -63,7 +63,7 @@ void place(const Instance& instance, PosedTree& posed, Scene& scene);
 
 /// Sets eye, forward (the node's -z) and up. Messages contain `file` and the node's index. Throws Error(bad_input) for
 /// coordinates beyond the bounds and for transforms that map the direction to 0.
-void place_camera(Camera& camera, const glm::dmat4& to_world, const std::string& file, int node);
+void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file, int node);
 
 /// Sets position and direction (the node's -z; not for point lights). Throws as place_camera().
 void place_light(ClpvLight& light, const glm::dmat4& to_world, const std::string& file, int node);

@@ -14,26 +14,26 @@ namespace clpv {
 double Scene::reach() const {
   if (start_reach) return *start_reach;
   double reach = 0;
-  for (const Camera& camera : cameras) {
+  for (const SceneCamera& camera : cameras) {
     const glm::vec3 distance = glm::max(glm::abs(lower - camera.eye), glm::abs(upper - camera.eye));
     reach = std::max<double>({reach, distance.x, distance.y, distance.z});
   }
   return reach;
 }
 
-const Camera& Scene::camera(const std::string& name) const {
+const SceneCamera& Scene::camera(const std::string& name) const {
   std::vector<std::string> names;
-  for (const Camera& candidate : cameras) {
+  for (const SceneCamera& candidate : cameras) {
     if (name.empty() || candidate.name == name) return candidate;
     names.push_back(candidate.name);
   }
   throw Error(ExitCode::usage, "{}: no camera named '{}'; allowed: {}", path, name, fmt::join(names, ", "));
 }
 
-std::vector<Light> Scene::lights_for(const Camera& camera) const {
+std::vector<SceneLight> Scene::lights_for(const SceneCamera& camera) const {
   if (camera.light.empty()) return lights;
-  std::vector<Light> named;
-  for (const Light& light : lights) {
+  std::vector<SceneLight> named;
+  for (const SceneLight& light : lights) {
     if (light.name == camera.light) named.push_back(light);
   }
   return named;

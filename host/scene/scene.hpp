@@ -38,7 +38,7 @@ inline glm::dvec3 vector(const float v[3]) {
   return {v[0], v[1], v[2]};
 }
 
-struct Camera {
+struct SceneCamera {
   std::string name;
   glm::vec3 eye{0};              ///< [m]
   glm::vec3 forward{0, 0, -1};   ///< unit
@@ -48,7 +48,7 @@ struct Camera {
   std::string light;             ///< name of the only light for this camera; empty: all lights
 };
 
-struct Light {
+struct SceneLight {
   std::string name;
   ClpvLight data{};
 };
@@ -70,9 +70,9 @@ struct Scene {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;  ///< at least one if there are triangles
   std::vector<Texture> textures;
-  std::vector<MeshRange> moving;  ///< animated vertices and triangles
-  std::vector<Camera> cameras;    ///< at least one after loading
-  std::vector<Light> lights;
+  std::vector<MeshRange> moving;     ///< animated vertices and triangles
+  std::vector<SceneCamera> cameras;  ///< at least one after loading
+  std::vector<SceneLight> lights;
   std::shared_ptr<const Sky> sky;     ///< null without a sky
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
   std::optional<double> start_reach;  ///< reach() at 0 s, for animated scenes
@@ -85,10 +85,10 @@ struct Scene {
   double reach() const;
 
   /// The camera with this name, or the first for an empty name. Throws Error(usage) that lists all names.
-  const Camera& camera(const std::string& name) const;
+  const SceneCamera& camera(const std::string& name) const;
 
   /// Lights for a camera: the one it names, or all.
-  std::vector<Light> lights_for(const Camera& camera) const;
+  std::vector<SceneLight> lights_for(const SceneCamera& camera) const;
 };
 
 /// Adds the animated vertices and triangles to a hash.

@@ -14,6 +14,7 @@
 #include "scene/input.hpp"
 #include "scene/light_kind.hpp"
 #include "scene/sky.hpp"
+#include "scene/view_values.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 
@@ -26,7 +27,6 @@ constexpr double kFar = bounds::kCoordinate;
 constexpr double kTiny = 1e-6;   // minimum of positive numbers
 constexpr double kBright = 1e9;  // maximum of lights [lux, candela]; the sun has 1e5 lux
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kOuterCone = 45, kInnerCone = 0;  // defaults as in KHR_lights_punctual [degrees]
 
 const KeyedList& keyed_cameras() {
   using namespace rule;
@@ -106,37 +106,31 @@ glm::dvec3 vector_in(const json& object, const char* key) {
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
-glm::dvec3 direction_in(const json& object, const char* key, const std::string& file,
-                        const std::string& place) {
-  const glm::dvec3 v = vector_in(object, key);
-  if (glm::length(v) < kTiny) reject(file, pointer_to(place, key), "a vector of no length", "a direction");
-  return glm::normalize(v);
+Vec3 numbers_in(const json& object, const char* key, const Vec3& fallback) {
+  return object.contains(key) ? object[key].get<Vec3>() : fallback;
 }
 
-Camera read_camera(const json& given, double scale, const std::string& file, const std::string& place) {
+/// Rejects a member of an entry of the file.
+RejectMember rejected_at(const std::string& file, const std::string& place) {
+  return [&file, place](const std::string& member, const std::string& found, const std::string& allowed) {
+    reject(file, member.empty() ? place : pointer_to(place, member), found, allowed);
+  };
+}
+
+SceneCamera read_camera(const json& given, double scale, const std::string& file, const std::string& place) {
   for (const char* key : {"eye", "target"}) {
     if (!given.contains(key)) reject(file, pointer_to(place, key), "nothing", "a point, here or in keys");
   }
-  Camera made;
-  made.name = given["name"];
-  made.light = given.value("light", std::string());
-  const glm::dvec3 eye = vector_in(given, "eye"), towards = vector_in(given, "target") - eye;
-  if (glm::length(towards) < kTiny)
-    reject(file, place + "/target", "the eye itself", "a point away from eye");
-  const glm::dvec3 forward = glm::normalize(towards);
-  const glm::dvec3 up = given.contains("up") ? direction_in(given, "up", file, place) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);
-  if (glm::length(perpendicular) < kTiny) {
-    reject(file, place + "/up",
-           given.contains("up") ? "a vector parallel to the viewing direction"
-                                : "nothing, for a vertical viewing direction",
-           "a vector that is not parallel to the viewing direction");
-  }
-  made.eye = glm::vec3(eye * scale);
-  made.forward = glm::vec3(forward);
-  made.up = glm::vec3(glm::normalize(perpendicular));
-  made.vertical_fov = static_cast<float>(given.value("vertical_fov_degrees", 60.0) * kRadians);
-  if (given.contains("near")) made.near_depth = static_cast<float>(given["near"].get<double>() * scale);
+  Camera camera;
+  camera.name = given["name"];
+  camera.light = given.value("light", std::string());
+  camera.eye = given["eye"].get<Vec3>();
+  camera.target = given["target"].get<Vec3>();
+  camera.up = numbers_in(given, "up", camera.up);
+  camera.vertical_fov_degrees = given.value("vertical_fov_degrees", camera.vertical_fov_degrees);
+  if (given.contains("near")) camera.near = given["near"];
+  SceneCamera made = scene_camera(camera, rejected_at(file, place), scale);
+  if (!given.contains("near")) made.near_depth = static_cast<float>(Camera{}.near);  // [m] in any unit
   return made;
 }
 
@@ -177,36 +171,21 @@ void check_light_keys(const json& given, LightKind light_kind, const std::string
   }
 }
 
-Light read_light(const json& given, double scale, const std::string& file, const std::string& place) {
-  const LightKind kind = named<LightKind>("kind", given["kind"].get_ref<const std::string&>());
-  check_light_keys(given, kind, file, place);
-  Light made;
-  made.name = given.value("name", std::string());
-  ClpvLight& data = made.data;
-  data.kind = static_cast<unsigned>(kind);
+SceneLight read_light(const json& given, double scale, const std::string& file, const std::string& place) {
+  Light light;
+  light.kind = named<LightKind>("kind", given["kind"].get_ref<const std::string&>());
+  check_light_keys(given, light.kind, file, place);
+  light.name = given.value("name", std::string());
   const double strength =
       given.value(given.contains("illuminance_lux") ? "illuminance_lux" : "intensity_candela", 0.0);
-  const glm::dvec3 colour = given.contains("colour") ? vector_in(given, "colour") : glm::dvec3(1);
-  const glm::dvec3 position =
-      given.contains("position") ? vector_in(given, "position") * scale : glm::dvec3(0);
-  const glm::dvec3 direction =
-      given.contains("direction") ? direction_in(given, "direction", file, place) : glm::dvec3(0);
-  for (int i = 0; i < 3; ++i) {
-    data.intensity[i] = static_cast<float>(strength * colour[i]);
-    data.position[i] = static_cast<float>(position[i]);
-    data.direction[i] = static_cast<float>(direction[i]);
-  }
-  data.range = static_cast<float>(given.value("range", 0.0) * scale);
-  if (kind == LightKind::spot) {
-    const double inner = given.value("inner_cone_degrees", kInnerCone);
-    const double outer = given.value("outer_cone_degrees", kOuterCone);
-    if (inner >= outer) {
-      reject(file, place, fmt::format("inner_cone_degrees {} and outer_cone_degrees {}", inner, outer),
-             "inner less than outer");
-    }
-    set_cone(data, inner * kRadians, outer * kRadians);
-  }
-  return made;
+  light.intensity = numbers_in(given, "colour", {1, 1, 1});
+  for (double& channel : light.intensity) channel *= strength;
+  light.position = numbers_in(given, "position", {});
+  light.direction = numbers_in(given, "direction", {});
+  light.range = given.value("range", 0.0);
+  light.inner_cone_degrees = given.value("inner_cone_degrees", light.inner_cone_degrees);
+  light.outer_cone_degrees = given.value("outer_cone_degrees", light.outer_cone_degrees);
+  return scene_light(light, rejected_at(file, place), scale);
 }
 
 /// Rejects duplicate names of cameras or lights. Empty names may repeat.

@@ -28,8 +28,8 @@ struct SceneDescription {
 
 /// Cameras and lights of a scene file at a time, in metres; empty if absent in the file.
 struct SceneViews {
-  std::optional<std::vector<Camera>> cameras;
-  std::optional<std::vector<Light>> lights;
+  std::optional<std::vector<SceneCamera>> cameras;
+  std::optional<std::vector<SceneLight>> lights;
 };
 
 /// Reads a scene file. Throws Error(bad_input), also for unknown keys.

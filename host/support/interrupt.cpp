@@ -51,6 +51,10 @@ bool interrupted() {
   return pending_signal != 0;
 }
 
+void set_interrupted(bool now) {
+  pending_signal = now ? SIGINT : 0;
+}
+
 void stop_if_interrupted(const std::string& kept) {
   if (interrupted()) throw Interrupted(kept);
 }

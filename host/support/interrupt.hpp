@@ -31,6 +31,9 @@ class Uninterruptible {
 /// Returns true after a signal. For loops that must not throw, such as those of other threads.
 bool interrupted();
 
+/// Acts as if a signal had come, or forgets one. For hosts that catch signals themselves, such as Python.
+void set_interrupted(bool now);
+
 /// Throws Interrupted(kept) after a signal.
 void stop_if_interrupted(const std::string& kept = "nothing was written");
 

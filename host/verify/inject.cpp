@@ -32,7 +32,7 @@ const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
 /// A view from above or from a corner that shows the grid and some space beside it.
 ClpvView view_of_grid(bool orthographic, float distance) {
   const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kGrid;
-  Camera camera;
+  SceneCamera camera;
   camera.forward = glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
   camera.up = {0, 0, 1};
   camera.eye = centre - distance * camera.forward;

@@ -168,7 +168,7 @@ void append(CheckResults& results, const SurfaceImage& device, const RasterizedI
 }
 
 void check_camera(Session& session, const Scene& scene, const std::string& name, CheckResults& results) {
-  Camera camera;
+  SceneCamera camera;
   camera.near_depth = 0.3f;
   const ClpvView view = camera_view(camera, kWidth, kHeight);
   Rasterizer rasterizer(session, upload_scene(session, scene));
@@ -202,7 +202,7 @@ ClpvLight sun() {
 
 /// Views along the z axis, 1/8 m per pixel: the lattice's vertices fall on pixel centres and borders.
 ClpvView lattice_view() {
-  ClpvView view = camera_view(Camera{}, 2 * kLightSize - 10, kLightSize - 5);
+  ClpvView view = camera_view(SceneCamera{}, 2 * kLightSize - 10, kLightSize - 5);
   view.orthographic = 1;
   view.half_width = static_cast<float>(view.width) / 16;
   view.half_height = static_cast<float>(view.height) / 16;

@@ -8,8 +8,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "clpv/device.hpp"
 #include "clpv/error.hpp"
@@ -20,11 +24,37 @@
 namespace clpv {
 
 /// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of indirect light [W/m^2], albedo, unit
-/// normal, or depth [m]. Lux and candela of a scene count 1:1 as W/m^2 and W/sr.
-enum class View { full, direct, indirect, irradiance, albedo, normal, depth };
+/// normal, or depth [m]. Lux and candela of a scene count 1:1 as W/m^2 and W/sr. cells: irradiance, with the cells of the finest
+/// cascade as small spheres that show the irradiance on surfaces of every direction there; pathtrace() has no such view.
+enum class View { full, direct, indirect, irradiance, albedo, normal, depth, cells };
 
-/// Renders frames of one scene with one set of options. Owns an OpenCL context, compiled programs and all memory of a frame.
-/// Results that do not change are cached from frame to frame. Not thread-safe: use one Renderer per thread.
+/// Cost of the last frame.
+struct Stats {
+  /// Device time by stage ("rasterize-camera", "propagate", ...), summed over cascades and lights [ms]. All stages are there; 0:
+  /// not run, since its result was cached or the options do not need it.
+  std::map<std::string, double> stages;
+  double frame_ms = 0;                ///< wall time of render(), the read-back of the image included
+  double build_ms = 0;                ///< time so far for compiling programs or loading them
+  std::size_t device_bytes = 0;       ///< device memory in use
+  std::size_t peak_device_bytes = 0;  ///< maximum so far
+};
+
+/// Light of one cascade after propagation, on the host. A cell is a cube; its light is radiant intensity
+///   I(w) = sum_i c_i b_i(w) [W/sr],   b_i: functions of `basis`, w: direction in which light travels
+/// After a sweep (option transport) the basis is `sh3` whatever light was injected in, and the radiance about the cell's centre is
+/// L(w) = I(w) / cell^2 [W/m^2/sr].
+struct LightVolume {
+  Vec3 origin{};           ///< minimum corner [m]
+  double cell = 0;         ///< edge of a cell [m]
+  int n = 0;               ///< cells along each axis
+  int coefficients = 0;    ///< N
+  std::string basis;       ///< name of the basis of the coefficients
+  std::vector<float> values;  ///< [channel][i][z][y][x]: red, green, blue; N coefficients; cells
+};
+
+/// Renders frames of one scene with one set of options. Owns an OpenCL context, compiled programs and all memory of a frame,
+/// and shares the scene. Results that do not change are cached from frame to frame. Thread-safe: calls from several threads run one
+/// after the other; for parallel frames use one Renderer per thread.
 class Renderer {
  public:
   /// `device`: an index, "PLATFORM:DEVICE", or a part of the name; empty: CLPV_DEVICE, else the first device that clpv can
@@ -35,17 +65,30 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Renders one frame at time `seconds` [s] through the camera of that name (empty: the scene's first). Returns a linear image of
-  /// --width x --height pixels with channels R, G, B, A, all options in its metadata. A frame does not depend on earlier frames.
-  /// Throws Error: usage (no such camera, seconds out of range), bad_input (animation leads out of bounds), run_time (memory).
-  Image render(View view = View::full, const std::string& camera = {}, double seconds = 0);
+  /// Renders one frame at time `seconds` [s] through a camera of the scene, by name, or any other. Cascades surround its eye; for
+  /// a model without a scene file their size is that for the scene's cameras unless option cascade-size is set. Returns a linear
+  /// image of --width x --height pixels with channels R, G, B, A, all options in its metadata. A frame does not depend on earlier
+  /// frames. Throws Error: usage (no such camera, a bad one, seconds out of range), bad_input (animation leads out of bounds),
+  /// run_time (memory).
+  Image render(View view = View::full, const CameraChoice& camera = {}, double seconds = 0);
+
+  /// Another view of the last frame, without rendering it again. Throws Error(usage) before the first frame.
+  Image show(View view);
 
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at `position` [m] with `normal` (of any
-  /// length), visible or not. Uses the volumes of the last frame; 0 outside of its cascades. The first call after a frame
-  /// reads the volumes back from the device. Throws Error(usage) before the first frame, and for a position that is not
-  /// finite or a normal of length 0.
-  std::array<double, 3> irradiance(const std::array<double, 3>& position,
-                                   const std::array<double, 3>& normal);
+  /// length), visible or not. Uses the volumes of the last frame, without option near; 0 outside of its cascades. Computed on
+  /// the device. Throws Error(usage) before the first frame, and for a position that is not finite or a normal of length 0.
+  std::array<double, 3> irradiance(const Vec3& position, const Vec3& normal);
+
+  /// The same for many points. Throws Error(usage) also for different numbers of positions and normals, with the first bad index.
+  std::vector<std::array<float, 3>> irradiance(std::span<const std::array<float, 3>> positions,
+                                               std::span<const std::array<float, 3>> normals);
+
+  /// Reads back the light of the last frame, finest cascade first. Throws Error(usage) before the first frame.
+  std::vector<LightVolume> volumes();
+
+  /// Returns the cost of the last frame; all 0 before the first.
+  Stats stats() const;
 
  private:
   struct State;

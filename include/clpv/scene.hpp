@@ -1,15 +1,49 @@
 // SPDX-License-Identifier: MIT
-// Handle of a loaded scene.
+// A loaded scene, its cameras and its lights.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace clpv {
 
-/// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data.
+/// x, y, z in world space, y up; or red, green, blue.
+using Vec3 = std::array<double, 3>;
+
+/// Perspective camera: Camera{.eye = {0, 1, 3}, .target = {0, 1, 0}}. Functions that take one throw Error(usage), which names
+/// member, value found and value allowed, for numbers that are not finite or out of range, an eye that is its target, and an
+/// `up` along the viewing direction.
+struct Camera {
+  Vec3 eye{}, target{0, 0, -1};      ///< [m], within +-1e7; only the direction of `target` matters
+  Vec3 up{0, 1, 0};                  ///< of any length; need not be perpendicular to the viewing direction
+  double vertical_fov_degrees = 60;  ///< 0.01 to 179.9
+  double near = 0.05;                ///< nearest visible depth [m], 1e-6 to 1e7
+  std::string name{};                ///< in the scene's list of cameras
+  std::string light{};               ///< name of the only light for this camera; empty: all lights
+};
+
+/// Name of one of the scene's cameras, empty for the first; or a camera that the scene need not have.
+using CameraChoice = std::variant<std::string, Camera>;
+
+enum class LightKind : unsigned { directional, spot, point };
+
+/// Light without extent. Photometric units count 1:1 as radiometric ones: 1 lx as 1 W/m^2, 1 cd as 1 W/sr. Errors as for Camera.
+struct Light {
+  LightKind kind = LightKind::directional;
+  Vec3 position{};          ///< [m]; unused if directional
+  Vec3 direction{0, -1, 0};  ///< in which light travels, of any length; unused if point
+  Vec3 intensity{1, 1, 1};  ///< directional: irradiance across the direction [W/m^2]; others: radiant intensity [W/sr]
+  double range = 0;         ///< [m], no light beyond it; 0: unlimited
+  double inner_cone_degrees = 0, outer_cone_degrees = 45;  ///< spot: full and no light at this angle; inner < outer <= 90
+  std::string name{};
+};
+
+/// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data and its changes. Thread-safe:
+/// a change waits for frames in progress, and shows in the next frame of all renderers of the scene.
 class SceneFile {
  public:
   /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted: sizes are checked before
@@ -17,15 +51,26 @@ class SceneFile {
   /// allowed.
   explicit SceneFile(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-  std::vector<std::string> cameras() const;  ///< names of the cameras, at least one
+  /// Cameras (at least one) and lights, at 0 s if they are animated.
+  std::vector<Camera> cameras() const;
+  std::vector<Light> lights() const;
+
+  /// Replace all cameras or all lights; they are then no longer animated. To change or add one, change the list of cameras()
+  /// or lights(). Frames recompute only what depends on a changed light. A camera whose only light is gone gets all lights.
+  /// Throw Error(usage): see Camera and Light; no camera, more than 1024 cameras or 64 lights, two of one name.
+  void set_cameras(const std::vector<Camera>& cameras);
+  void set_lights(const std::vector<Light>& lights);
+
   bool moves() const;                        ///< returns true if anything in it is animated
   std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader
+  std::array<Vec3, 2> bounds() const;        ///< lower and upper corner of the bounding box at 0 s [m]
+  double exposure() const;                   ///< [EV], for save_image()
 
   struct Contents;
   const Contents& contents() const { return *contents_; }
 
  private:
-  std::shared_ptr<const Contents> contents_;
+  std::shared_ptr<Contents> contents_;
 };
 
 }  // namespace clpv

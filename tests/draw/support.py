@@ -4,8 +4,8 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PACKAGE = ROOT / "tools/clpv_draw"
-sys.path.insert(0, str(PACKAGE.parent))
+PACKAGE = ROOT / "python/clpv/draw"
+sys.path.insert(0, str(ROOT / "python"))
 
 
 def row(suite, stage, **fields):

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 from support import bench_document, row
-from clpv_draw import bench, documents
+from clpv.draw import bench, documents
 from matplotlib import pyplot
 
 

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 from support import bench_document, row, variant
-from clpv_draw import documents, report
+from clpv.draw import documents, report
 import numpy
 
 NASTY = "<script>alert(1)</script> $x$ \"'&"

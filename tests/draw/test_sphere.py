@@ -4,7 +4,7 @@ import math
 import unittest
 
 from support import ROOT  # noqa: F401  (puts the package into the path)
-from clpv_draw import sphere
+from clpv.draw import sphere
 import numpy
 from matplotlib import pyplot
 

@@ -32,6 +32,7 @@ endif()
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
+run(${WORK}/build/walk ${SOURCE}/scenes/cornell.json ${WORK}/walk.png)
 run(${WORK}/prefix/bin/clpv devices)
 # The same program with pkg-config, if installed.
 find_program(PKG_CONFIG pkg-config)
@@ -62,10 +63,11 @@ foreach(header IN LISTS headers)
   endif()
 endforeach()
 # The drawing package is installed, and the program uses it.
-file(WRITE ${WORK}/prefix/share/clpv/clpv_draw/__main__.py "raise SystemExit('installed')")
+file(GLOB package ${WORK}/prefix/lib/python3*/*-packages/clpv)
+file(WRITE ${package}/draw/__main__.py "raise SystemExit('installed')")
 execute_process(COMMAND ${WORK}/prefix/bin/clpv basis sh2 --figures ${WORK}/figures ERROR_VARIABLE said)
-if(NOT EXISTS ${WORK}/prefix/share/clpv/clpv_draw/page.html OR NOT said MATCHES "installed")
-  message(FATAL_ERROR "the installed program does not use its own clpv_draw: ${said}")
+if(NOT EXISTS ${package}/draw/page.html OR NOT said MATCHES "installed")
+  message(FATAL_ERROR "the installed program does not use its own clpv.draw: ${said}")
 endif()
 # The library without the program.
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library -G ${GENERATOR} -DCLPV_BUILD_PROGRAM=OFF

@@ -39,11 +39,11 @@ inline unsigned add_grey(Scene& scene, float albedo) {
 }
 
 /// Irradiance across its direction [W/m^2], white.
-inline Light sun(const glm::vec3& direction, float irradiance) {
+inline SceneLight sun(const glm::vec3& direction, float irradiance) {
   return {"sun", directional_light(direction, glm::vec3(irradiance))};
 }
 /// Intensity [W/sr], white.
-inline Light lamp(const glm::vec3& position, float intensity) {
+inline SceneLight lamp(const glm::vec3& position, float intensity) {
   return {"lamp", point_light(position, glm::vec3(intensity))};
 }
 

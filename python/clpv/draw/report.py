@@ -16,8 +16,8 @@ import numpy
 from markupsafe import Markup
 from matplotlib import image, pyplot
 
-from clpv_draw import bench, documents, style
-from clpv_draw.documents import NUMBER
+from clpv.draw import bench, documents, style
+from clpv.draw.documents import NUMBER
 
 FULL_SCALE = 1.5  # of false colour, in root mean squares of the ground truth
 COLOURS = "inferno"  # readable in greyscale and by colour-blind readers

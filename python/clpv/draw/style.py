@@ -8,7 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot, ticker  # noqa: E402  (the backend comes first)
 
-from clpv_draw import documents  # noqa: E402
+from clpv.draw import documents  # noqa: E402
 
 INK, SOFT, LINE = "#1c1e21", "#5d646e", "#d8dce1"
 # Distinguishable by colour-blind readers (Okabe and Ito).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m clpv_draw bench|basis|report [IN OUT]
+"""python3 -m clpv.draw bench|basis|report [IN OUT]
 
     bench  IN OUT   draws charts of IN/bench.json into the folder OUT
     basis  IN OUT   draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the folder OUT
@@ -12,7 +12,7 @@ import importlib
 import pathlib
 import sys
 
-from clpv_draw.documents import BadDocument
+from clpv.draw.documents import BadDocument
 
 KINDS = "bench", "basis", "report"
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3
@@ -28,7 +28,7 @@ def main(arguments):
         return fail(USAGE, __doc__.strip())
     kind, *paths = arguments
     try:
-        module = importlib.import_module(f"clpv_draw.{kind}")
+        module = importlib.import_module(f"clpv.draw.{kind}")
     except ImportError as error:
         return fail(RUN_TIME, f"{error} (Debian: python3-matplotlib python3-numpy python3-jinja2)")
     try:

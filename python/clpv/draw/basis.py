@@ -7,7 +7,7 @@ kernels first, in the same order.
 """
 import numpy
 
-from clpv_draw import documents, sphere, style
+from clpv.draw import documents, sphere, style
 
 ROOM = 1.13  # extent of a plot over its largest value; axes extend beyond the surface
 TILE, DPI = (2.0, 2.0), 120

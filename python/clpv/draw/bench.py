@@ -9,8 +9,8 @@ import math
 from matplotlib import pyplot
 from matplotlib.lines import Line2D
 
-from clpv_draw import documents, style
-from clpv_draw.documents import NUMBER, TEXT_OR_NULL
+from clpv.draw import documents, style
+from clpv.draw.documents import NUMBER, TEXT_OR_NULL
 
 ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout": TEXT_OR_NULL,
        "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}

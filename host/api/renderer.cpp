@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// Implements clpv/renderer.hpp and clpv/pathtrace.hpp.
+#include "clpv/renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <shared_mutex>
+
+#include "api/scene_contents.hpp"
+#include "clpv/pathtrace.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/scene_options.hpp"
+#include "pipeline/view.hpp"
+#include "support/error.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void check_view(View view) {
+  if (!name_of(view).empty()) return;
+  throw Error(ExitCode::usage, "view: found {}, allowed: 0..{}", static_cast<int>(view),
+              static_cast<int>(View::cells));
+}
+
+glm::vec4 unit_normal(const glm::dvec3& normal, const glm::dvec3& position, std::size_t i) {
+  const double length = glm::length(normal);
+  if (length > 0 && std::isfinite(length) && std::isfinite(position.x + position.y + position.z))
+    return {glm::vec3(normal / length), 0};
+  throw Error(ExitCode::usage,
+              "irradiance: point {}: found position ({}, {}, {}) and normal ({}, {}, {}), allowed: finite "
+              "numbers, a nonzero normal",
+              i, position.x, position.y, position.z, normal.x, normal.y, normal.z);
+}
+
+}  // namespace
+
+struct Renderer::State {
+  std::mutex mutex;  ///< held by each call
+  SceneFile file;
+  std::shared_lock<std::shared_mutex> scene_stays;  ///< while the frame is made
+  PosedScene posed;
+  RenderOptions options;
+  Session session;
+  Frame frame;
+  std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
+  double frame_ms = 0;
+
+  State(const SceneFile& scene_file, const Options& given, const std::string& device)
+      : file(scene_file),
+        scene_stays(file.contents().mutex),
+        posed(file),
+        options(resolve_options(given.given(), posed.scene())),
+        session(choose_device(device), ProgramCache::of_user()),
+        frame(session, posed.scene(), options) {
+    scene_stays.unlock();
+  }
+
+  void require_frame(const char* what) const {
+    if (metadata.empty())
+      throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
+  }
+
+  Image image(View view) {
+    Image made = view_image(frame, view);
+    made.metadata = metadata;
+    return made;
+  }
+};
+
+Renderer::Renderer(const SceneFile& scene, const Options& options, const std::string& device)
+    : state_(std::make_unique<State>(scene, options, device)) {}
+
+Renderer::~Renderer() {
+  if (!state_) return;
+  try {
+    state_->session.store_programs();
+  } catch (const std::exception& error) {  // a cache never makes the program fail
+    spdlog::debug("compiled programs not cached: {}", error.what());
+  }
+}
+
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
+  check_view(view);
+  State& state = *state_;
+  const std::lock_guard lock(state.mutex);
+  const std::shared_lock scene_stays(state.file.contents().mutex);
+  const Clock::time_point started = Clock::now();
+  if (state.posed.pose(seconds)) state.frame.scene_moved();
+  const SceneCamera chosen = state.posed.camera(camera);
+  state.metadata.clear();
+  state.frame.render(chosen);
+  for (const OptionDescription& option : list_options(state.options))
+    state.metadata[option.name] = option.value;
+  state.metadata["camera"] = chosen.name;
+  state.metadata["time"] = fmt::format("{}", seconds);
+  Image image = state.image(view);
+  state.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - started).count();
+  return image;
+}
+
+Image Renderer::show(View view) {
+  check_view(view);
+  const std::lock_guard lock(state_->mutex);
+  state_->require_frame("show");
+  return state_->image(view);
+}
+
+std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& normal) {
+  const std::array<float, 3> p{float(position[0]), float(position[1]), float(position[2])},
+      n{float(normal[0]), float(normal[1]), float(normal[2])};
+  const std::array<float, 3> e = irradiance(std::span(&p, 1), std::span(&n, 1))[0];
+  return {e[0], e[1], e[2]};
+}
+
+std::vector<std::array<float, 3>> Renderer::irradiance(std::span<const std::array<float, 3>> positions,
+                                                       std::span<const std::array<float, 3>> normals) {
+  if (positions.size() != normals.size()) {
+    throw Error(ExitCode::usage, "irradiance: found {} positions and {} normals, allowed: equal numbers",
+                positions.size(), normals.size());
+  }
+  const std::lock_guard lock(state_->mutex);
+  state_->require_frame("irradiance");
+  std::vector<glm::vec4> at, facing;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto &p = positions[i], &n = normals[i];
+    facing.push_back(unit_normal({n[0], n[1], n[2]}, {p[0], p[1], p[2]}, i));
+    at.emplace_back(p[0], p[1], p[2], 0);
+  }
+  std::vector<std::array<float, 3>> found;
+  for (const glm::vec4& e : state_->frame.irradiance_at(std::move(at), std::move(facing)))
+    found.push_back({e.x, e.y, e.z});
+  return found;
+}
+
+std::vector<LightVolume> Renderer::volumes() {
+  const std::lock_guard lock(state_->mutex);
+  state_->require_frame("volumes");
+  const GatheredLight light = state_->frame.light();
+  std::vector<LightVolume> all;
+  for (std::size_t c = 0; c < light.grids.size(); ++c) {
+    const ClpvGrid& grid = light.grids[c];
+    const VolumeShape& shape = light.accumulated[c]->shape();
+    LightVolume& volume = all.emplace_back();
+    volume.origin = {grid.origin[0], grid.origin[1], grid.origin[2]};
+    volume.cell = grid.cell;
+    volume.n = shape.n;
+    volume.coefficients = shape.coefficients;
+    volume.basis = state_->frame.gathered().name();
+    volume.values = light.accumulated[c]->read(state_->session);
+    for (float& value : volume.values) value /= light.scale;
+  }
+  return all;
+}
+
+Stats Renderer::stats() const {
+  const std::lock_guard lock(state_->mutex);
+  Stats stats;
+  for (const Pass pass : values_of<Pass>()) {
+    if (pass != Pass::whole) stats.stages[std::string(name_of(pass))] = 0;
+  }
+  for (const StageTime& time : state_->session.timeline().times())
+    stats.stages[std::string(name_of(time.mark.pass))] += time.ms;
+  stats.frame_ms = state_->frame_ms;
+  stats.build_ms = state_->session.build_ms();
+  stats.device_bytes = state_->session.device_bytes();
+  stats.peak_device_bytes = state_->session.peak_device_bytes();
+  return stats;
+}
+
+Image pathtrace(const SceneFile& scene, View view, const CameraChoice& camera, const TraceOptions& options) {
+  check_view(view);
+  require_traceable(view);
+  constexpr int kMaxSide = 16384;
+  if (options.width < 1 || options.width > kMaxSide || options.height < 1 || options.height > kMaxSide) {
+    throw Error(ExitCode::usage, "width and height: found {} x {}, allowed: 1..{}", options.width,
+                options.height, kMaxSide);
+  }
+  const std::shared_lock scene_stays(scene.contents().mutex);
+  PosedScene posed(scene);
+  posed.pose(options.seconds);
+  const SceneCamera chosen = posed.camera(camera);
+  const reference::TracedImage traced = reference::trace_paths(
+      posed.scene(), posed.scene().lights_for(chosen), camera_view(chosen, options.width, options.height),
+      {options.bounces, options.samples, options.noise, options.seed, options.threads}, options.progress);
+  Image image = reference::traced_view(traced, view);
+  image.metadata = {{"camera", chosen.name},
+                    {"time", fmt::format("{}", options.seconds)},
+                    {"spp_traced", fmt::format("{}", traced.samples)},
+                    {"noise_reached", fmt::format("{}", traced.noise)}};
+  return image;
+}
+
+}  // namespace clpv

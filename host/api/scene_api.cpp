@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Implements clpv/scene.hpp.
+#include <cmath>
+#include <mutex>
+#include <set>
+
+#include "api/scene_contents.hpp"
+#include "scene/bounds.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+/// Converts a list of cameras or lights; messages name the list and the index.
+template <typename To, typename From, typename Convert>
+std::vector<To> converted(const char* list, const std::vector<From>& given, std::size_t maximum,
+                          const Convert& convert) {
+  if (given.size() > maximum)
+    throw Error(ExitCode::usage, "{}: found {} of them, allowed: at most {}", list, given.size(), maximum);
+  std::vector<To> made;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::string place = fmt::format("{}[{}]", list, i);
+    made.push_back(convert(given[i], rejected_in(place), 1.0));
+    if (!given[i].name.empty() && !names.insert(given[i].name).second)
+      throw Error(ExitCode::usage, "{}: name: found duplicate '{}', allowed: unique names", place,
+                  given[i].name);
+  }
+  return made;
+}
+
+}  // namespace
+
+SceneFile::SceneFile(const std::filesystem::path& path, const std::filesystem::path& model)
+    : contents_(std::make_shared<Contents>(path, model)) {}
+
+std::vector<Camera> SceneFile::cameras() const {
+  const std::shared_lock lock(contents_->mutex);
+  std::vector<Camera> all;
+  for (const SceneCamera& camera : contents_->moving.scene().cameras) all.push_back(camera_of(camera));
+  return all;
+}
+
+std::vector<Light> SceneFile::lights() const {
+  const std::shared_lock lock(contents_->mutex);
+  std::vector<Light> all;
+  for (const SceneLight& light : contents_->moving.scene().lights) all.push_back(light_of(light));
+  return all;
+}
+
+void SceneFile::set_cameras(const std::vector<Camera>& cameras) {
+  if (cameras.empty()) throw Error(ExitCode::usage, "cameras: found none, allowed: at least one");
+  std::vector<SceneCamera> made = converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
+  const std::lock_guard lock(contents_->mutex);
+  contents_->cameras = made;
+  contents_->moving.set_cameras(std::move(made));
+}
+
+void SceneFile::set_lights(const std::vector<Light>& lights) {
+  std::vector<SceneLight> made = converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
+  const std::lock_guard lock(contents_->mutex);
+  contents_->lights = made;
+  contents_->moving.set_lights(std::move(made));
+}
+
+bool SceneFile::moves() const {
+  const std::shared_lock lock(contents_->mutex);
+  return contents_->moving.moves();
+}
+
+std::vector<std::string> SceneFile::notes() const {
+  return contents_->moving.scene().notes;
+}
+
+std::array<Vec3, 2> SceneFile::bounds() const {
+  const glm::vec3 &lower = contents_->moving.scene().lower, &upper = contents_->moving.scene().upper;
+  return {{{lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}}};
+}
+
+double SceneFile::exposure() const {
+  return contents_->moving.scene().exposure;
+}
+
+PosedScene::PosedScene(const SceneFile& file)
+    : file_(file), posed_(file.moves() ? std::optional(file.contents().moving) : std::nullopt) {}
+
+bool PosedScene::pose(double seconds) {
+  if (!(std::abs(seconds) <= bounds::kSeconds)) {  // rejects NaN too
+    throw Error(ExitCode::usage, "seconds: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
+                bounds::kSeconds);
+  }
+  if (!posed_) return false;
+  if (const auto& cameras = file_.contents().cameras) posed_->set_cameras(*cameras);
+  if (const auto& lights = file_.contents().lights) posed_->set_lights(*lights);
+  posed_->pose(seconds);
+  return true;
+}
+
+SceneCamera PosedScene::camera(const CameraChoice& choice) const {
+  if (const auto* name = std::get_if<std::string>(&choice)) return scene().camera(*name);
+  const Camera& given = std::get<Camera>(choice);
+  SceneCamera made = scene_camera(given, rejected_in("camera"));
+  made.name = text_of(given);
+  if (scene().lights_for(made).empty() && !made.light.empty()) {
+    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene", made.light);
+  }
+  return made;
+}
+
+}  // namespace clpv

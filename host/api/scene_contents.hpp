@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Data of a SceneFile, shared by its copies and their renderers.
+#pragma once
+
+#include <optional>
+#include <shared_mutex>
+#include <vector>
+
+#include "clpv/scene.hpp"
+#include "scene/load.hpp"
+#include "scene/view_values.hpp"
+
+namespace clpv {
+
+struct SceneFile::Contents {
+  mutable std::shared_mutex mutex;  ///< shared by frames in progress; exclusive for changes
+  MovingScene moving;               ///< at 0 s
+  /// Arguments of the last set_cameras() and set_lights().
+  std::optional<std::vector<SceneCamera>> cameras;
+  std::optional<std::vector<SceneLight>> lights;
+
+  Contents(const std::filesystem::path& path, const std::filesystem::path& model) : moving(path, model) {}
+};
+
+/// A scene that a frame or the path tracer reads, at any time: the shared one, or a copy if it is animated. Hold
+/// Contents::mutex while it is used.
+class PosedScene {
+ public:
+  explicit PosedScene(const SceneFile& file);
+
+  const Scene& scene() const { return posed_ ? posed_->scene() : file_.contents().moving.scene(); }
+
+  /// Poses the scene and applies changes of the file's cameras and lights. Returns true if the scene may have moved.
+  /// Throws Error(usage) for a time out of range.
+  bool pose(double seconds);
+
+  /// The camera chosen. One by value has its numbers as name. Throws Error(usage).
+  SceneCamera camera(const CameraChoice& choice) const;
+
+ private:
+  SceneFile file_;
+  std::optional<MovingScene> posed_;
+};
+
+}  // namespace clpv

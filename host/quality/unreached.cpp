@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "quality/unreached.hpp"
+
+#include <vector>
+
+#include "pipeline/cascade.hpp"
+#include "reference/view.hpp"
+#include "support/log.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kFewUnreached = 0.001;  // specks at the horizon are no surprise
+
+}  // namespace
+
+double unreached_share(Session& session, const Frame& frame) {
+  const Surface& seen = frame.seen();
+  const ClpvView& view = seen.view;
+  const ClpvGrid coarsest = frame.light().grids.back();
+  const std::vector<float> depths = session.read<float>(seen.depth, std::size_t{view.width} * view.height);
+  std::size_t surfaces = 0, unreached = 0;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (depths[i] == 0) continue;
+    ++surfaces;
+    unreached += !reaches(coarsest, reference::surface_position(view, i, depths[i]));
+  }
+  return surfaces == 0 ? 0 : static_cast<double>(unreached) / static_cast<double>(surfaces);
+}
+
+void warn_of_unreached(Session& session, const Frame& frame, const std::string& camera) {
+  const double share = unreached_share(session, frame);
+  if (share <= kFewUnreached) return;
+  spdlog::warn(
+      "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect light; a larger "
+      "--cascade-size or more --cascades reach farther",
+      camera, 100 * share);
+}
+
+}  // namespace clpv

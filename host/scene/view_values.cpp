@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "scene/view_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "scene/bounds.hpp"
+#include "scene/light_kind.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kMinLength = 1e-6;  // of directions, distances and angles
+constexpr double kMaxIntensity = 1e18;
+
+glm::dvec3 dvec3(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 vec3(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+/// In float, in which scenes store numbers.
+std::string text_of(const Vec3& v) {
+  return fmt::format("{},{},{}", float(v[0]), float(v[1]), float(v[2]));
+}
+
+void check_number(const char* member, double value, double minimum, double maximum,
+                  const RejectMember& reject) {
+  if (!(value >= minimum && value <= maximum))  // NaN is in no range
+    reject(member, fmt::format("{}", value), fmt::format("{}..{}", minimum, maximum));
+}
+
+/// Checks that each component is within +-limit, or from 0 to limit.
+glm::dvec3 checked(const char* member, const Vec3& value, double limit, bool may_be_negative,
+                   const RejectMember& reject) {
+  for (const double component : value) {
+    if (!(component >= (may_be_negative ? -limit : 0) && component <= limit))
+      reject(member, text_of(value), fmt::format("{}..{} each", may_be_negative ? -limit : 0, limit));
+  }
+  return dvec3(value);
+}
+
+glm::dvec3 point(const char* member, const Vec3& value, const RejectMember& reject) {
+  return checked(member, value, bounds::kCoordinate, true, reject);
+}
+
+glm::dvec3 direction(const char* member, const Vec3& value, const RejectMember& reject) {
+  const glm::dvec3 v = point(member, value, reject);
+  if (glm::length(v) < kMinLength) reject(member, "a vector of no length", "a direction");
+  return glm::normalize(v);
+}
+
+void store_floats(float out[3], const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i]);
+}
+
+}  // namespace
+
+RejectMember rejected_in(const std::string& what) {
+  return [what](const std::string& member, const std::string& found, const std::string& allowed) {
+    throw Error(ExitCode::usage, "{}: {}{}found {}, allowed: {}", what, member, member.empty() ? "" : ": ",
+                found, allowed);
+  };
+}
+
+SceneCamera scene_camera(const Camera& camera, const RejectMember& reject, double metres_per_unit) {
+  const glm::dvec3 eye = point("eye", camera.eye, reject),
+                   towards = point("target", camera.target, reject) - eye;
+  if (glm::length(towards) < kMinLength) reject("target", "the eye itself", "a point away from eye");
+  check_number("vertical_fov_degrees", camera.vertical_fov_degrees, 0.01, 179.9, reject);
+  check_number("near", camera.near, kMinLength, bounds::kCoordinate, reject);
+  const glm::dvec3 forward = glm::normalize(towards), up = direction("up", camera.up, reject);
+  const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);
+  if (glm::length(perpendicular) < kMinLength) {
+    reject("up", fmt::format("{}, parallel to the viewing direction", text_of(camera.up)),
+           "a vector that is not parallel to the viewing direction");
+  }
+  SceneCamera made;
+  made.name = camera.name;
+  made.light = camera.light;
+  made.eye = glm::vec3(eye * metres_per_unit);
+  made.forward = glm::vec3(forward);
+  made.up = glm::vec3(glm::normalize(perpendicular));
+  made.vertical_fov = static_cast<float>(glm::radians(camera.vertical_fov_degrees));
+  made.near_depth = static_cast<float>(camera.near * metres_per_unit);
+  return made;
+}
+
+SceneLight scene_light(const Light& light, const RejectMember& reject, double metres_per_unit) {
+  SceneLight made;
+  made.name = light.name;
+  ClpvLight& data = made.data;
+  if (name_of(light.kind).empty())
+    reject("kind", fmt::format("{}", static_cast<unsigned>(light.kind)), "0..2");
+  data.kind = static_cast<unsigned>(light.kind);
+  store_floats(data.intensity, checked("intensity", light.intensity, kMaxIntensity, false, reject));
+  if (light.kind != LightKind::directional) {
+    store_floats(data.position, point("position", light.position, reject) * metres_per_unit);
+    check_number("range", light.range, 0, bounds::kCoordinate, reject);
+    data.range = static_cast<float>(light.range * metres_per_unit);
+  }
+  if (light.kind != LightKind::point)
+    store_floats(data.direction, direction("direction", light.direction, reject));
+  if (light.kind == LightKind::spot) {
+    check_number("inner_cone_degrees", light.inner_cone_degrees, 0, 90, reject);
+    check_number("outer_cone_degrees", light.outer_cone_degrees, kMinLength, 90, reject);
+    if (light.inner_cone_degrees >= light.outer_cone_degrees) {
+      reject("",
+             fmt::format("inner_cone_degrees {} and outer_cone_degrees {}", light.inner_cone_degrees,
+                         light.outer_cone_degrees),
+             "inner less than outer");
+    }
+    set_cone(data, glm::radians(light.inner_cone_degrees), glm::radians(light.outer_cone_degrees));
+  }
+  return made;
+}
+
+Camera camera_of(const SceneCamera& camera) {
+  const glm::dvec3 target = glm::dvec3(camera.eye) + glm::dvec3(camera.forward);
+  return {{camera.eye.x, camera.eye.y, camera.eye.z},
+          {target.x, target.y, target.z},
+          {camera.up.x, camera.up.y, camera.up.z},
+          glm::degrees(double{camera.vertical_fov}),
+          camera.near_depth,
+          camera.name,
+          camera.light};
+}
+
+Light light_of(const SceneLight& light) {
+  const ClpvLight& data = light.data;
+  Light made{
+      kind_of(data), vec3(data.position), vec3(data.direction), vec3(data.intensity), data.range, 0, 45,
+      light.name};
+  if (made.kind != LightKind::spot) return made;
+  const double outer = -double{data.cone_offset} / data.cone_scale;  // cosines (set_cone)
+  made.outer_cone_degrees = glm::degrees(std::acos(std::clamp(outer, 0.0, 1.0)));
+  made.inner_cone_degrees =
+      glm::degrees(std::acos(std::clamp(outer + 1 / double{data.cone_scale}, 0.0, 1.0)));
+  return made;
+}
+
+std::string text_of(const Camera& camera) {
+  return fmt::format("eye {} target {} up {} fov {} near {}", text_of(camera.eye), text_of(camera.target),
+                     text_of(camera.up), float(camera.vertical_fov_degrees), float(camera.near));
+}
+
+}  // namespace clpv

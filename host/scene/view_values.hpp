@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Cameras and lights of the public interface (clpv/scene.hpp) as those of a scene, and back. The only checks of their numbers.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "clpv/scene.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv {
+
+/// Receives member, value found and value allowed; throws.
+using RejectMember =
+    std::function<void(const std::string& member, const std::string& found, const std::string& allowed)>;
+
+/// Throws Error(usage): "`what`: eye: found ..., allowed: ...".
+RejectMember rejected_in(const std::string& what);
+
+/// Lengths and positions are multiplied by `metres_per_unit`.
+SceneCamera scene_camera(const Camera& camera, const RejectMember& reject, double metres_per_unit = 1);
+SceneLight scene_light(const Light& light, const RejectMember& reject, double metres_per_unit = 1);
+
+Camera camera_of(const SceneCamera& camera);
+Light light_of(const SceneLight& light);
+
+/// The numbers of a camera in one line, as its name in metadata and messages.
+std::string text_of(const Camera& camera);
+
+}  // namespace clpv

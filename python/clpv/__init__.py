@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""clpv: indirect light with cascaded light propagation volumes, in OpenCL.
+
+    import clpv
+    scene = clpv.Scene("scenes/cornell.json")
+    image = clpv.Renderer(scene, basis="srbf8v2", width=480, height=270).render()
+    image.save("cornell.png")
+    image.array.mean(axis=(0, 1))        # float32, (height, width, 4)
+
+Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous intensity in candela as W/sr.
+
+    Scene, Camera, Light                 a scene file or glTF model, and what can be changed in it
+    Renderer, options(), devices()       frames on an OpenCL device: render, irradiance, volumes, stats
+    Image, read_image, compare           images as arrays, files, errors
+    pathtrace                            ground truth on the CPU
+    Basis, bases()                       functions on the sphere
+    clpv.draw                            charts (needs matplotlib); works without the native module
+    clpv.view                            python3 -m clpv.view SCENE: viewer in the browser (needs viser)
+    Error, UsageError, InputError, DeviceError, ResourceError, ValidationError
+"""
+import importlib
+
+__all__ = ["Basis", "Camera", "Comparison", "DeviceError", "Error", "Image", "InputError", "Light", "Renderer",
+           "ResourceError", "Scene", "UsageError", "ValidationError", "Volume", "bases", "compare", "devices", "options",
+           "pathtrace", "read_image"]
+
+
+def __getattr__(name):
+    """Loads the native module on first use, so that clpv.draw works without it."""
+    if name in __all__ or name == "__version__":
+        return getattr(importlib.import_module("clpv._native"), name)
+    if name in ("draw", "view"):
+        return importlib.import_module(f"clpv.{name}")
+    raise AttributeError(f"module 'clpv' has no attribute '{name}'")
+
+
+def __dir__():
+    return sorted([*__all__, "__version__", "draw", "view"])

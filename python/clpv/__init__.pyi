@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: MIT
+# Written by scripts/stubs.
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_Path = str | os.PathLike[str]
+_Vector = Sequence[float] | NDArray[Any]
+_View = Literal["full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"]
+__version__: str
+
+class Error(Exception):
+    """Any failure of clpv; str() names place, value found and value allowed."""
+
+class DeviceError(Error, RuntimeError):
+    """No OpenCL device, or one without a required capability."""
+
+class InputError(Error, ValueError):
+    """Invalid scene, image, or other input."""
+
+class ResourceError(Error, RuntimeError):
+    """Out of memory, or a file that cannot be written."""
+
+class UsageError(Error, ValueError):
+    """Unknown option or value out of range."""
+
+class ValidationError(Error, RuntimeError):
+    """A result differs from its reference."""
+
+class Basis:
+    """Basis(name='sh3', bandwidth=None, centres=None): N functions b_i on the unit sphere.
+
+    bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; centres: array (N, 3), for
+    radial functions of one's own. Directions may have any length.
+    """
+    def __init__(self, name: str = 'sh3', bandwidth: float | Sequence[float] | None = None, centres: ArrayLike | None = None) -> None:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def condition(self) -> float:
+        """Condition number of the Gram matrix."""
+    @property
+    def integrals(self) -> NDArray[np.float64]:
+        """Array (N,): integral of each function."""
+    @property
+    def centres(self) -> NDArray[np.float64]:
+        """Array (N, 3) of unit vectors; (0, 3) without centres."""
+    @property
+    def bandwidths(self) -> NDArray[np.float64]:
+        """Array (N,); (0,) without centres."""
+    def evaluate(self, directions: ArrayLike) -> NDArray[np.float64]:
+        """evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w)."""
+    def clamped_cosine(self, axes: ArrayLike) -> NDArray[np.float64]:
+        """clamped_cosine(axes (..., 3)) -> float64 array (..., N): exact projection of max(0, w . axis)."""
+    def project(self, function: Callable[[NDArray[np.float64]], ArrayLike]) -> NDArray[np.float64]:
+        """project(function) -> float64 array (N,): least-squares projection of a function that takes directions
+        (K, 3) and returns (K,) values.
+        """
+    def lobe(self, axis: ArrayLike, coefficients: ArrayLike | None = None) -> dict[str, float]:
+        """lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) against the clamped
+        cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.
+        """
+    def __len__(self) -> int: ...
+
+class Camera:
+    """Perspective camera. Immutable; replace() makes another. Values are checked where it is used.
+
+    eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];
+    near: nearest visible depth [m]; light: name of its only light, empty for all.
+    """
+    def __init__(self, eye: _Vector, target: _Vector, up: _Vector = (0, 1, 0), fov: float = 60.0, near: float = 0.05, name: str = '', light: str = '') -> None:
+        ...
+    @property
+    def eye(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def target(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def up(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def fov(self) -> float:
+        ...
+    @property
+    def near(self) -> float:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def light(self) -> str:
+        ...
+    def replace(self, **changes: Any) -> Camera:
+        """replace(**changes): a copy with other values of some arguments."""
+
+class Comparison:
+    """Errors of an image against its reference, over the colour channels. None: undefined."""
+    @property
+    def rmse(self) -> float:
+        """Root mean square error."""
+    @property
+    def nrmse(self) -> float | None:
+        """rmse over the root mean square of the reference."""
+    @property
+    def relative_mse(self) -> float:
+        """Mean of (a - b)^2 / (b^2 + 0.01)."""
+    @property
+    def psnr_db(self) -> float | None:
+        """Peak signal-to-noise ratio with peak 1 [dB]."""
+    @property
+    def max_error(self) -> float:
+        ...
+    @property
+    def max_error_at(self) -> list[int]:
+        """x, y from the top left corner."""
+    @property
+    def mean_luminance(self) -> list[float]:
+        """Of the image and of the reference."""
+    @property
+    def identical(self) -> bool:
+        ...
+    @property
+    def valid_pixels(self) -> int:
+        """Pixels with alpha above 0 in both."""
+    @property
+    def nrmse_valid(self) -> float | None:
+        """nrmse over valid pixels."""
+    @property
+    def best_gain(self) -> float | None:
+        """Factor on the image with the least error."""
+    @property
+    def nrmse_best_gain(self) -> float | None:
+        """nrmse with that factor."""
+    @property
+    def energy_ratio(self) -> float | None:
+        """Sum of the image over that of the reference."""
+    @property
+    def flip(self) -> float | None:
+        """Mean FLIP, what an observer sees, 0 to 1 (Andersson et al. 2020)."""
+
+class Image:
+    """Image(array, channels=None, encoding='linear'): copies an array (height, width, channels) of real numbers.
+
+    numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top, without a copy; they keep
+    the image alive.
+    """
+    def __init__(self, array: ArrayLike, channels: Sequence[str] | None = None, encoding: Literal["linear", "srgb"] = 'linear') -> None:
+        ...
+    @property
+    def array(self) -> NDArray[np.float32]:
+        """Pixels as a float32 array (height, width, channels), without a copy."""
+    @property
+    def width(self) -> int:
+        ...
+    @property
+    def height(self) -> int:
+        ...
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names, such as 'R' or 'indirect.R' of layer 'indirect'."""
+    @property
+    def metadata(self) -> dict[str, str]:
+        """Dict of the options that it was rendered with."""
+    @property
+    def encoding(self) -> str:
+        """'linear' in light, or 'srgb'."""
+    def save(self, path: _Path, exposure: float = 0.0) -> None:
+        """Writes a linear image with channels R, G, B and optionally A: .exr as float32 with metadata, .png tone-mapped
+        (ACES) after multiplication by 2^exposure [EV].
+        """
+    def display(self, exposure: float = 0.0) -> NDArray[np.uint8]:
+        """uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for .png."""
+
+class Light:
+    """Light without extent. Immutable; replace() makes another. Values are checked where it is used.
+
+    kind: 'directional', 'spot' or 'point'; position [m]; direction in which light travels;
+    intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else [cd = W/sr];
+    range [m], 0 for no limit; inner_cone, outer_cone: angles of a spot [degrees].
+    """
+    def __init__(self, kind: Literal["directional", "spot", "point"] = 'directional', position: _Vector = (0, 0, 0), direction: _Vector = (0, -1, 0), intensity: float | _Vector = (1, 1, 1), range: float = 0.0, inner_cone: float = 0.0, outer_cone: float = 45.0, name: str = '') -> None:
+        ...
+    @property
+    def kind(self) -> str:
+        ...
+    @property
+    def position(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def direction(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def intensity(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def range(self) -> float:
+        ...
+    @property
+    def inner_cone(self) -> float:
+        ...
+    @property
+    def outer_cone(self) -> float:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    def replace(self, **changes: Any) -> Light:
+        """replace(**changes): a copy with other values of some arguments."""
+
+class Renderer:
+    """Renderer(scene, device='', **options): renders frames of one scene on one OpenCL device.
+
+    device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the first usable one.
+    options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is on or off.
+    Results that do not change are cached from frame to frame. Calls from several threads run one after the other.
+    Raises UsageError, DeviceError, ResourceError.
+    """
+    def __init__(self, scene: Scene, device: str = '', *, preset: Literal["best", "fine", "paper"] = ..., basis: Literal["sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96"] = ..., centres: str = ..., lambda_: float = ..., lobe: Literal["exact", "rotate"] = ..., lobe_time: Literal["host", "kernel"] = ..., evaluate: Literal["exact", "table"] = ..., table_size: int = ..., table: Literal["buffer", "image"] = ..., transport: Literal["sampled", "exact", "sweep"] = ..., directions: Literal[24, 96, 216, 384] = ..., coarser_directions: Literal[24, 96, 216, 384] = ..., bounces: Literal[1, 2, "all"] = ..., state: Literal["coefficients", "fluxes"] = ..., layout: Literal["image", "aos", "soa", "tiled"] = ..., storage: Literal["float", "half"] = ..., iterations: int = ..., grid: int = ..., cascades: int = ..., cascade_size: float = ..., rsm_size: int = ..., rsm_format: Literal["float", "paper"] = ..., shadow_size: int = ..., occlusion: bool = ..., blockers: Literal["scene", "seen"] = ..., blocking: Literal["areas", "one-sided"] = ..., blocker_stride: int = ..., gather: Literal["all", "visible"] = ..., gather_offset: float = ..., near: Literal["off", "traced"] = ..., near_size: Literal["half", "full"] = ..., width: int = ..., height: int = ...) -> None:
+        ...
+    def render(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> Image:
+        """render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.
+
+        view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or cells: irradiance with
+        the finest cascade's cells as spheres;
+        camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene.
+        """
+    def show(self, view: _View) -> Image:
+        """show(view) -> Image: another view of the last frame, without rendering it again."""
+    def irradiance(self, points: ArrayLike, normals: ArrayLike) -> NDArray[np.float32]:
+        """irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, green, blue.
+
+        points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, without option near;
+        0 outside of the cascades. Computed on the device.
+        """
+    def volumes(self) -> list[Volume]:
+        """volumes() -> list of Volume of the last frame, finest cascade first."""
+    @property
+    def stats(self) -> dict[str, float]:
+        """Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or not needed),
+        'frame': wall time of render() [ms], 'build': compilation so far [ms], 'device_bytes', 'peak_device_bytes'.
+        """
+
+class Scene:
+    """Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); `model` replaces that of the file.
+
+    Renderers keep its data alive. Thread-safe. Raises InputError with file, place, value found and value allowed.
+    """
+    def __init__(self, path: _Path, model: _Path | None = None) -> None:
+        ...
+    @property
+    def cameras(self) -> Sequence[Camera]:
+        """Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them."""
+    @cameras.setter
+    def cameras(self, value: Sequence[Camera]) -> None: ...
+    @property
+    def lights(self) -> Sequence[Light]:
+        """Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame of every renderer
+        of this scene recomputes what depends on them.
+        """
+    @lights.setter
+    def lights(self, value: Sequence[Light]) -> None: ...
+    @property
+    def moves(self) -> bool:
+        """True if anything is animated."""
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """One sentence for each thing skipped or added by the loader."""
+    @property
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Lower and upper corner of the bounding box [m], at 0 s."""
+    @property
+    def exposure(self) -> float:
+        """Exposure of a display [EV]."""
+
+class Volume:
+    """Light of one cascade after propagation: n^3 cubic cells."""
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """Minimum corner x, y, z [m]."""
+    @property
+    def cell(self) -> float:
+        """Edge of a cell [m]."""
+    @property
+    def basis(self) -> str:
+        """Name of the basis of the coefficients: sh3 after a sweep, else that of option basis."""
+    @property
+    def coefficients(self) -> NDArray[np.float32]:
+        """float32 array (3, N, z, y, x): red, green, blue; N coefficients c_i of radiant intensity
+        I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I / cell^2
+        is the radiance [W/m^2/sr] about the cell's centre.
+        """
+
+def bases() -> list[str]:
+    """bases() -> list of the names of all bases."""
+
+def compare(image: Image | ArrayLike, reference: Image | ArrayLike, exposure: float = 0.0) -> Comparison:
+    """compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array (height, width, channels).
+    exposure [EV]: of linear images, for FLIP.
+    Raises InputError for other sizes, channels or encodings, and for values that are not finite.
+    """
+
+def devices() -> list[dict[str, Any]]:
+    """devices() -> list of dict: all OpenCL devices; clpv can use those whose list `missing` is empty."""
+
+def options() -> list[dict[str, str]]:
+    """options() -> list of dict: name, help, allowed values and default of each option of Renderer."""
+
+def pathtrace(scene: Scene, view: _View = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0) -> Image:
+    """pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.
+
+    bounces: reflections between light and visible surface, 0 for all; samples: paths per pixel, 0 for as many as
+    `noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.
+    """
+
+def read_image(path: _Path) -> Image:
+    """Reads an .exr, .png or .hdr file with all its channels -> Image. Raises InputError."""

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""Viewer in the browser: python3 -m clpv.view SCENE [--model PATH] [--port N] [--host ADDRESS]
+
+Drag to look round, W A S D Q E to walk, the wheel to move. Frames are small while the camera moves and sharp when it rests.
+Needs viser: python3 -m pip install viser (in a virtual environment with --system-site-packages).
+"""
+import argparse
+import collections
+import math
+import socket
+import sys
+import threading
+import time
+
+import clpv
+
+VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
+STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers", "visibility", "propagate",
+          "gather", "near", "shade")
+MOVING_HEIGHT, RESTING_HEIGHT = 288, 720  # [pixels]
+REST = 0.3            # [s] without a change before the sharp frame
+MAX_RENDERERS = 4     # kept, by size and options
+PIVOT = 0.03          # distance from the eye to the point that a drag turns the camera about, of the scene's diagonal
+
+
+def size_of(height, aspect):
+    """Width and height of a frame; multiples of 8, so that small changes of the window need no new renderer."""
+    return max(64, min(1920, 8 * round(height * aspect / 8))), height
+
+
+def camera_of(client):
+    """The camera of a browser: x right, y down, z forward, as viser has it."""
+    w, x, y, z = client.camera.wxyz
+    eye = client.camera.position
+    forward = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
+    down = 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)
+    return clpv.Camera(eye=eye, target=[e + f for e, f in zip(eye, forward)], up=[-d for d in down],
+                       fov=math.degrees(client.camera.fov))
+
+
+def sun_direction(azimuth, elevation):
+    """Direction of the light of a sun at these angles [degrees]."""
+    a, e = math.radians(azimuth), math.radians(elevation)
+    return -math.cos(e) * math.sin(a), -math.sin(e), -math.cos(e) * math.cos(a)
+
+
+class Renderers:
+    """Renderers by size and options; the ones used last are kept."""
+
+    def __init__(self, scene, device):
+        self.scene, self.device, self.kept = scene, device, collections.OrderedDict()
+
+    def get(self, size, options):
+        key = size, tuple(sorted(options.items()))
+        if key not in self.kept:
+            while len(self.kept) >= MAX_RENDERERS:
+                self.kept.popitem(last=False)
+            self.kept[key] = clpv.Renderer(self.scene, self.device, width=size[0], height=size[1], **options)
+        self.kept.move_to_end(key)
+        return self.kept[key]
+
+
+class Controls:
+    """The panel beside the image. Clients share it."""
+
+    def __init__(self, server, scene, changed):
+        self.lights = scene.lights
+        gui = server.gui
+        defaults = {option["name"]: option["value"] for option in clpv.options()}
+        self.status = gui.add_markdown("starting")
+        self.view = gui.add_dropdown("view", VIEWS, initial_value="full")
+        self.basis = gui.add_dropdown("basis", clpv.bases(), initial_value=defaults["basis"])
+        self.transport = gui.add_dropdown("transport", ("sweep", "exact", "sampled"), initial_value=defaults["transport"])
+        self.near = gui.add_checkbox("near field", initial_value=False)
+        self.exposure = gui.add_slider("exposure [EV]", -10, 10, 0.25, initial_value=max(-10, min(10, scene.exposure)))
+        self.time = gui.add_slider("time [s]", 0, 20, 0.05, initial_value=0, visible=scene.moves)
+        with gui.add_folder("sun"):
+            self.sun = gui.add_checkbox("sun instead of the lights", initial_value=False)
+            self.azimuth = gui.add_slider("azimuth [degrees]", 0, 360, 1, initial_value=30)
+            self.elevation = gui.add_slider("elevation [degrees]", 1, 90, 1, initial_value=60)
+            self.lux = gui.add_slider("illuminance [lx]", 0, 50, 0.5, initial_value=10)
+        names = [camera.name for camera in scene.cameras]
+        self.camera = gui.add_dropdown("camera", names, initial_value=names[0])
+        for control in (self.view, self.basis, self.transport, self.near, self.exposure, self.time, self.sun, self.azimuth,
+                        self.elevation, self.lux):
+            control.on_update(lambda _: changed())
+
+    def options(self):
+        steps = {} if self.transport.value == "sweep" else {"bounces": "1"}
+        near = {"near": "traced"} if self.near.value and self.transport.value == "sweep" else {}
+        return {"basis": self.basis.value, "transport": self.transport.value, **steps, **near}
+
+    def scene_lights(self):
+        if not self.sun.value:
+            return self.lights
+        return [clpv.Light(direction=sun_direction(self.azimuth.value, self.elevation.value), intensity=self.lux.value,
+                           name="sun")]
+
+    def show(self, stats, size, seconds):
+        rows = "\n".join(f"| {stage} | {stats[stage]:.1f} |" for stage in STAGES if stats[stage] > 0)
+        self.status.content = (f"{size[0]} x {size[1]}, {1 / max(seconds, 1e-3):.0f} frames/s, "
+                               f"{stats['device_bytes'] / 2**20:.0f} MiB\n\n| stage | ms |\n|---|---|\n{rows}\n"
+                               f"| frame | {stats['frame']:.1f} |")
+
+
+class Client:
+    """One browser: when its view last changed, and whether its image shows that."""
+
+    def __init__(self, handle):
+        self.handle, self.changed, self.moving_shown, self.sharp = handle, time.monotonic(), False, False
+
+    def touch(self):
+        self.changed, self.moving_shown, self.sharp = time.monotonic(), False, False
+
+
+class Viewer:
+    def __init__(self, server, scene, device=""):
+        self.server, self.scene = server, scene
+        self.renderers = Renderers(scene, device)
+        self.clients, self.lock, self.wake = {}, threading.Lock(), threading.Event()
+        self.frames = 0  # rendered so far
+        self.lit_by = scene.lights
+        server.scene.set_up_direction("+y")
+        server.gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
+        self.place(server.initial_camera, scene.cameras[0])
+        self.controls = Controls(server, scene, self.touch_all)
+        self.controls.camera.on_update(self.jump)
+        server.on_client_connect(self.connect)
+        server.on_client_disconnect(self.disconnect)
+
+    def place(self, view, camera):
+        """Sets the camera of a browser, or of all new ones."""
+        view.position = camera.eye
+        towards = [t - e for t, e in zip(camera.target, camera.eye)]
+        scale = PIVOT * math.dist(*self.scene.bounds) / math.hypot(*towards)
+        view.look_at = tuple(e + scale * t for e, t in zip(camera.eye, towards))
+        view.fov = math.radians(camera.fov)
+
+    def jump(self, event):
+        camera = next(each for each in self.scene.cameras if each.name == self.controls.camera.value)
+        if event.client is not None:
+            self.place(event.client.camera, camera)
+
+    def connect(self, handle):
+        client = Client(handle)
+        with self.lock:
+            self.clients[handle.client_id] = client
+
+        def moved(_):
+            client.touch()
+            self.wake.set()
+
+        handle.camera.on_update(moved)
+        self.wake.set()
+
+    def disconnect(self, handle):
+        with self.lock:
+            self.clients.pop(handle.client_id, None)
+
+    def touch_all(self):
+        with self.lock:
+            for client in self.clients.values():
+                client.touch()
+        self.wake.set()
+
+    def next_client(self):
+        """A client whose image is old, and whether it gets a sharp one; or None."""
+        now = time.monotonic()
+        with self.lock:
+            for client in self.clients.values():
+                if not client.moving_shown:
+                    return client, False
+            for client in self.clients.values():
+                if not client.sharp and now - client.changed > REST:
+                    return client, True
+        return None, False
+
+    def update_lights(self):
+        lights = self.controls.scene_lights()
+        if tuple(lights) != tuple(self.lit_by):
+            self.scene.lights = self.lit_by = lights
+
+    def draw(self, client, sharp):
+        started, changed = time.monotonic(), client.changed
+        handle = client.handle
+        size = size_of(RESTING_HEIGHT if sharp else MOVING_HEIGHT, handle.camera.aspect)
+        self.update_lights()
+        renderer = self.renderers.get(size, self.controls.options())
+        image = renderer.render(self.controls.view.value, camera_of(handle), time=self.controls.time.value)
+        handle.scene.set_background_image(image.display(self.controls.exposure.value)[..., :3], format="jpeg", jpeg_quality=85)
+        handle.flush()
+        self.frames += 1
+        if client.changed == changed:  # else it is old already
+            client.moving_shown, client.sharp = True, sharp
+        self.controls.show(renderer.stats, size, time.monotonic() - started)
+
+    def step(self, wait=0.05):
+        """Draws one image if one is due, else waits for a change."""
+        self.wake.clear()
+        client, sharp = self.next_client()
+        if client is None:
+            self.wake.wait(wait)
+            return
+        try:
+            self.draw(client, sharp)
+        except clpv.Error as error:  # such as options that exclude each other: shown until the next change
+            client.moving_shown = client.sharp = True
+            self.controls.status.content = f"**{error}**"
+        except Exception as error:  # a client that left while it was drawn for
+            client.moving_shown = client.sharp = True
+            with self.lock:
+                if client.handle.client_id in self.clients:
+                    raise
+            print(f"clpv.view: a client left: {error}", file=sys.stderr)
+
+
+def require_free(host, port):
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            sys.exit(f"clpv.view: {host}:{port}: {error.strerror}; choose another --port or --host")
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="python3 -m clpv.view", description="Shows a scene in the browser.")
+    parser.add_argument("scene", help="scene file (.json) or model (.gltf, .glb)")
+    parser.add_argument("--model", help="model file instead of the scene file's")
+    parser.add_argument("--device", default="", help="OpenCL device: an index, or a part of its name")
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s, this machine only)")
+    parser.add_argument("--port", type=int, default=8080, choices=range(1, 65536), metavar="1..65535",
+                        help="(default: %(default)s)")
+    given = parser.parse_args(arguments)
+    try:
+        import viser
+    except ImportError:
+        sys.exit("clpv.view: viser is not installed; in a virtual environment: python3 -m pip install viser")
+    require_free(given.host, given.port)
+    try:
+        scene = clpv.Scene(given.scene, given.model)
+        server = viser.ViserServer(host=given.host, port=given.port, label="clpv", verbose=False)
+        viewer = Viewer(server, scene, given.device)
+    except clpv.Error as error:
+        sys.exit(f"clpv.view: {error}")
+    print(f"clpv.view: http://{given.host}:{given.port}", flush=True)
+    try:
+        while True:
+            viewer.step()
+    except KeyboardInterrupt:
+        server.stop()
+
+
+if __name__ == "__main__":
+    main()

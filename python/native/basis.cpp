@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Bases of functions on the sphere.
+#include "basis/basis.hpp"
+
+#include "basis/lobe_quality.hpp"
+#include "basis/quadrature.hpp"
+#include "module.hpp"
+#include "support/error.hpp"
+
+namespace clpv::python {
+namespace {
+
+glm::dvec3 unit(const double* v) {
+  const glm::dvec3 w(v[0], v[1], v[2]);
+  const double length = glm::length(w);
+  if (length > 0 && std::isfinite(length)) return w / length;
+  throw Error(ExitCode::usage, "direction: found ({}, {}, {}), allowed: finite numbers, not all 0", w.x, w.y,
+              w.z);
+}
+
+std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth, const py::object& centres) {
+  if (centres.is_none())
+    return make_basis(name, bandwidth.is_none() ? kDefaultLambda : bandwidth.cast<double>());
+  const DoubleArray given = vectors<DoubleArray>(centres, "centres");
+  std::vector<glm::dvec3> all;
+  for (py::ssize_t i = 0; i < given.size() / 3; ++i) all.push_back(unit(given.data() + 3 * i));
+  if (bandwidth.is_none()) return make_basis_from_centres(name, all);
+  const DoubleArray lambdas = real_array<DoubleArray>(bandwidth, "bandwidth");
+  if (lambdas.ndim() == 0) return make_basis_from_centres(name, all, *lambdas.data());
+  return make_basis_from_centres(name, all,
+                                 std::vector<double>(lambdas.data(), lambdas.data() + lambdas.size()));
+}
+
+/// Applies `values_at(w, out)`, which writes `count` numbers, to each direction of an array (..., 3).
+template <typename Values>
+py::array_t<double> at_each(const py::object& directions, int count, const Values& values_at) {
+  const DoubleArray given = vectors<DoubleArray>(directions, "directions");
+  py::array_t<double> made(shape_with_last(given, count));
+  for (py::ssize_t i = 0; i < given.size() / 3; ++i)
+    values_at(unit(given.data() + 3 * i),
+              std::span(made.mutable_data() + i * count, static_cast<std::size_t>(count)));
+  return made;
+}
+
+py::array_t<double> vector_array(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+DoubleArray coefficients(const Basis& basis, const py::object& given) {
+  DoubleArray c = real_array<DoubleArray>(given, "coefficients");
+  if (c.ndim() != 1 || c.shape(0) != basis.size()) {
+    throw py::value_error("coefficients: found shape " + std::string(py::str(c.attr("shape"))) +
+                          ", allowed: (" + std::to_string(basis.size()) + ",)");
+  }
+  return c;
+}
+
+/// A^-1 Int b f dw by quadrature.
+py::array_t<double> project(const Basis& basis, const py::function& function) {
+  std::vector<QuadratureNode> nodes = quadrature(basis, octants());
+  py::array_t<double> directions({static_cast<py::ssize_t>(nodes.size()), py::ssize_t{3}});
+  double* out = directions.mutable_data();
+  for (const QuadratureNode& node : nodes) {
+    for (int i = 0; i < 3; ++i) *out++ = node.w[i];
+  }
+  const DoubleArray values = real_array<DoubleArray>(function(directions), "values of the function");
+  if (values.ndim() != 1 || values.shape(0) != directions.shape(0)) {
+    throw py::value_error("values of the function: found shape " +
+                          std::string(py::str(values.attr("shape"))) + ", allowed: (" +
+                          std::to_string(directions.shape(0)) + ",)");
+  }
+  std::vector<double> moments(static_cast<std::size_t>(basis.size()));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::vector<double> b = basis.evaluate(nodes[k].w);
+    for (std::size_t i = 0; i < b.size(); ++i) moments[i] += nodes[k].weight * values.data()[k] * b[i];
+  }
+  return vector_array(basis.gram_inverse() * moments);
+}
+
+py::dict lobe(const Basis& basis, const py::object& axis, const py::object& given) {
+  const DoubleArray direction = vectors<DoubleArray>(axis, "axis");
+  if (direction.ndim() != 1) throw py::value_error("axis: allowed: three numbers");
+  const glm::dvec3 d = unit(direction.data());
+  std::vector<double> c = basis.clamped_cosine(d);
+  if (!given.is_none()) {
+    const DoubleArray array = coefficients(basis, given);
+    c.assign(array.data(), array.data() + array.size());
+  }
+  const LobeQuality quality = lobe_quality(basis, c, d);
+  return py::dict(py::arg("relative_l2") = quality.relative_l2, py::arg("minimum") = quality.minimum,
+                  py::arg("flux") = quality.flux, py::arg("peak_error_degrees") = quality.peak_error_degrees);
+}
+
+}  // namespace
+
+void add_basis(py::module_& module) {
+  module.def("bases", &basis_names, "bases() -> list of the names of all bases.");
+  py::class_<Basis> type(
+      module, "Basis",
+      "Basis(name='sh3', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
+      "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; centres: array "
+      "(N, 3), for\n"
+      "radial functions of one's own. Directions may have any length.");
+  type.def(py::init(&make), py::arg("name") = "sh3", py::arg("bandwidth") = py::none(),
+           py::arg("centres") = py::none());
+  type.def_property_readonly("name", &Basis::name);
+  type.def("__len__", &Basis::size);
+  type.def_property_readonly("condition", &Basis::condition, "Condition number of the Gram matrix.");
+  type.def_property_readonly(
+      "integrals", [](const Basis& b) { return vector_array(b.integrals()); },
+      "Array (N,): integral of each function.");
+  type.def_property_readonly(
+      "centres",
+      [](const Basis& b) {
+        py::array_t<double> made({static_cast<py::ssize_t>(b.centres().size()), py::ssize_t{3}});
+        double* out = made.mutable_data();
+        for (const glm::dvec3& centre : b.centres()) {
+          for (int i = 0; i < 3; ++i) *out++ = centre[i];
+        }
+        return made;
+      },
+      "Array (N, 3) of unit vectors; (0, 3) without centres.");
+  type.def_property_readonly(
+      "bandwidths", [](const Basis& b) { return vector_array(b.lambdas()); },
+      "Array (N,); (0,) without centres.");
+  type.def(
+      "evaluate",
+      [](const Basis& basis, const py::object& directions) {
+        return at_each(directions, basis.size(),
+                       [&](const glm::dvec3& w, std::span<double> out) { basis.evaluate(w, out); });
+      },
+      py::arg("directions"), "evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w).");
+  type.def(
+      "clamped_cosine",
+      [](const Basis& basis, const py::object& axes) {
+        return at_each(axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
+          const std::vector<double> c = basis.clamped_cosine(d);
+          std::copy(c.begin(), c.end(), out.begin());
+        });
+      },
+      py::arg("axes"),
+      "clamped_cosine(axes (..., 3)) -> float64 array (..., N): exact projection of max(0, w . axis).");
+  type.def("project", &project, py::arg("function"),
+           "project(function) -> float64 array (N,): least-squares projection of a function that takes "
+           "directions\n"
+           "(K, 3) and returns (K,) values.");
+  type.def("lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
+           "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) against the "
+           "clamped\n"
+           "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
+}
+
+}  // namespace clpv::python

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Parts of the Python module clpv, and conversions that several of them use.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <chrono>
+#include <future>
+#include <vector>
+
+#include "clpv/scene.hpp"
+#include "support/interrupt.hpp"
+
+namespace clpv::python {
+
+namespace py = pybind11;
+
+void add_errors(py::module_& module);
+void add_scene(py::module_& module);
+void add_image(py::module_& module);
+void add_renderer(py::module_& module);
+void add_basis(py::module_& module);
+
+using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Converts anything that NumPy accepts as an array of real numbers; copies only if it must. Throws TypeError otherwise.
+template <typename Array>
+Array real_array(const py::object& given, const char* what) {
+  const py::array any = py::array::ensure(given);
+  if (!any) PyErr_Clear();
+  if (!any || std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
+    throw py::type_error(std::string(what) + ": found " +
+                         (any ? "an array of " + std::string(py::str(any.dtype()))
+                              : std::string(py::str(py::type::of(given)))) +
+                         ", allowed: an array of real numbers");
+  }
+  return Array::ensure(any);
+}
+
+/// Like real_array(), for vectors of three: shape (..., 3). Throws ValueError with the shape found.
+template <typename Array>
+Array vectors(const py::object& given, const char* what) {
+  Array array = real_array<Array>(given, what);
+  if (array.ndim() > 0 && array.shape(array.ndim() - 1) == 3) return array;
+  throw py::value_error(std::string(what) + ": found shape " + std::string(py::str(array.attr("shape"))) +
+                        ", allowed: (..., 3)");
+}
+
+/// The shape of vectors(), with the last axis replaced.
+inline std::vector<py::ssize_t> shape_with_last(const py::array& vectors, py::ssize_t last) {
+  std::vector<py::ssize_t> shape(vectors.shape(), vectors.shape() + vectors.ndim());
+  shape.back() = last;
+  return shape;
+}
+
+/// An array that owns `values`, without a copy.
+inline py::array_t<float> array_of(std::vector<float> values, const std::vector<py::ssize_t>& shape) {
+  auto owned = std::make_unique<std::vector<float>>(std::move(values));
+  const float* data = owned->data();
+  const py::capsule owner(owned.release(), [](void* p) { delete static_cast<std::vector<float>*>(p); });
+  return py::array_t<float>(shape, data, owner);
+}
+
+inline py::tuple tuple_of(const Vec3& v) {
+  return py::make_tuple(v[0], v[1], v[2]);
+}
+
+/// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile. After Ctrl-C the work ends at its
+/// next step, and the signal's exception is raised.
+template <typename Work>
+auto interruptible(const Work& work) {
+  py::gil_scoped_release released;
+  auto result = std::async(std::launch::async, work);
+  while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+    py::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() == 0) continue;
+    py::error_already_set raised;
+    {
+      py::gil_scoped_release waiting;
+      set_interrupted(true);
+      result.wait();
+      set_interrupted(false);
+    }
+    throw raised;
+  }
+  return result.get();
+}
+
+}  // namespace clpv::python

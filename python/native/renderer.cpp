@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Renderer, Volume and pathtrace.
+#include "clpv/renderer.hpp"
+
+#include "clpv/pathtrace.hpp"
+#include "module.hpp"
+#include "options/show.hpp"
+
+namespace clpv::python {
+namespace {
+
+/// Light of a cascade; the coefficients are a view that keeps it alive.
+struct PythonVolume {
+  LightVolume volume;
+  py::array_t<float> coefficients;
+};
+
+std::string option_text(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
+  return py::str(value);
+}
+
+/// Options from keyword arguments: cascade_size=12.5 is option cascade-size.
+Options options_of(const py::kwargs& given) {
+  Options options;
+  for (const auto& [key, value] : given) {
+    std::string name = key.cast<std::string>();
+    if (name.ends_with('_')) name.pop_back();  // lambda_, since lambda is a keyword
+    std::replace(name.begin(), name.end(), '_', '-');
+    options.set(name, option_text(value));
+  }
+  return options;
+}
+
+CameraChoice camera_choice(const std::optional<CameraChoice>& given) {
+  return given.value_or(CameraChoice());
+}
+
+py::dict dict_of(const Stats& stats) {
+  py::dict all;
+  for (const auto& [stage, ms] : stats.stages) all[py::str(stage)] = ms;
+  all["frame"] = stats.frame_ms;
+  all["build"] = stats.build_ms;
+  all["device_bytes"] = stats.device_bytes;
+  all["peak_device_bytes"] = stats.peak_device_bytes;
+  return all;
+}
+
+py::array_t<float> irradiance(Renderer& renderer, const py::object& points, const py::object& normals) {
+  const FloatArray positions = vectors<FloatArray>(points, "points"),
+                   facing = vectors<FloatArray>(normals, "normals");
+  const auto shape = shape_with_last(positions, 3);
+  if (shape != shape_with_last(facing, 3)) {
+    throw py::value_error("normals: found shape " + std::string(py::str(facing.attr("shape"))) +
+                          ", allowed: that of points, " + std::string(py::str(positions.attr("shape"))));
+  }
+  const auto as_span = [](const FloatArray& array) {
+    return std::span(reinterpret_cast<const std::array<float, 3>*>(array.data()),
+                     static_cast<std::size_t>(array.size()) / 3);
+  };
+  const auto found = interruptible([&] { return renderer.irradiance(as_span(positions), as_span(facing)); });
+  py::array_t<float> result(shape);
+  if (!found.empty()) std::memcpy(result.mutable_data(), found.data(), found.size() * sizeof(found[0]));
+  return result;
+}
+
+std::vector<PythonVolume> volumes(Renderer& renderer) {
+  std::vector<PythonVolume> all;
+  for (LightVolume& volume : interruptible([&] { return renderer.volumes(); })) {
+    auto values = array_of(std::move(volume.values), {3, volume.coefficients, volume.n, volume.n, volume.n});
+    all.push_back({std::move(volume), std::move(values)});
+  }
+  return all;
+}
+
+void add_volume(py::module_& module) {
+  py::class_<PythonVolume> type(module, "Volume", "Light of one cascade after propagation: n^3 cubic cells.");
+  type.def_property_readonly(
+      "origin", [](const PythonVolume& v) { return tuple_of(v.volume.origin); },
+      "Minimum corner x, y, z [m].");
+  type.def_property_readonly(
+      "cell", [](const PythonVolume& v) { return v.volume.cell; }, "Edge of a cell [m].");
+  type.def_property_readonly(
+      "basis", [](const PythonVolume& v) { return v.volume.basis; },
+      "Name of the basis of the coefficients: sh3 after a sweep, else that of option basis.");
+  type.def_readonly(
+      "coefficients", &PythonVolume::coefficients,
+      "float32 array (3, N, z, y, x): red, green, blue; N coefficients c_i of radiant intensity\n"
+      "I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I / cell^2\n"
+      "is the radiance [W/m^2/sr] about the cell's centre.");
+  type.def("__repr__", [](const PythonVolume& v) {
+    return fmt::format("Volume(origin=({}, {}, {}), cell={}, n={}, basis='{}')", v.volume.origin[0],
+                       v.volume.origin[1], v.volume.origin[2], v.volume.cell, v.volume.n, v.volume.basis);
+  });
+}
+
+}  // namespace
+
+void add_renderer(py::module_& module) {
+  add_volume(module);
+  py::class_<Renderer> type(
+      module, "Renderer",
+      "Renderer(scene, device='', **options): renders frames of one scene on one OpenCL device.\n\n"
+      "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the first usable "
+      "one.\n"
+      "options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is on or off.\n"
+      "Results that do not change are cached from frame to frame. Calls from several threads run one after "
+      "the other.\n"
+      "Raises UsageError, DeviceError, ResourceError.");
+  type.def(py::init([](const SceneFile& scene, const std::string& device, const py::kwargs& given) {
+             const Options options = options_of(given);
+             return interruptible([&] { return Renderer(scene, options, device); });
+           }),
+           py::arg("scene"), py::arg("device") = "");
+  type.def(
+      "render",
+      [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
+         double time) {
+        const View what = named<View>("view", view);
+        return interruptible([&] { return renderer.render(what, camera_choice(camera), time); });
+      },
+      py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
+      "render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.\n\n"
+      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or cells: irradiance with\n"
+      "the finest cascade's cells as spheres;\n"
+      "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene.");
+  type.def(
+      "show",
+      [](Renderer& renderer, const std::string& view) {
+        const View what = named<View>("view", view);
+        return interruptible([&] { return renderer.show(what); });
+      },
+      py::arg("view"), "show(view) -> Image: another view of the last frame, without rendering it again.");
+  type.def("irradiance", &irradiance, py::arg("points"), py::arg("normals"),
+           "irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, green, "
+           "blue.\n\n"
+           "points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, without "
+           "option near;\n"
+           "0 outside of the cascades. Computed on the device.");
+  type.def("volumes", &volumes, "volumes() -> list of Volume of the last frame, finest cascade first.");
+  type.def_property_readonly(
+      "stats",
+      [](const Renderer& renderer) { return dict_of(interruptible([&] { return renderer.stats(); })); },
+      "Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or "
+      "not needed),\n"
+      "'frame': wall time of render() [ms], 'build': compilation so far [ms], 'device_bytes', "
+      "'peak_device_bytes'.");
+  module.def(
+      "pathtrace",
+      [](const SceneFile& scene, const std::string& view, const std::optional<CameraChoice>& camera,
+         int width, int height, int bounces, std::uint32_t samples, double noise, std::uint64_t seed,
+         int threads, double time) {
+        const View what = named<View>("view", view);
+        TraceOptions options{width, height, bounces, samples, noise, seed, threads, time, {}};
+        return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); });
+      },
+      py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("width") = 960,
+      py::arg("height") = 540, py::arg("bounces") = 1, py::arg("samples") = 0, py::arg("noise") = 0.02,
+      py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0,
+      "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
+      "bounces: reflections between light and visible surface, 0 for all; samples: paths per pixel, 0 for as "
+      "many as\n"
+      "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.");
+}
+
+}  // namespace clpv::python

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Camera, Light and Scene.
+#include "module.hpp"
+#include "scene/light_kind.hpp"
+
+namespace clpv::python {
+namespace {
+
+std::string repr(const py::object& object, const std::vector<const char*>& members) {
+  std::string text = std::string(py::str(py::type::of(object).attr("__name__"))) + "(";
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    text +=
+        std::string(i > 0 ? ", " : "") + members[i] + "=" + std::string(py::repr(object.attr(members[i])));
+  }
+  return text + ")";
+}
+
+/// Adds repr, equality and replace(), given the names of the constructor's arguments.
+template <typename T>
+void add_value_methods(py::class_<T>& type, const std::vector<const char*>& members) {
+  type.def("__repr__", [members](const py::object& self) { return repr(self, members); });
+  type.def("__eq__", [members](const py::object& self, const py::object& other) {
+    if (!py::isinstance<T>(other)) return false;
+    for (const char* member : members) {
+      if (!self.attr(member).equal(other.attr(member))) return false;
+    }
+    return true;
+  });
+  type.def(
+      "replace",
+      [members](const py::object& self, const py::kwargs& changes) {
+        py::dict all;
+        for (const char* member : members) all[member] = self.attr(member);
+        all.attr("update")(changes);
+        return py::type::of(self)(**all);
+      },
+      "replace(**changes): a copy with other values of some arguments.");
+}
+
+void add_camera(py::module_& module) {
+  py::class_<Camera> type(
+      module, "Camera",
+      "Perspective camera. Immutable; replace() makes another. Values are checked where it is used.\n\n"
+      "eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];\n"
+      "near: nearest visible depth [m]; light: name of its only light, empty for all.");
+  type.def(py::init([](const Vec3& eye, const Vec3& target, const Vec3& up, double fov, double near,
+                       std::string name, std::string light) {
+             return Camera{eye, target, up, fov, near, std::move(name), std::move(light)};
+           }),
+           py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0), py::arg("fov") = 60.0,
+           py::arg("near") = 0.05, py::arg("name") = "", py::arg("light") = "");
+  type.def_property_readonly("eye", [](const Camera& c) { return tuple_of(c.eye); });
+  type.def_property_readonly("target", [](const Camera& c) { return tuple_of(c.target); });
+  type.def_property_readonly("up", [](const Camera& c) { return tuple_of(c.up); });
+  type.def_readonly("fov", &Camera::vertical_fov_degrees);
+  type.def_readonly("near", &Camera::near);
+  type.def_readonly("name", &Camera::name);
+  type.def_readonly("light", &Camera::light);
+  add_value_methods(type, {"eye", "target", "up", "fov", "near", "name", "light"});
+}
+
+void add_light(py::module_& module) {
+  py::class_<Light> type(
+      module, "Light",
+      "Light without extent. Immutable; replace() makes another. Values are checked where it is used.\n\n"
+      "kind: 'directional', 'spot' or 'point'; position [m]; direction in which light travels;\n"
+      "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else [cd = "
+      "W/sr];\n"
+      "range [m], 0 for no limit; inner_cone, outer_cone: angles of a spot [degrees].");
+  type.def(
+      py::init([](const std::string& kind, const Vec3& position, const Vec3& direction,
+                  const py::object& intensity, double range, double inner, double outer, std::string name) {
+        Vec3 rgb{};
+        if (py::isinstance<py::float_>(intensity) || py::isinstance<py::int_>(intensity)) {
+          rgb.fill(intensity.cast<double>());
+        } else {
+          rgb = intensity.cast<Vec3>();
+        }
+        return Light{
+            named<LightKind>("kind", kind), position, direction, rgb, range, inner, outer, std::move(name)};
+      }),
+      py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
+      py::arg("direction") = py::make_tuple(0, -1, 0), py::arg("intensity") = py::make_tuple(1, 1, 1),
+      py::arg("range") = 0.0, py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0,
+      py::arg("name") = "");
+  type.def_property_readonly("kind", [](const Light& l) { return std::string(name_of(l.kind)); });
+  type.def_property_readonly("position", [](const Light& l) { return tuple_of(l.position); });
+  type.def_property_readonly("direction", [](const Light& l) { return tuple_of(l.direction); });
+  type.def_property_readonly("intensity", [](const Light& l) { return tuple_of(l.intensity); });
+  type.def_readonly("range", &Light::range);
+  type.def_readonly("inner_cone", &Light::inner_cone_degrees);
+  type.def_readonly("outer_cone", &Light::outer_cone_degrees);
+  type.def_readonly("name", &Light::name);
+  add_value_methods(
+      type, {"kind", "position", "direction", "intensity", "range", "inner_cone", "outer_cone", "name"});
+}
+
+}  // namespace
+
+void add_scene(py::module_& module) {
+  add_camera(module);
+  add_light(module);
+  py::class_<SceneFile> type(module, "Scene",
+                             "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); "
+                             "`model` replaces that of the file.\n\n"
+                             "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
+                             "place, value found and value allowed.");
+  type.def(py::init([](const std::filesystem::path& path, const std::optional<std::filesystem::path>& model) {
+             return interruptible([&] { return SceneFile(path, model.value_or("")); });
+           }),
+           py::arg("path"), py::arg("model") = py::none());
+  type.def_property(
+      "cameras", [](const SceneFile& scene) { return py::tuple(py::cast(scene.cameras())); },
+      [](SceneFile& scene, const std::vector<Camera>& cameras) {
+        py::gil_scoped_release released;
+        scene.set_cameras(cameras);
+      },
+      "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
+  type.def_property(
+      "lights", [](const SceneFile& scene) { return py::tuple(py::cast(scene.lights())); },
+      [](SceneFile& scene, const std::vector<Light>& lights) {
+        py::gil_scoped_release released;
+        scene.set_lights(lights);
+      },
+      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame of every "
+      "renderer\n"
+      "of this scene recomputes what depends on them.");
+  type.def_property_readonly("moves", &SceneFile::moves, "True if anything is animated.");
+  type.def_property_readonly(
+      "notes", [](const SceneFile& scene) { return py::tuple(py::cast(scene.notes())); },
+      "One sentence for each thing skipped or added by the loader.");
+  type.def_property_readonly(
+      "bounds",
+      [](const SceneFile& scene) {
+        const auto bounds = scene.bounds();
+        return py::make_tuple(tuple_of(bounds[0]), tuple_of(bounds[1]));
+      },
+      "Lower and upper corner of the bounding box [m], at 0 s.");
+  type.def_property_readonly("exposure", &SceneFile::exposure, "Exposure of a display [EV].");
+}
+
+}  // namespace clpv::python

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""The module of the build tree, small frames, and the program. CLPV_BUILD: the build folder."""
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+import clpv
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ["CLPV_BUILD"])
+CORNELL = ROOT / "scenes/cornell.json"
+SMALL = {"basis": "sh2", "width": 48, "height": 27, "grid": 16, "rsm_size": 64}
+FRONT = clpv.Camera(eye=(0.278, 0.273, -0.18), target=(0.278, 0.273, 0.28), fov=75)
+
+
+def program(*arguments):
+    words = [str(BUILD / "clpv"), *map(str, arguments)]
+    return subprocess.run(words, check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture(scope="session")
+def scene():
+    return clpv.Scene(CORNELL)
+
+
+@pytest.fixture(scope="session")
+def renderer(scene):
+    made = clpv.Renderer(scene, **SMALL)
+    made.render()
+    return made

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""Bases, against closed forms."""
+import math
+
+import numpy as np
+import pytest
+
+import clpv
+
+
+def directions(count=200):
+    w = np.random.default_rng(2).normal(size=(count, 3))
+    return w / np.linalg.norm(w, axis=1, keepdims=True)
+
+
+def test_harmonics_have_their_closed_form():
+    basis, w = clpv.Basis("sh2"), directions()
+    assert "sh2" in clpv.bases() and len(basis) == 4
+    values = basis.evaluate(w.reshape(20, 10, 3))
+    assert values.shape == (20, 10, 4)
+    assert np.allclose(values[..., 0], 1 / math.sqrt(4 * math.pi))
+    assert np.allclose(np.abs(values.reshape(-1, 4)[:, 2]), math.sqrt(3 / (4 * math.pi)) * np.abs(w[:, 2]))
+
+
+def test_projection_reproduces_functions_of_the_basis():
+    for name in clpv.bases():
+        basis = clpv.Basis(name)
+        c = np.random.default_rng(3).normal(size=len(basis))
+        assert np.allclose(basis.project(lambda w: basis.evaluate(w) @ c), c, atol=1e-6 * basis.condition), name
+
+
+def test_lobes():
+    basis = clpv.Basis("sh3")
+    lobe = basis.lobe((0, 0, 2))
+    assert lobe["flux"] == pytest.approx(math.pi) and 0 < lobe["relative_l2"] < 0.2
+    assert basis.lobe((0, 0, 1), np.zeros(9))["relative_l2"] == pytest.approx(1)
+    assert basis.clamped_cosine(np.eye(3)).shape == (3, 9)
+
+
+def test_own_centres():
+    basis = clpv.Basis("mine", bandwidth=0.3, centres=[[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -2, 0]])
+    assert len(basis) == 4 and basis.name == "mine"
+    assert np.allclose(basis.centres[3], [0, -1, 0]) and np.allclose(basis.bandwidths, 0.3)
+
+
+@pytest.mark.parametrize("make, error", [
+    (lambda: clpv.Basis("nothing"), clpv.UsageError), (lambda: clpv.Basis("srbf4", bandwidth=1.5), clpv.UsageError),
+    (lambda: clpv.Basis("mine", centres=[[0, 0, 0]]), clpv.UsageError),
+    (lambda: clpv.Basis("mine", centres=[[1, 0]]), ValueError),
+    (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError), (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),
+    (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError), (lambda: clpv.Basis().project(lambda w: w), ValueError),
+    (lambda: clpv.Basis().project(lambda w: 1 / 0), ZeroDivisionError),
+])
+def test_bad_input(make, error):
+    with pytest.raises(error):
+        make()

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""The package as users meet it: the program of the documentation, stubs, interrupts, import without the native module."""
+import inspect
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import clpv
+from conftest import BUILD, CORNELL, ROOT
+
+
+def run(code, **more):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=ROOT, **more)
+
+
+def test_the_example_runs_as_written():
+    script = (ROOT / "examples/bases.py").read_text(encoding="utf-8")
+    small = script.replace("width=240, height=135", "width=32, height=18").replace("noise=0.02", "noise=0.2")
+    small = small.replace("clpv.bases()", "clpv.bases()[:2]")  # others take long to compile
+    assert small != script
+    ended = run(small)
+    assert ended.returncode == 0, ended.stderr
+    lines = ended.stdout.splitlines()
+    assert [line.split()[0] for line in lines] == clpv.bases()[:2]
+    assert all(0 < float(line.split()[1]) < 2 and float(line.split()[2]) > 0 for line in lines)
+
+
+def test_stubs_are_up_to_date():
+    ended = subprocess.run([sys.executable, ROOT / "scripts/stubs", "--check"], capture_output=True, text=True,
+                           check=False)
+    assert ended.returncode == 0, ended.stderr
+
+
+def test_every_name_has_a_docstring():
+    for name in clpv.__all__:
+        member = getattr(clpv, name)
+        assert member.__doc__, name
+        for inner, value in vars(member).items() if inspect.isclass(member) else []:
+            if not inner.startswith("_") and callable(value):
+                assert value.__doc__, f"{name}.{inner}"
+
+
+def test_draw_imports_without_the_native_module():
+    ended = run("import sys; sys.modules['clpv._native'] = None\n"
+                "from clpv import draw; import clpv.draw.style; print(draw.__name__)\n"
+                "import clpv\ntry:\n  clpv.Scene\nexcept ImportError:\n  print('no native module')")
+    assert ended.stdout.split("\n")[:2] == ["clpv.draw", "no native module"], ended.stderr
+
+
+@pytest.mark.parametrize("work", ["clpv.pathtrace(scene, samples=1 << 20)"])
+def test_ctrl_c_ends_long_work(work):
+    code = f"import clpv\nscene = clpv.Scene({str(CORNELL)!r})\nprint('started', flush=True)\n{work}"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "started\n"
+        time.sleep(0.5)
+        child.send_signal(signal.SIGINT)
+        started = time.monotonic()
+        errors = child.communicate(timeout=60)[1]
+        assert "KeyboardInterrupt" in errors and time.monotonic() - started < 10
+        assert child.returncode in (1, 130, -signal.SIGINT)
+
+
+def test_work_goes_on_after_an_interrupt():
+    ended = run("import clpv, signal\nscene = clpv.Scene('scenes/cornell.json')\nsignal.alarm(1)\n"
+                "signal.signal(signal.SIGALRM, lambda *a: (_ for _ in ()).throw(TimeoutError('late')))\n"
+                "try:\n  clpv.pathtrace(scene, samples=1 << 20)\nexcept TimeoutError as e:\n  print(e)\n"
+                "print(clpv.pathtrace(scene, width=8, height=8, samples=1).width)")
+    assert ended.stdout == "late\n8\n", ended.stderr
+
+
+def test_the_gil_is_released():
+    """A thread counts while the main thread traces."""
+    import threading
+    scene, counted, done = clpv.Scene(CORNELL), [0], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    clpv.pathtrace(scene, width=96, height=54, samples=64)
+    done.set()
+    thread.join()
+    assert counted[0] > 10
+
+
+def test_version_is_the_programs():
+    said = subprocess.run([BUILD / "clpv", "--version"], capture_output=True, text=True, check=True).stdout
+    assert re.search(re.escape(clpv.__version__), said)
+    assert os.path.realpath(clpv.__file__).startswith(str(ROOT)), "the module under test is the tree's"

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+"""Images, cameras, lights, volumes: equal to what the program writes; bad input."""
+import gc
+import math
+import threading
+
+import numpy as np
+import pytest
+
+import clpv
+from conftest import CORNELL, FRONT, SMALL, program
+
+
+def flags():
+    return [word for name, value in SMALL.items() for word in (f"--{name.replace('_', '-')}", value)]
+
+
+def test_images_are_the_programs_byte_for_byte(tmp_path, renderer):
+    program("render", CORNELL, "--camera", "front", *flags(), "-o", tmp_path / "program.exr")
+    image = renderer.render("full", camera="front")
+    written = clpv.read_image(tmp_path / "program.exr")
+    assert written.array.tobytes() == image.array.tobytes()
+    image.save(tmp_path / "module.exr")
+    assert clpv.read_image(tmp_path / "module.exr").array.tobytes() == image.array.tobytes()
+    assert image.metadata["basis"] == "sh2" and image.channels == ("R", "G", "B", "A")
+    assert image.array.shape == (27, 48, 4) and image.array.dtype == np.float32
+
+
+def test_pathtrace_is_the_programs_byte_for_byte(tmp_path, scene):
+    program("pathtrace", CORNELL, "--width", 16, "--height", 9, "--spp", 4, "--view", "indirect", "-o", tmp_path / "t.exr")
+    traced = clpv.pathtrace(scene, "indirect", width=16, height=9, samples=4)
+    assert clpv.read_image(tmp_path / "t.exr").array.tobytes() == traced.array.tobytes()
+
+
+def test_volumes_are_the_programs(tmp_path, renderer):
+    program("render", CORNELL, *flags(), "-o", tmp_path / "i.exr", "--dump-volume", tmp_path)
+    renderer.render()
+    for i, volume in enumerate(renderer.volumes()):
+        assert volume.coefficients.shape == (3, 9, 16, 16, 16) and volume.basis == "sh3"
+        assert np.array_equal(volume.coefficients, np.load(tmp_path / f"cascade{i}.npy"))
+        assert len(volume.origin) == 3 and volume.cell > 0
+
+
+def test_arrays_do_not_copy_and_outlive_their_owners(scene):
+    image = clpv.Renderer(scene, **SMALL).render()  # the renderer is gone
+    array, same = image.array, np.asarray(image)
+    assert np.shares_memory(array, same)
+    before = array.copy()
+    volume = clpv.Renderer(scene, **SMALL)
+    volume.render()
+    coefficients = volume.volumes()[0].coefficients
+    total = coefficients.sum()
+    del image, volume
+    gc.collect()
+    assert np.array_equal(array, before) and coefficients.sum() == total
+
+
+def test_a_camera_by_value(renderer):
+    named = renderer.render("full", camera="front").array
+    assert np.allclose(renderer.render("full", camera=FRONT).array, named, atol=1e-4 * named.max())
+    assert not np.allclose(renderer.render("full", camera=FRONT.replace(fov=40)).array, named, atol=0.01)
+    assert FRONT == clpv.Camera((0.278, 0.273, -0.18), np.array([0.278, 0.273, 0.28]), fov=75)
+    assert "fov=75" in repr(FRONT) and FRONT.replace(near=1).near == 1
+    with pytest.raises(AttributeError):
+        FRONT.fov = 3
+
+
+def test_lights_and_cameras_are_replaced():
+    scene = clpv.Scene(CORNELL)
+    renderer = clpv.Renderer(scene, **SMALL)
+    dim = renderer.render("indirect").array[..., :3].mean()
+    scene.lights = [light.replace(intensity=[3 * x for x in light.intensity]) for light in scene.lights]
+    assert renderer.render("indirect").array[..., :3].mean() == pytest.approx(3 * dim, rel=0.01)
+    assert renderer.stats["propagate"] > 0 and renderer.stats["blockers"] == 0
+    scene.lights = [clpv.Light("point", position=(0.278, 0.5, 0.28), intensity=2)]
+    assert scene.lights[0].kind == "point" and scene.lights[0].intensity == (2, 2, 2)
+    scene.cameras = [*scene.cameras, FRONT.replace(name="mine")]
+    renderer.render(camera="mine")
+    with pytest.raises(TypeError):
+        scene.lights = [3]
+    with pytest.raises(AttributeError):
+        scene.lights.append(clpv.Light())  # a tuple: a change would be lost
+
+
+def test_stats(scene):
+    renderer = clpv.Renderer(scene, **SMALL)
+    assert renderer.stats["propagate"] == 0
+    renderer.render()
+    stats = renderer.stats
+    assert stats["propagate"] > 0 and stats["frame"] > stats["propagate"] and stats["device_bytes"] > 0
+    renderer.render()
+    assert renderer.stats["propagate"] == 0, "cached"
+
+
+def test_irradiance_takes_arrays_of_any_layout(renderer):
+    renderer.render()
+    points = np.random.default_rng(1).uniform(0.1, 0.4, (5, 7, 3))
+    normals = np.broadcast_to([0.0, -2.0, 0.0], points.shape)  # strides of 0
+    light = renderer.irradiance(points, normals)
+    assert light.shape == points.shape and light.dtype == np.float32 and light.max() > 0
+    assert np.array_equal(renderer.irradiance(np.asfortranarray(points), normals), light)
+    assert np.array_equal(renderer.irradiance(points[::2, ::3], normals[::2, ::3]), light[::2, ::3])
+    assert np.array_equal(renderer.irradiance(points.astype(np.float32).tolist(), normals), light)
+    assert renderer.irradiance([0.2, 0.2, 0.2], [0, 1, 0]).shape == (3,)
+    assert renderer.irradiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
+    program_like = renderer.irradiance([[0.28, 0.27, 0.3]], [[0, -1, 0]])
+    assert (program_like > 0).all()
+
+
+@pytest.mark.parametrize("points, normals, error, text", [
+    (np.zeros((4, 2)), np.ones((4, 2)), ValueError, "(4, 2)"),
+    (np.zeros((4, 3)), np.ones((5, 3)), ValueError, "(5, 3)"),
+    (np.zeros(()), np.ones(()), ValueError, "()"),
+    (np.zeros((4, 3), complex), np.ones((4, 3)), TypeError, "complex"),
+    ([["a", "b", "c"]], [[0, 1, 0]], TypeError, "real numbers"),
+    ([[0, 0, 0], [1, 2]], [[0, 1, 0]], TypeError, "points"),
+    (None, [[0, 1, 0]], TypeError, "points"),
+    ([[0, 0, math.nan]], [[0, 1, 0]], clpv.UsageError, "point 0"),
+    ([[0, 0, 0]], [[0, 0, 0]], clpv.UsageError, "nonzero normal"),
+])
+@pytest.mark.filterwarnings("ignore")
+def test_bad_points(renderer, points, normals, error, text):
+    with pytest.raises(error) as raised:
+        renderer.irradiance(points, normals)
+    assert text in str(raised.value)
+
+
+@pytest.mark.parametrize("change, text", [
+    ({"target": FRONT.eye}, "the eye itself"), ({"fov": 0}, "vertical_fov_degrees"), ({"fov": 180}, "vertical_fov_degrees"),
+    ({"eye": (0, math.nan, 0)}, "eye"), ({"up": (0, 0, 0)}, "up"), ({"near": -1}, "near"),
+])
+def test_bad_cameras(renderer, scene, change, text):
+    for use in (lambda camera: renderer.render(camera=camera),
+                lambda camera: clpv.pathtrace(scene, camera=camera, width=8, height=8, samples=1)):
+        with pytest.raises(clpv.UsageError, match="camera: .*found.*allowed") as raised:
+            use(FRONT.replace(**change))
+        assert text in str(raised.value)
+
+
+def test_errors_have_their_kind(tmp_path, scene, renderer):
+    with pytest.raises(clpv.InputError, match="nowhere"):
+        clpv.Scene("/nowhere/scene.json")
+    with pytest.raises(clpv.UsageError, match="planes"):
+        clpv.Renderer(scene, layout="planes")
+    with pytest.raises(clpv.UsageError, match="unknown option 'no-such'"):
+        clpv.Renderer(scene, no_such=1)
+    with pytest.raises(clpv.UsageError, match="lambda: found '7'"):
+        clpv.Renderer(scene, lambda_=7)
+    with pytest.raises(clpv.DeviceError):
+        clpv.Renderer(scene, device="no device of this name")
+    with pytest.raises(clpv.UsageError, match="nobody"):
+        renderer.render(camera="nobody")
+    with pytest.raises(clpv.UsageError, match="time|seconds"):
+        renderer.render(time=math.nan)
+    with pytest.raises(clpv.UsageError, match="full"):
+        renderer.render("fulll")
+    with pytest.raises(clpv.ResourceError):
+        renderer.render().save(tmp_path / "no folder" / "image.exr")
+    with pytest.raises(ValueError):
+        clpv.Image(np.zeros((3, 4)))
+    with pytest.raises(ValueError):
+        clpv.Image(np.zeros((2, 2, 3)), channels=["R"])
+    with pytest.raises(clpv.UsageError, match="no frame"):
+        clpv.Renderer(scene, **SMALL).volumes()
+    assert issubclass(clpv.UsageError, ValueError) and issubclass(clpv.InputError, clpv.Error)
+
+
+def test_compare_takes_images_and_arrays(renderer):
+    image = renderer.render()
+    assert clpv.compare(image, image).identical
+    errors = clpv.compare(image.array * 2, image)
+    assert errors.best_gain == pytest.approx(0.5) and errors.nrmse > 0.9
+    assert clpv.compare(image.array[:, ::2], image.array[:, ::2]).identical, "not contiguous"
+    with pytest.raises(clpv.InputError, match="24 x 27"):
+        clpv.compare(image.array[:, ::2], image)
+
+
+def test_threads_share_a_renderer(renderer):
+    expected = renderer.render("indirect").array.copy()
+    found = []
+    threads = [threading.Thread(target=lambda: found.append(renderer.render("indirect").array)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 4 and all(np.array_equal(each, expected) for each in found)
+
+
+def test_200_renderers_do_not_leak(scene):
+    tiny = {"basis": "sh2", "transport": "sampled", "occlusion": False, "gather": "all", "width": 16, "height": 9,
+            "grid": 4, "cascades": 1, "rsm_size": 8, "shadow_size": 8}
+
+    def resident():
+        with open("/proc/self/statm", encoding="ascii") as statm:
+            return int(statm.read().split()[1]) * 4096
+
+    for i in range(200):
+        clpv.Renderer(scene, **tiny).render()
+        if i == 49:
+            before = resident()
+    assert resident() - before < 40e6, "bytes kept by 150 renderers"
