@@ -19,7 +19,7 @@ def test_pip_install(tmp_path):
         return ended.stdout
 
     run(sys.executable, "-m", "pip", "install", "-q", "--no-build-isolation", "--no-index", "--no-deps",
-        "--target", tmp_path / "site", f"-Cbuild-dir={tmp_path / 'build'}", f"-Ccmake.define.CLPV_PREBUILT={BUILD / 'libclpv.a'}", ROOT)
+        "--target", tmp_path / "site", f"--config-settings=build-dir={tmp_path / 'build'}", f"--config-settings=cmake.define.CLPV_PREBUILT={BUILD / 'libclpv.a'}", ROOT)
     said = run("env", f"PYTHONPATH={tmp_path / 'site'}", sys.executable, "-c",
                "import clpv, clpv.draw; s = clpv.Scene('%s/scenes/cornell.json')\n"
                "print(clpv.__version__, len(s.cameras), clpv.__file__)" % ROOT)

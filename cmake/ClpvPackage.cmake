@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# `cpack -G DEB` in the build folder: program, library, headers, man page and Python module as a package of Debian.
+set(CPACK_PACKAGE_NAME clpv)
+set(CPACK_PACKAGE_CONTACT "The authors of clpv <clpv@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+# Libraries come from the program (dpkg-shlibdeps). Any OpenCL device will do; linking the static library needs the -dev packages.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd, python3, python3-numpy")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-jinja2")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libglm-dev, libfmt-dev, libspdlog-dev, nlohmann-json3-dev, libopenimageio-dev, libembree-dev, libnlopt-dev, libtinygltf-dev, ocl-icd-opencl-dev")
+include(CPack)

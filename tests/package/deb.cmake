@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+# cmake -DBUILD=build -DSOURCE=project -DWORK=folder -DMODULE=0|1 -P deb.cmake
+# Builds the package of Debian, unpacks it into a folder of its own, and renders from there with the program and the module.
+find_program(DPKG dpkg-deb)
+find_program(SHLIBDEPS dpkg-shlibdeps)
+if(NOT DPKG OR NOT SHLIBDEPS)
+  message("skipped: dpkg-deb or dpkg-shlibdeps is not installed")
+  return()
+endif()
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE errors)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${status}: ${ARGN}\n${said}${errors}")
+  endif()
+  set(said "${said}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+cmake_path(GET CMAKE_COMMAND PARENT_PATH folder)
+run(${folder}/cpack -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK})
+file(GLOB package ${WORK}/clpv_*.deb)
+run(${DPKG} --info ${package})
+foreach(wanted libc6 libembree ocl-icd-libopencl1 libopenimageio pocl-opencl-icd python3-numpy)
+  if(NOT said MATCHES "Depends:[^\n]*${wanted}")
+    message(FATAL_ERROR "the package does not depend on ${wanted}: ${said}")
+  endif()
+endforeach()
+run(${DPKG} -x ${package} ${WORK}/root)
+foreach(wanted bin/clpv include/clpv/renderer.hpp lib/python3/dist-packages/clpv/draw/page.html)
+  if(NOT EXISTS ${WORK}/root/usr/${wanted})
+    message(FATAL_ERROR "the package lacks ${wanted}")
+  endif()
+endforeach()
+set(small --width 32 --height 18 --grid 8 --rsm-size 32 --cascades 1)
+run(${WORK}/root/usr/bin/clpv render ${SOURCE}/scenes/cornell.json ${small} -o ${WORK}/program.exr)
+if(MODULE)
+  file(WRITE ${WORK}/render.py "import clpv, sys
+options = dict(width=32, height=18, grid=8, rsm_size=32, cascades=1)
+image = clpv.Renderer(clpv.Scene(sys.argv[1]), **options).render()
+assert clpv.compare(image, clpv.read_image(sys.argv[2])).identical
+assert clpv.__file__.startswith(sys.argv[3]), clpv.__file__
+")
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK}/root/usr/lib/python3/dist-packages /usr/bin/python3 -B ${WORK}/render.py
+      ${SOURCE}/scenes/cornell.json ${WORK}/program.exr ${WORK}/root)
+endif()
