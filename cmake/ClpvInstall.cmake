@@ -20,7 +20,7 @@ endif()
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/clpv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
-# In a folder of its own: find_package searches folders of PATH, and the build folder may be one.
+# A separate folder: find_package searches folders of PATH, and the build folder may be one.
 set(package ${CMAKE_CURRENT_BINARY_DIR}/package)
 configure_package_config_file(cmake/clpvConfig.cmake.in ${package}/clpvConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)

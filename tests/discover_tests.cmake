@@ -5,9 +5,9 @@
 #   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -DCACHE=FOLDER -P discover_tests.cmake
 #
 # All tests keep compiled programs in CACHE: clpv's, and PoCL's unless POCL_CACHE_DIR is set. PATH begins with /usr/bin, since drawing
-# needs the modules of Debian's Python. LONG tests start first, so that none of them runs alone at the end.
+# needs the modules of Debian's Python. Time-outs have room for a machine five times slower. LONG tests start first, so that none of them runs alone at the end.
 cmake_minimum_required(VERSION 3.22)
-set(LONG killed drawing starved bench soak quality hostile sequence propagate frame gather inject)
+set(LONG killed helpers drawing starved bench soak quality hostile sequence propagate frame gather inject)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
 foreach(line IN LISTS lines)
@@ -32,7 +32,7 @@ foreach(stem IN LISTS stems)
   endif()
   list(JOIN filter_${stem} ":" filter)
   string(APPEND text "add_test([[${stem}]] [[${PROGRAM}]] [[--gtest_filter=${filter}]])\n"
-    "set_tests_properties([[${stem}]] PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]]\n"
+    "set_tests_properties([[${stem}]] PROPERTIES TIMEOUT 3000 COST ${cost} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]]\n"
     "  ENVIRONMENT_MODIFICATION PATH=path_list_prepend:/usr/bin)\n")
 endforeach()
 file(WRITE ${OUTPUT} "${text}")

@@ -162,7 +162,7 @@ TEST_F(QualityCommand, MeasuresOnlyWhatIsNamed) {
 
 TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
   std::ofstream(file("cache")) << "a file, so that no folder of this name can be made";
-  const test::Outcome outcome = quality("--basis sh2 --camera left --spp 4 --format json");
+  const test::Outcome outcome = quality("--basis sh2 --camera left --format json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("results are not cached"));
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["variants"].size(), 1u);

@@ -38,7 +38,7 @@ class Starved : public ::testing::Test {
 
   /// `timeout` goes first: the shim is for the program alone.
   static std::string program() {
-    return "timeout 120 env " + usual_kernels() +
+    return "timeout 600 env " + usual_kernels() +
            "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() +
            " CLPV_SHIM_REPORT=" + (*cache_ / "report").string() +
            " LD_PRELOAD=" CLPV_OPENCL_SHIM " " CLPV_PROGRAM;
@@ -102,7 +102,7 @@ TEST_F(Starved, OfACompiler) {
   const auto render = [&](const std::string& builds) {
     return run("CLPV_SHIM=clBuildProgram:" + builds +
                ":-11 CLPV_SHIM_REPORT= LD_PRELOAD=" CLPV_OPENCL_SHIM
-               " CLPV_PROGRAM_CACHE=off timeout 120 " CLPV_PROGRAM +
+               " CLPV_PROGRAM_CACHE=off timeout 600 " CLPV_PROGRAM +
                kTiny + "-o " + image.string());
   };
   const Outcome always = render("*");

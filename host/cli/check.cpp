@@ -143,20 +143,24 @@ std::vector<Job> list_jobs(Session& session, const Options& options) {
   return jobs;
 }
 
-/// Takes comparisons until none is left. Helpers begin at different stages, since those of one stage share kernels.
+/// Takes whole stages, since their comparisons share kernels, and then single comparisons of stages that others took,
+/// until none is left. The last stages take longest and come first.
 void help(Session& session, const Options& options) {
   become_helper();
   const Claims claims(options.claims);
   std::vector<Stage> stages = stages_of(options);
-  std::ranges::rotate(stages,
-                      stages.begin() + claims.number() * stages.size() / std::max(1u, helper_count()));
-  for (const Stage stage : stages) {
+  std::ranges::reverse(stages);
+  const auto take_from = [&](Stage stage) {
     check_stage(
         session, options, stage, [&](const Job& job) { return claims.take(job.name()); },
         [&](const Job& job, const reference::CheckResults& results) {
           claims.finish(job.name(), nlohmann::json(results).dump());
         });
+  };
+  for (const Stage stage : stages) {
+    if (claims.take(std::string(name_of(stage)))) take_from(stage);
   }
+  for (const Stage stage : stages) take_from(stage);
 }
 
 /// Collects results of the comparisons and prints each stage when it is complete.

@@ -87,7 +87,7 @@ void reject_misspelt_option(const CLI::App& app) {
   const std::vector<const CLI::App*> commands =
       app.get_subcommands().empty() ? std::vector<const CLI::App*>{&app}
                                     : std::vector<const CLI::App*>{app.get_subcommands().front(), &app};
-  for (const std::string& word : commands.front()->remaining()) {
+  for (const std::string& word : app.remaining(true)) {
     if (!word.starts_with("--")) continue;
     const std::string given = word.substr(0, word.find('='));
     std::string nearest;
@@ -117,7 +117,9 @@ class ShortHelp : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     short_ = mode == CLI::AppFormatMode::Normal;
-    return CLI::Formatter::make_help(app, std::move(name), mode);
+    std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+    for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);  // left by empty groups
+    return text;
   }
 
   std::string make_group(std::string group, bool positional,

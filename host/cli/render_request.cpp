@@ -11,11 +11,12 @@
 #include "support/error.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 
 namespace {
-constexpr double kMaxExposure = 64;  // 2^64: beyond any scene, and finite
+constexpr float kMaxExposure = 64;  // 2^64: beyond any scene, and finite
 }
 
 MovingScene SceneRequest::open() const {
@@ -40,7 +41,12 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
 
 void add_shown_options(CLI::App& command, RenderRequest& request) {
   add(command, "--exposure", "EV", request.exposure, "exposure of a PNG [EV] (default: the scene's)")
-      ->check(CLI::Range(-kMaxExposure, kMaxExposure));
+      ->check([](const std::string& text) {
+        const auto found = parse_number<float>(text);  // NaN is in no range
+        return found && std::abs(*found) <= kMaxExposure
+                   ? std::string()
+                   : fmt::format("found '{}', allowed: -{}..{}", text, kMaxExposure, kMaxExposure);
+      });
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 

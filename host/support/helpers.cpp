@@ -2,6 +2,7 @@
 #include "support/helpers.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -47,7 +48,8 @@ void set_helper_program(std::string file) {
 }
 
 unsigned helper_count() {
-  const unsigned cores = std::thread::hardware_concurrency();
+  cpu_set_t bound;  // to these cores; hardware_concurrency() counts all
+  const unsigned cores = ::sched_getaffinity(0, sizeof bound, &bound) == 0 ? CPU_COUNT(&bound) : 1;
   return helper_program().empty() || cores < 2 ? 0 : std::min(cores, kMaxHelpers);
 }
 
@@ -75,12 +77,6 @@ std::string Claims::result(const std::string& name) const {
 std::size_t Claims::finished_count() const {
   return std::ranges::count_if(fs::directory_iterator(folder_),
                                [](const auto& entry) { return entry.path().extension() == kDone; });
-}
-
-unsigned Claims::number() const {
-  unsigned number = 0;
-  while (!take(std::string("helper") + std::to_string(number))) ++number;
-  return number;
 }
 
 struct Helpers::Child {

@@ -144,7 +144,7 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       {.basis = "bins24", .grid = 9, .parts = {2, 1, 2}, .sky = true},
       {.basis = "sh3", .grid = 7, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
       {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::one_sided},
-      {.basis = "bins96", .grid = 5, .parts = {3, 2}, .blocking = false},
+      {.basis = "bins24", .grid = 5, .parts = {3, 2}, .blocking = false},
       {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},
   };
   for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
