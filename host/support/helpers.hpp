@@ -30,8 +30,6 @@ class Claims {
   /// Returns the result of a finished job.
   std::string result(const std::string& name) const;
   std::size_t finished_count() const;
-  /// Number of this process among those that ask, from 0.
-  unsigned number() const;
 
  private:
   std::filesystem::path folder_;
@@ -49,7 +47,7 @@ class Helpers {
   /// Waits a moment. Returns true while a helper runs.
   bool wait();
   const Claims& claims() const { return claims_; }
-  /// What failed helpers wrote, once wait() returned false; empty if all succeeded.
+  /// Returns the output of failed helpers once wait() returned false; empty if all succeeded.
   std::string failures() const { return failures_; }
 
  private:
