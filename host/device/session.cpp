@@ -102,7 +102,7 @@ void Session::build_described() {
   if (compilation_.claims) return;  // a helper builds what it launches
   compile_with_helpers();
   for (auto& [key, program] : programs_) {
-    stop_if_interrupted();
+    stop_if_interrupted("kernels were being compiled");
     build(*program);
   }
 }

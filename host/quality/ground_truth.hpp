@@ -24,7 +24,7 @@ struct GroundTruth {
 /// The file name contains a key over scene content, camera, size, options and program version, but no file paths.
 /// An unreadable file is traced again, with a warning.
 /// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
-/// Throws like trace_paths, and Error(run_time) where the folder cannot be written (before tracing).
+/// A folder that cannot be written is a warning before tracing. Throws like trace_paths.
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const PathTracerOptions& options, const TraceProgress& progress = {},
