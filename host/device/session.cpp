@@ -123,7 +123,7 @@ void Session::compile_with_helpers() {
   Helpers helpers(compilation_.helpers);
   while (helpers.wait()) {
     stop_if_interrupted("kernels were being compiled");
-    progress.reach(helpers.claims().finished_count());
+    progress.reach(std::min(helpers.claims().finished_count(), kernels));  // some are described later
   }
   helped_ = true;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
