@@ -101,10 +101,7 @@ void Session::build_described() {
   });
   if (compilation_.claims) return;  // a helper builds what it launches
   compile_with_helpers();
-  for (auto& [key, program] : programs_) {
-    stop_if_interrupted("kernels were being compiled");
-    build(*program);
-  }
+  for (auto& [key, program] : programs_) build(*program);
 }
 
 /// Lets helpers compile all kernels that this session will launch, if the driver's cache has not got them.

@@ -95,7 +95,7 @@ Plane filtered(const Plane& plane, int width, int height, const std::vector<doub
   return result;
 }
 
-/// What an observer sees of a channel.
+/// A channel without the detail that is too fine for an observer.
 Plane seen(const Plane& plane, int width, int height, const Sensitivity& channel, double pixels_per_degree) {
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * pi * pi)) * pixels_per_degree));
   Plane result(plane.size(), 0.0);
