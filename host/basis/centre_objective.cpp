@@ -10,8 +10,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNorm = 2 * kPi / 3;  // Int max(0, w . d)^2 dw
+using std::numbers::pi;
+constexpr double kNorm = 2 * pi / 3;  // Int max(0, w . d)^2 dw
 constexpr int kBands = 1024;  // at lambda = 0.9 the series of M ends at band 190, that of alpha at 370
 
 std::vector<double> bands(int power) {
@@ -23,7 +23,7 @@ std::vector<double> bands(int power) {
 /// 4 pi G(t; mu) with its derivatives.
 ZonalValue gram_entry(double t, double mu) {
   const double d = 1 - 2 * mu * t + mu * mu, numerator = 1 - mu * mu;
-  const double cubed = 4 * kPi / (d * std::sqrt(d));
+  const double cubed = 4 * pi / (d * std::sqrt(d));
   return {numerator * cubed, 3 * mu * numerator * cubed / d,
           cubed * (-2 * mu + 3 * numerator * (t - mu) / d)};
 }

@@ -8,7 +8,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kSeriesTail = 1e-17;  // below double's resolution of the sum
 constexpr int kSeriesTerms = 1 << 14;  // 2^15 degrees
 constexpr double kKernelTail = 1e-9;   // well below a float's resolution
@@ -24,18 +24,18 @@ constexpr double kNegligible = 1e-17;
 }  // namespace
 
 double cosine_band(int band) {
-  if (band == 0) return kPi;
-  if (band == 1) return 2 * kPi / 3;
+  if (band == 0) return pi;
+  if (band == 1) return 2 * pi / 3;
   if (band % 2 == 1) return 0;
   double b = 1.0 / 8;
   for (int k = 1; k < band / 2; ++k) b = next_moment(b, k);
-  return 2 * kPi * b;
+  return 2 * pi * b;
 }
 
-CosineOfPoisson::CosineOfPoisson(double lambda) : slope_(2 * kPi * lambda), terms_{kPi} {
+CosineOfPoisson::CosineOfPoisson(double lambda) : slope_(2 * pi * lambda), terms_{pi} {
   double power = lambda * lambda, b = 1.0 / 8;
   for (int k = 1; k < kSeriesTerms; ++k) {
-    const double term = 4 * kPi * (4.0 * k + 1) / 2 * b * power;
+    const double term = 4 * pi * (4.0 * k + 1) / 2 * b * power;
     // The rest is at most a geometric series of ratio lambda^2.
     if (std::abs(term) < kSeriesTail * (1 - lambda * lambda)) break;
     terms_.push_back(term);
@@ -61,12 +61,12 @@ std::vector<double> CosineOfPoisson::chebyshev() const {
   std::vector<double> values;
   for (int j = 0; j < nodes; ++j) {
     // x = cos(theta) = 2 t^2 - 1, hence t = cos(theta / 2).
-    values.push_back(even(std::cos(kPi * (j + 0.5) / nodes / 2)));
+    values.push_back(even(std::cos(pi * (j + 0.5) / nodes / 2)));
   }
   std::vector<double> c;
   for (int k = 0; k < std::min(nodes, kKernelTerms); ++k) {
     double sum = 0;
-    for (int j = 0; j < nodes; ++j) sum += values[j] * std::cos(kPi * k * (j + 0.5) / nodes);
+    for (int j = 0; j < nodes; ++j) sum += values[j] * std::cos(pi * k * (j + 0.5) / nodes);
     c.push_back(sum * (k == 0 ? 1.0 : 2.0) / nodes);
   }
   while (c.size() > 1 && std::abs(c.back()) < kKernelTail * std::abs(c[0])) c.pop_back();

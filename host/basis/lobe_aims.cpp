@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNorm = 2 * kPi / 3;       // Int max(0, w . d)^2 dw
+using std::numbers::pi;
+constexpr double kCosineNorm = 2 * pi / 3;       // Int max(0, w . d)^2 dw
 constexpr std::size_t kMaxWeights = 10000;  // bounds a search's run time
 
 WeightedDirection weighted_direction(const json& entry, const std::string& path, std::size_t index) {
@@ -70,14 +70,14 @@ LobeAims load_aims(const std::string& path) {
 double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
   std::vector<double> alpha(c.size());
   basis.cosine_integrals(d, alpha);
-  return std::sqrt(std::max(0.0, kNorm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / kNorm);
+  return std::sqrt(std::max(0.0, kCosineNorm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / kCosineNorm);
 }
 
 std::vector<glm::dvec3> even_directions(int count) {
   std::vector<glm::dvec3> directions;
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, radius = std::sqrt(1 - z * z);
-    const double azimuth = kPi * (3 - std::sqrt(5.0)) * i;
+    const double azimuth = pi * (3 - std::sqrt(5.0)) * i;
     directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
   }
   return directions;
@@ -97,15 +97,15 @@ double error_over(const Basis& basis, const LobeAims& aims) {
 
 double minimum_error(int functions) {
   // Each of the 2 l + 1 functions of band l represents A_l^2 / 4 pi of the square norm, which decreases with l.
-  double rest = kNorm;
+  double rest = kCosineNorm;
   for (int band = 0; functions > 0; ++band) {
-    const double each = std::pow(cosine_band(band), 2) / (4 * kPi);
+    const double each = std::pow(cosine_band(band), 2) / (4 * pi);
     if (each == 0) continue;  // odd bands above 1 contribute nothing
     const int taken = std::min(functions, 2 * band + 1);
     rest -= taken * each;
     functions -= taken;
   }
-  return std::sqrt(std::max(0.0, rest) / kNorm);
+  return std::sqrt(std::max(0.0, rest) / kCosineNorm);
 }
 
 }  // namespace clpv

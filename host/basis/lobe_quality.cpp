@@ -12,8 +12,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kSpacing = kPi / 90;  // between start points: finer than any lobe's features
+using std::numbers::pi;
+constexpr double kSpacing = pi / 90;  // between start points: finer than any lobe's features
 constexpr double kResolution = 1e-7;   // [rad] of the maximum's direction
 
 // Unit direction of f's maximum: the best of a grid of directions, refined by pattern search with shrinking steps.
@@ -27,8 +27,8 @@ glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
     best = w;
     return true;
   };
-  for (double theta = kSpacing / 2; theta < kPi; theta += kSpacing) {
-    for (double phi = 0; phi < 2 * kPi; phi += kSpacing) {
+  for (double theta = kSpacing / 2; theta < pi; theta += kSpacing) {
+    for (double phi = 0; phi < 2 * pi; phi += kSpacing) {
       improve({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
     }
   }
@@ -50,7 +50,7 @@ LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const gl
   };
   const glm::dvec3 peak = argmax(value), minimum = argmax([&](const glm::dvec3&w) { return -value(w); });
   return {relative_l2(basis, c, d), value(minimum), basis.energy(c),
-          std::atan2(glm::length(glm::cross(peak, d)), glm::dot(peak, d)) * 180 / kPi};
+          std::atan2(glm::length(glm::cross(peak, d)), glm::dot(peak, d)) * 180 / pi};
 }
 
 double mean_relative_l2(const Basis& basis, const Lobes& lobes) {

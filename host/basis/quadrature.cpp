@@ -11,7 +11,7 @@ namespace clpv {
 namespace {
 
 constexpr int kOrder = 12;            // Gauss points along each side of a triangle
-constexpr double kTolerance = 4e-15;  // relative to a test function's integral over the sphere
+constexpr double kRelativeError = 4e-15;  // relative to a test function's integral over the sphere
 constexpr int kMaxRefinements = 14;   // bisections of a triangle's edges: resolves peaks 1e-4 rad wide
 constexpr double kOnPlane = 1e-12;    // a corner closer than this lies on a plane
 
@@ -43,7 +43,7 @@ GaussRule gauss_rule() {
 }
 
 // Collapsed product rule on the flat triangle, projected onto the sphere: dw = (a . n) / |p|^3 dA.
-std::vector<QuadratureNode> nodes_of(const Triangle& t) {
+std::vector<QuadratureNode> triangle_nodes(const Triangle& t) {
   static const GaussRule rule = gauss_rule();
   const double volume = std::abs(glm::dot(t[0], glm::cross(t[1], t[2])));
   std::vector<QuadratureNode> nodes;
@@ -79,7 +79,7 @@ class Refinement {
  public:
   explicit Refinement(const Basis& basis) : basis_(basis) {}
 
-  void add(const Triangle& t) { refine(t, nodes_of(t), kMaxRefinements); }
+  void add(const Triangle& t) { refine(t, triangle_nodes(t), kMaxRefinements); }
   std::vector<QuadratureNode> take() { return std::move(nodes_); }
 
  private:
@@ -92,7 +92,7 @@ class Refinement {
     const std::vector<double> coarse = probe(basis_, nodes);
     std::vector<double> fine(coarse.size(), 0.0);
     for (std::size_t i = 0; i < children.size(); ++i) {
-      finer[i] = nodes_of(children[i]);
+      finer[i] = triangle_nodes(children[i]);
       const std::vector<double> integrals = probe(basis_, finer[i]);
       for (std::size_t k = 0; k < fine.size(); ++k) fine[k] += integrals[k];
     }
@@ -111,7 +111,7 @@ class Refinement {
     for (std::size_t i = 0; i < coarse.size(); ++i) {
       const double size =
           i < 2 * n ? basis_.gram()(static_cast<int>(i % n), static_cast<int>(i % n)) : 4 * std::numbers::pi;
-      if (!(std::abs(coarse[i] - fine[i]) <= kTolerance * size)) return false;
+      if (!(std::abs(coarse[i] - fine[i]) <= kRelativeError * size)) return false;
     }
     return true;
   }
@@ -170,7 +170,7 @@ std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
 std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon) {
   std::vector<QuadratureNode> nodes;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const std::vector<QuadratureNode> more = nodes_of(Triangle{polygon[0], polygon[i], polygon[i + 1]});
+    const std::vector<QuadratureNode> more = triangle_nodes(Triangle{polygon[0], polygon[i], polygon[i + 1]});
     nodes.insert(nodes.end(), more.begin(), more.end());
   }
   return nodes;

@@ -12,7 +12,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Coefficients of the Legendre polynomial P_l, [i] for z^i: (n+1) P_{n+1} = (2n+1) z P_n - n P_{n-1}.
 std::vector<double> legendre(int l) {
@@ -37,7 +37,7 @@ std::vector<double> derivative(const std::vector<double>& p) {
 double norm(int l, int m) {
   double ratio = 1;  // (l - m)! / (l + m)!
   for (int i = l - m + 1; i <= l + m; ++i) ratio /= i;
-  return std::sqrt((2 * l + 1) / (4 * kPi) * ratio * (m == 0 ? 1 : 2));
+  return std::sqrt((2 * l + 1) / (4 * pi) * ratio * (m == 0 ? 1 : 2));
 }
 
 double value_of(const std::vector<double>& polynomial, double z) {
@@ -60,7 +60,7 @@ SphericalHarmonics::SphericalHarmonics(int bands) : bands_(bands) {
     }
   }
   std::vector<double> integrals(size_, 0.0);
-  integrals[0] = std::sqrt(4 * kPi);
+  integrals[0] = std::sqrt(4 * pi);
   set_gram(Matrix::identity(size_), integrals);
 }
 

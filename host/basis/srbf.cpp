@@ -10,7 +10,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<glm::dvec3> axes() {
   return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -30,7 +30,7 @@ std::vector<glm::dvec3> cube() {
 void add_ring(std::vector<glm::dvec3>& centres, double z, double first_degrees) {
   const double radius = std::sqrt(1 - z * z);
   for (int i = 0; i < 3; ++i) {
-    const double azimuth = (first_degrees + 120 * i) * kPi / 180;
+    const double azimuth = (first_degrees + 120 * i) * pi / 180;
     centres.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
   }
 }
@@ -109,10 +109,10 @@ Srbf::Srbf(const std::string& name, const std::vector<glm::dvec3>& centres,
     for (int j = 0; j < size_; ++j) {
       const std::size_t a = i, b = j;
       const double t = i == j ? 1 : glm::dot(centres_[a], centres_[b]);
-      gram(i, j) = 4 * kPi * abel_poisson(t, lambdas_[a] * lambdas_[b]);
+      gram(i, j) = 4 * pi * abel_poisson(t, lambdas_[a] * lambdas_[b]);
     }
   }
-  set_gram(std::move(gram), std::vector<double>(centres.size(), 4 * kPi));
+  set_gram(std::move(gram), std::vector<double>(centres.size(), 4 * pi));
 }
 
 void Srbf::evaluate(const glm::dvec3& w, std::span<double> b) const {

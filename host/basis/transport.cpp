@@ -11,7 +11,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Face face_of(const glm::ivec3& travel, const glm::ivec3& normal) {
   const bool far = travel == normal;
@@ -100,7 +100,7 @@ double far_solid_angle() {
   return 4 * std::asin(0.1);
 }
 double side_solid_angle() {
-  return (4 * kPi / 6 - far_solid_angle()) / 4;
+  return (4 * pi / 6 - far_solid_angle()) / 4;
 }
 
 FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeOptions& lobes) {
@@ -118,7 +118,7 @@ FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeO
   transport.lobes = Matrix(basis.size(), static_cast<int>(kAxes.size()));
   for (std::size_t a = 0; a < kAxes.size(); ++a) {
     const std::vector<double> lobe = lobe_about(glm::dvec3(kAxes[a]));
-    const double carried = flux == FaceFlux::exact ? basis.energy(lobe) : kPi;
+    const double carried = flux == FaceFlux::exact ? basis.energy(lobe) : pi;
     for (int i = 0; i < basis.size(); ++i) {
       transport.lobes(i, static_cast<int>(a)) = lobe[i] / carried;
     }
