@@ -3,6 +3,7 @@
 // range and distance.
 //
 //   E = I cone^2 / max(d, d_min)^2      spot and point lights, 0 beyond the range;   E: constant for directional lights
+//   E T                                 with CLPV_MEDIUM: T of the path to the light (medium.h)
 #ifndef CLPV_LIGHTING_H
 #define CLPV_LIGHTING_H
 
@@ -10,13 +11,26 @@
 #include "shared/light.h"
 #include "vec.h"
 
+#if CLPV_MEDIUM
+#include "medium.h"
+#define CLPV_ATTENUATE(irradiance, light, position, towards, distance)                                          \
+  do {                                                                                                          \
+    const MediumPart part = clpv_medium_part((light).medium, position, towards, distance);                      \
+    irradiance = vec_product(irradiance, clpv_transmittance((light).medium, part.end - part.start));            \
+  } while (0)
+#else
+#define CLPV_ATTENUATE(irradiance, light, position, towards, distance)
+#endif
+
 // Irradiance [W/m^2] at `position` [m] on a plane across the ray. `towards`: unit vector to the light. 0 for an unknown
 // kind.
 static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
   const Vec intensity = vec_of(light.intensity), direction = vec_of(light.direction);
   if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
     *towards = vec(-direction.x, -direction.y, -direction.z);
-    return intensity;
+    Vec irradiance = intensity;
+    CLPV_ATTENUATE(irradiance, light, position, *towards, (float8)(INFINITY));
+    return irradiance;
   }
   const Vec offset = vec_minus(vec_of(light.position), position);
   const float8 none = (float8)(0.0f), all = (float8)(1.0f), least = (float8)(CLPV_LIGHT_LEAST_DISTANCE);
@@ -31,7 +45,9 @@ static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec positio
     attenuation *= cone * cone;
   }
   if (light.range > 0.0f) attenuation = distance > light.range ? none : attenuation;
-  return vec_times(intensity, attenuation);
+  Vec irradiance = vec_times(intensity, attenuation);
+  CLPV_ATTENUATE(irradiance, light, position, *towards, distance);
+  return irradiance;
 }
 
 #endif

@@ -15,6 +15,7 @@
 // Compilation fails if a size differs from the one that the host asserts.
 #define CLPV_ASSERT_SIZE(type, bytes) typedef char assert_##type[sizeof(type) == bytes ? 1 : -1];
 CLPV_ASSERT_SIZE(ClpvGrid, CLPV_SIZEOF_GRID)
+CLPV_ASSERT_SIZE(ClpvMedium, CLPV_SIZEOF_MEDIUM)
 CLPV_ASSERT_SIZE(ClpvLight, CLPV_SIZEOF_LIGHT)
 CLPV_ASSERT_SIZE(ClpvVertex, CLPV_SIZEOF_VERTEX)
 CLPV_ASSERT_SIZE(ClpvTriangle, CLPV_SIZEOF_TRIANGLE)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -68,6 +69,15 @@ inline glm::dvec2 sobol_point(std::uint32_t index, std::uint64_t stream) {
   return {x * 0x1p-32, y * 0x1p-32};
 }
 
+/// Two unit vectors across a unit vector and each other, without a branch: Duff et al., 'Building an Orthonormal Basis,
+/// Revisited' (JCGT 6(1), 2017).
+inline std::array<glm::dvec3, 2> tangents_of(const glm::dvec3& normal) {
+  const double sign = std::copysign(1.0, normal.z);
+  const double a = -1.0 / (sign + normal.z), b = normal.x * normal.y * a;
+  return {glm::dvec3{1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x},
+          glm::dvec3{b, sign + normal.y * normal.y * a, -normal.y}};
+}
+
 /// Unit direction about `normal` with density cos / pi, by the concentric map of the square (Shirley and Chiu, 'A Low
 /// Distortion Map Between Disk and Square', JGT 2(3), 1997).
 inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& point) {
@@ -78,12 +88,22 @@ inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& p
   const double quarter = std::numbers::pi / 4;
   const double angle = wide ? quarter * square.y / square.x : 2 * quarter - quarter * square.x / square.y;
   const double up = std::sqrt(std::max(0.0, 1.0 - radius * radius));
-  // Orthonormal basis without a branch: Duff et al., 'Building an Orthonormal Basis, Revisited' (JCGT 6(1), 2017).
-  const double sign = std::copysign(1.0, normal.z);
-  const double a = -1.0 / (sign + normal.z), b = normal.x * normal.y * a;
-  const glm::dvec3 tangent{1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
-  const glm::dvec3 bitangent{b, sign + normal.y * normal.y * a, -normal.y};
+  const auto [tangent, bitangent] = tangents_of(normal);
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + up * normal;
+}
+
+/// Unit direction with the density of Henyey and Greenstein's phase function about `along`, by inversion of its cumulative
+/// distribution over the cosine.
+inline glm::dvec3 phase_direction(const glm::dvec3& along, double g, const glm::dvec2& point) {
+  const double u = 2 * point.x - 1;
+  double cosine = u;
+  if (std::abs(g) > 1e-3) {
+    const double ratio = (1 - g * g) / (1 + g * u);
+    cosine = std::clamp((1 + g * g - ratio * ratio) / (2 * g), -1.0, 1.0);
+  }
+  const double sine = std::sqrt(1 - cosine * cosine), angle = 2 * std::numbers::pi * point.y;
+  const auto [tangent, bitangent] = tangents_of(along);
+  return sine * std::cos(angle) * tangent + sine * std::sin(angle) * bitangent + cosine * along;
 }
 
 /// A sampled interval of a discrete distribution.

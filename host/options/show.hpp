@@ -21,11 +21,16 @@ constexpr bool shows_sky(Show show) {
   return show == Show::full || show == Show::direct;
 }
 
+/// Returns true if the view has the light that a medium scatters towards the camera.
+constexpr bool shows_medium(Show show) {
+  return show == Show::full || show == Show::medium;
+}
+
 template <>
 inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "irradiance", "albedo", "normal",
-                                               "depth", "cells");
+                                               "depth", "medium", "cells");
 
-/// Views of surfaces, which kernels shade and the path tracer traces; `cells` is drawn by pipeline/cells.
+/// Views of surfaces, which kernels shade. `medium` is computed by pipeline/medium, `cells` drawn by pipeline/cells.
 inline constexpr std::array kSurfaceViews{Show::full,   Show::direct, Show::indirect, Show::irradiance,
                                           Show::albedo, Show::normal, Show::depth};
 

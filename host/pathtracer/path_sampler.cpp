@@ -2,6 +2,10 @@
 // Paths with next event estimation. Emitters and sky are sampled directly with density p_light, and hit by
 // cosine-distributed directions with density p_cosine. The balance heuristic weights both (Veach and Guibas, 'Optimally
 // combining sampling techniques for Monte Carlo rendering', SIGGRAPH 1995): each estimate is f / (p_light + p_cosine).
+//
+// A vertex in a medium has pi p, p the phase function, in place of a surface's cosine, and directions of density p in place of
+// p_cosine. All free flights of a path are sampled for one channel, drawn at random, and weighted by the mean density of the
+// three (Wilkie et al., 'Hero Wavelength Spectral Sampling', EGSR 2014).
 #include "pathtracer/path_sampler.hpp"
 
 #include <algorithm>
@@ -11,6 +15,7 @@
 
 #include "basis/sampling.hpp"
 #include "reference/lighting.hpp"
+#include "reference/medium.hpp"
 #include "reference/view.hpp"
 #include "scene/light_kind.hpp"
 
@@ -18,7 +23,8 @@ namespace clpv::reference {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2;  // random streams apart from that of directions
+constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3;  // of a bounce, besides its direction
+constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1;  // of a path, besides its bounces
 constexpr int kCertainBounces = 3;                           // Russian roulette starts at this bounce
 constexpr double kMaxSurvival = 0.95;                        // so that paths end between white walls
 
@@ -32,7 +38,18 @@ bool survives(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
   return true;
 }
 
+double mean_of(const glm::dvec3& v) {
+  return (v.x + v.y + v.z) / 3;
+}
+
 }  // namespace
+
+void PathSampler::Flights::take(const glm::dvec3& more, glm::dvec3& throughput) {
+  const double before = mean_of(density);
+  density *= more;
+  throughput *= before / mean_of(density);
+  density /= std::max({density.x, density.y, density.z});
+}
 
 std::optional<Hit> PathSampler::primary_hit(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
   ++ray_count_;
@@ -48,14 +65,29 @@ bool PathSampler::shadowed(const ClpvLight& light, const glm::vec3& origin, cons
   return rays_.occluded(origin, to_light, 1);
 }
 
-glm::dvec3 PathSampler::direct(const Hit& hit) {
-  const glm::vec3 origin = rays_.offset_origin(hit);
+glm::vec3 PathSampler::origin_of(const Vertex& at) const {
+  return at.in_medium ? at.hit.position : rays_.offset_origin(at.hit);
+}
+
+/// The cosine, or pi times the phase function; 0 below the surface.
+double PathSampler::factor(const Vertex& at, const glm::dvec3& direction) const {
+  if (at.in_medium) return std::numbers::pi * phase(double{medium_->anisotropy}, glm::dot(direction, at.arrived));
+  if (glm::dot(glm::dvec3(at.hit.geometric), direction) <= 0) return 0;
+  return std::max(0.0, glm::dot(glm::dvec3(at.hit.normal), direction));
+}
+
+glm::dvec3 PathSampler::transmitted(const glm::vec3& origin, const glm::dvec3& direction, double distance) const {
+  if (medium_ == nullptr) return glm::dvec3(1);
+  return transmittance(*medium_, medium_part(*medium_, glm::dvec3(origin), direction, distance));
+}
+
+glm::dvec3 PathSampler::direct(const Vertex& at) {
+  const glm::vec3 origin = origin_of(at);
   glm::dvec3 sum(0);
   for (const SceneLight& light : lights_) {
-    const Incident in = light_at(light.data, glm::dvec3(hit.position));
-    const double cosine = glm::dot(glm::dvec3(hit.normal), in.towards);
-    if (cosine <= 0 || glm::dot(glm::dvec3(hit.geometric), in.towards) <= 0) continue;
-    if (in.irradiance == glm::dvec3(0)) continue;
+    const Incident in = light_at(light.data, glm::dvec3(at.hit.position));
+    const double cosine = factor(at, in.towards);
+    if (cosine <= 0 || in.irradiance == glm::dvec3(0)) continue;
     ++ray_count_;
     if (!shadowed(light.data, origin, in.towards)) sum += in.irradiance * cosine;
   }
@@ -63,86 +95,152 @@ glm::dvec3 PathSampler::direct(const Hit& hit) {
 }
 
 /// Irradiance at `at` from a sampled emitter: L cos cos' / d^2 / (p_light + p_cosine), with densities over area.
-glm::dvec3 PathSampler::sample_emitter(const Hit& at, const glm::dvec2& random) {
+glm::dvec3 PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& random) {
   const EmitterSample light = emitters_.sample(random);
-  const glm::dvec3 to_light = glm::dvec3(light.position) - glm::dvec3(at.position);
+  const glm::dvec3 to_light = glm::dvec3(light.position) - glm::dvec3(at.hit.position);
   const double square = glm::dot(to_light, to_light);
   if (!(square > 0)) return glm::dvec3(0);
   const glm::dvec3 direction = to_light / std::sqrt(square),
                    front = emitters_.front_normal(light.point.triangle);
-  const double cosine = glm::dot(glm::dvec3(at.normal), direction), light_cosine = glm::dot(front, direction);
-  if (cosine <= 0 || glm::dot(glm::dvec3(at.geometric), direction) <= 0 || light_cosine == 0)
-    return glm::dvec3(0);
+  const double cosine = factor(at, direction), light_cosine = glm::dot(front, direction);
+  if (cosine <= 0 || light_cosine == 0) return glm::dvec3(0);
   const glm::dvec3 radiance = emitters_.radiance(light.point, -direction);
   if (radiance == glm::dvec3(0) || rays_.materials().hole(light.point)) return glm::dvec3(0);
   Hit end;
   end.position = light.position, end.geometric = glm::vec3(light_cosine < 0 ? front : -front);
-  const glm::vec3 origin = rays_.offset_origin(at);
+  const glm::vec3 origin = origin_of(at);
   ++ray_count_;
   if (rays_.occluded(origin, rays_.offset_origin(end) - origin, 1)) return glm::dvec3(0);
-  const double factor = cosine * std::abs(light_cosine) / square;
-  return radiance * factor / (light.density + factor / std::numbers::pi);
+  const double share = cosine * std::abs(light_cosine) / square;
+  return transmitted(origin, direction, std::sqrt(square)) * radiance * share /
+         (light.density + share / std::numbers::pi);
 }
 
-/// Irradiance at `at` from the emissive surface `next` that a cosine-distributed direction hits: pi L p_cosine /
-/// (p_light + p_cosine), with densities over area.
-glm::dvec3 PathSampler::emission_of(const Hit& at, const glm::dvec3& direction, const Hit& next) const {
+/// Irradiance at `at` from the emissive surface `next` that a sampled direction hits: pi L p_cosine / (p_light + p_cosine),
+/// with densities over area.
+glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& direction, const Hit& next) const {
   const glm::dvec3 radiance = emitters_.radiance(next.point, -direction);
   if (radiance == glm::dvec3(0)) return radiance;
   const double distance = double{next.distance},
                light_cosine = std::abs(glm::dot(glm::dvec3(next.geometric), direction));
-  const double cosine_density =
-      glm::dot(glm::dvec3(at.normal), direction) * light_cosine / (distance * distance) / std::numbers::pi;
+  const double cosine_density = factor(at, direction) * light_cosine / (distance * distance) / std::numbers::pi;
   return radiance * std::numbers::pi * cosine_density /
          (emitters_.density(next.point.triangle) + cosine_density);
 }
 
 /// Irradiance at `at` from a sampled direction of the sky: L cos / (p_light + p_cosine), with densities over solid angle.
-glm::dvec3 PathSampler::sample_sky(const Hit& at, const glm::dvec2& random) {
+glm::dvec3 PathSampler::sample_sky(const Vertex& at, const glm::dvec2& random) {
   const SkySample sample = sky_.sample(random);
-  const double cosine = glm::dot(glm::dvec3(at.normal), sample.direction);
-  if (cosine <= 0 || glm::dot(glm::dvec3(at.geometric), sample.direction) <= 0) return glm::dvec3(0);
+  const double cosine = factor(at, sample.direction);
+  if (cosine <= 0) return glm::dvec3(0);
   ++ray_count_;
-  if (rays_.occluded(rays_.offset_origin(at), glm::vec3(sample.direction), kInfinity)) return glm::dvec3(0);
-  return sample.radiance * cosine / (sample.density + cosine / std::numbers::pi);
+  const glm::vec3 origin = origin_of(at);
+  if (rays_.occluded(origin, glm::vec3(sample.direction), kInfinity)) return glm::dvec3(0);
+  return transmitted(origin, sample.direction, double{kInfinity}) * sample.radiance * cosine /
+         (sample.density + cosine / std::numbers::pi);
 }
 
-/// Irradiance at `at` from the sky along a cosine-distributed direction that hits no surface.
-glm::dvec3 PathSampler::sky_along(const Hit& at, const glm::dvec3& direction) const {
-  const double cosine = glm::dot(glm::dvec3(at.normal), direction);
+/// Irradiance at `at` from the sky along a sampled direction that hits no surface.
+glm::dvec3 PathSampler::sky_along(const Vertex& at, const glm::dvec3& direction) const {
+  const double cosine = factor(at, direction);
   if (cosine <= 0) return glm::dvec3(0);
   return sky_.radiance(direction) * cosine / (sky_.density(direction) + cosine / std::numbers::pi);
 }
 
-glm::dvec3 PathSampler::indirect(const Hit& start, std::uint32_t path, std::uint64_t stream) {
+/// A free flight along a ray that meets a surface after `distance` [m]. Returns where the medium scatters, or nothing if it
+/// does not before. Multiplies the throughput by transmittance, and sigma_s of a scattering, over their probability.
+std::optional<double> PathSampler::fly(const glm::vec3& origin, const glm::dvec3& direction, double distance,
+                                       double random, Flights& flights, glm::dvec3& throughput) const {
+  if (medium_ == nullptr) return std::nullopt;
+  const MediumPart part = medium_part(*medium_, glm::dvec3(origin), direction, distance);
+  if (part.length() == 0) return std::nullopt;
+  const glm::dvec3 extinction = vector(medium_->extinction);
+  const double chosen = extinction[flights.channel];
+  const double flown = chosen > 0 ? -std::log1p(-random) / chosen : part.length();
+  const bool passes = flown >= part.length();
+  const glm::dvec3 left = glm::exp(-std::min(flown, part.length()) * extinction);
+  flights.take(passes ? left : extinction * left, throughput);
+  throughput *= passes ? left : left * vector(medium_->scattering);
+  if (passes) return std::nullopt;
+  return part.start + flown;
+}
+
+/// Direction of density factor() / pi; empty below the surface.
+std::optional<glm::vec3> PathSampler::sample_direction(const Vertex& at, const glm::dvec2& random) const {
+  if (at.in_medium) return glm::vec3(phase_direction(at.arrived, double{medium_->anisotropy}, random));
+  const glm::vec3 direction(cosine_direction(glm::dvec3(at.hit.normal), random));
+  // Below the triangle's plane, as the interpolated normal differs from the triangle's.
+  if (glm::dot(direction, at.hit.geometric) <= 0) return std::nullopt;
+  return direction;
+}
+
+glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream) {
+  return indirect(start, path, stream, {channel_of(path, stream), glm::dvec3(1)});
+}
+
+glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream, Flights flights) {
   const Materials& materials = rays_.materials();
   glm::dvec3 sum(0), throughput(1);
-  Hit at = start;
+  Vertex at = start;
   for (int bounce = 1;; ++bounce) {
     const std::uint64_t dimensions = mix(stream, static_cast<std::uint64_t>(bounce));
     if (!emitters_.empty())
       sum += throughput * sample_emitter(at, sobol_point(path, mix(dimensions, kEmitterStream)));
     if (!sky_.empty()) sum += throughput * sample_sky(at, sobol_point(path, mix(dimensions, kSkyStream)));
-    const glm::vec3 direction(cosine_direction(glm::dvec3(at.normal), sobol_point(path, dimensions)));
-    if (glm::dot(direction, at.geometric) <= 0)
-      break;  // below the triangle's plane, as the interpolated normal differs from the triangle's
+    const std::optional<glm::vec3> direction = sample_direction(at, sobol_point(path, dimensions));
+    if (!direction) break;
     ++ray_count_;
-    const std::optional<Hit> next =
-        rays_.intersect(rays_.offset_origin(at), direction, 0, kInfinity, Faces::all);
-    if (!next) {
-      if (!sky_.empty()) sum += throughput * sky_along(at, glm::dvec3(direction));
+    const glm::vec3 origin = origin_of(at);
+    const std::optional<Hit> hit = rays_.intersect(origin, *direction, 0, kInfinity, Faces::all);
+    const std::optional<double> scattered =
+        fly(origin, glm::dvec3(*direction), hit ? double{hit->distance} : double{kInfinity},
+            sobol_point(path, mix(dimensions, kFlightStream)).x, flights, throughput);
+    if (!hit && !scattered) {
+      if (!sky_.empty()) sum += throughput * sky_along(at, glm::dvec3(*direction));
       break;
     }
-    if (!emitters_.empty()) sum += throughput * emission_of(at, glm::dvec3(direction), *next);
-    const glm::dvec3 irradiance = direct(*next);
+    const Vertex next =
+        scattered ? in_medium(glm::dvec3(origin), glm::dvec3(*direction), *scattered) : Vertex{*hit, false, {}};
+    if (!scattered && !emitters_.empty()) sum += throughput * emission_of(at, glm::dvec3(*direction), *hit);
+    const glm::dvec3 irradiance = direct(next);
     const bool last = bounce == options_.bounces;
     if (last && irradiance == glm::dvec3(0)) break;  // frequent: saves the texture access
-    throughput *= glm::dvec3(materials.albedo(next->point));
+    if (!scattered) throughput *= glm::dvec3(materials.albedo(hit->point));
     sum += throughput * irradiance;
     if (last || !survives(throughput, bounce, mix(mix(dimensions), path))) break;
-    at = *next;
+    at = next;
   }
   return sum;
+}
+
+glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                                          std::uint32_t path, std::uint64_t stream) {
+  const MediumPart part = medium_part(*medium_, origin, direction, distance);
+  const glm::dvec3 extinction = vector(medium_->extinction);
+  if (part.length() == 0) return glm::dvec3(0);
+  // Density sigma exp(-sigma t) / (1 - exp(-sigma l)) of each channel: every point of the ray can be drawn.
+  const std::uint64_t own = mix(stream, kAirStream);
+  Flights flights{channel_of(path, own), glm::dvec3(1)};
+  const double chosen = extinction[flights.channel], random = sobol_point(path, own).x;
+  const double t = chosen > 0 ? std::min(-std::log1p(random * std::expm1(-chosen * part.length())) / chosen, part.length())
+                              : random * part.length();
+  const glm::dvec3 left = glm::exp(-t * extinction);
+  glm::dvec3 density, throughput = left * vector(medium_->scattering);
+  for (int c = 0; c < 3; ++c)
+    density[c] = extinction[c] > 0 ? extinction[c] * left[c] / -std::expm1(-extinction[c] * part.length()) : 1 / part.length();
+  flights.take(density, throughput);
+  const Vertex at = in_medium(origin, direction, part.start + t);
+  return throughput * (direct(at) + indirect(at, path, own, flights)) / std::numbers::pi;
+}
+
+int PathSampler::channel_of(std::uint32_t path, std::uint64_t stream) {
+  return static_cast<int>(3 * sobol_point(path, mix(stream, kChannelStream)).x);
+}
+
+PathSampler::Vertex PathSampler::in_medium(const glm::dvec3& origin, const glm::dvec3& direction, double distance) {
+  Vertex vertex{{}, true, direction};
+  vertex.hit.position = glm::vec3(origin + distance * direction);
+  return vertex;
 }
 
 }  // namespace clpv::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sampling of one pixel: primary hit, direct irradiance, and single paths of indirect irradiance.
+// Sampling of one pixel: primary hit, direct irradiance, and single paths of indirect irradiance and of scattered light.
 #pragma once
 
 #include <cstdint>
@@ -17,33 +17,65 @@ namespace clpv::reference {
 /// Borrows its arguments. Each thread has its own, for its count of rays.
 class PathSampler {
  public:
+  /// Point of a path.
+  struct Vertex {
+    Hit hit;                ///< of a point in the medium: its position alone
+    bool in_medium = false;
+    glm::dvec3 arrived{0};  ///< in the medium: unit direction in which the path reached it
+  };
+
+  /// `medium`: null without one.
   PathSampler(const RayScene& rays, const std::vector<SceneLight>& lights, const Emitters& emitters,
-              const SkySampler& sky, const PathTracerOptions& options)
-      : rays_(rays), lights_(lights), emitters_(emitters), sky_(sky), options_(options) {}
+              const SkySampler& sky, const ClpvMedium* medium, const PathTracerOptions& options)
+      : rays_(rays), lights_(lights), emitters_(emitters), sky_(sky), medium_(medium), options_(options) {}
 
   /// The surface at a pixel's centre; `distance` is its depth. Empty without a surface.
   std::optional<Hit> primary_hit(const ClpvView& view, std::uint32_t px, std::uint32_t py);
 
-  /// Irradiance from the scene's lights [W/m^2].
-  glm::dvec3 direct(const Hit& hit);
+  /// Irradiance from the scene's lights [W/m^2]; in the medium pi times the integral of phase function and radiance.
+  glm::dvec3 direct(const Vertex& at);
 
-  /// One path's estimate of the irradiance at `start` from other surfaces, emission included, and from the sky [W/m^2].
-  /// Paths 0, 1, 2... of a stream are a low-discrepancy sequence; streams are independent of each other.
-  glm::dvec3 indirect(const Hit& start, std::uint32_t path, std::uint64_t stream);
+  /// One path's estimate of the irradiance at `start` from surfaces, emission included, from the medium and from the sky
+  /// [W/m^2]. Paths 0, 1, 2... of a stream are a low-discrepancy sequence; streams are independent of each other.
+  glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream);
+
+  /// One path's estimate of the radiance [W/m^2/sr] that the medium scatters towards `origin` along the first `distance` [m]
+  /// of a ray. Needs a medium.
+  glm::dvec3 scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                               std::uint32_t path, std::uint64_t stream);
 
   std::uint64_t ray_count() const { return ray_count_; }
 
  private:
-  glm::dvec3 sample_emitter(const Hit& at, const glm::dvec2& random);
-  glm::dvec3 sample_sky(const Hit& at, const glm::dvec2& random);
-  glm::dvec3 sky_along(const Hit& at, const glm::dvec3& direction) const;
-  glm::dvec3 emission_of(const Hit& at, const glm::dvec3& direction, const Hit& next) const;
+  /// The channel for which free flights of a path are sampled, and their density for each channel up to a factor.
+  struct Flights {
+    int channel;
+    glm::dvec3 density;
+
+    /// Takes the densities of a flight, and divides the throughput by the mean of the products.
+    void take(const glm::dvec3& more, glm::dvec3& throughput);
+  };
+
+  static int channel_of(std::uint32_t path, std::uint64_t stream);
+  glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream, Flights flights);
+  static Vertex in_medium(const glm::dvec3& origin, const glm::dvec3& direction, double distance);
+  glm::vec3 origin_of(const Vertex& at) const;
+  double factor(const Vertex& at, const glm::dvec3& direction) const;
+  glm::dvec3 transmitted(const glm::vec3& origin, const glm::dvec3& direction, double distance) const;
+  std::optional<glm::vec3> sample_direction(const Vertex& at, const glm::dvec2& random) const;
+  std::optional<double> fly(const glm::vec3& origin, const glm::dvec3& direction, double distance,
+                            double random, Flights& flights, glm::dvec3& throughput) const;
+  glm::dvec3 sample_emitter(const Vertex& at, const glm::dvec2& random);
+  glm::dvec3 sample_sky(const Vertex& at, const glm::dvec2& random);
+  glm::dvec3 sky_along(const Vertex& at, const glm::dvec3& direction) const;
+  glm::dvec3 emission_of(const Vertex& at, const glm::dvec3& direction, const Hit& next) const;
   bool shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const;
 
   const RayScene& rays_;
   const std::vector<SceneLight>& lights_;
   const Emitters& emitters_;
   const SkySampler& sky_;
+  const ClpvMedium* medium_;
   const PathTracerOptions& options_;
   std::uint64_t ray_count_ = 0;
 };

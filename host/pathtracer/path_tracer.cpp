@@ -15,6 +15,7 @@
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
+#include "reference/medium.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
 #include "support/error.hpp"
@@ -30,6 +31,28 @@ constexpr std::uint32_t kMaxSamples = PathTracerOptions::kMaxSamples;
 /// Unit direction of the ray through a pixel's centre.
 glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
   return glm::normalize(surface_position(view, px, py, 1) - surface_position(view, px, py, 0));
+}
+
+/// The part of a pixel's ray that the camera sees.
+struct PrimaryRay {
+  glm::dvec3 origin, direction;  ///< unit
+  double length;                 ///< [m] infinite without a surface
+};
+
+/// `depth`: of the pixel's surface, 0 without one.
+PrimaryRay primary_ray(const ClpvView& view, std::size_t pixel, float depth) {
+  const auto x = static_cast<std::uint32_t>(pixel % view.width), y = static_cast<std::uint32_t>(pixel / view.width);
+  const glm::dvec3 origin = surface_position(view, x, y, 0), at_unit_depth = surface_position(view, x, y, 1);
+  const double length = glm::length(at_unit_depth - origin);
+  return {origin, (at_unit_depth - origin) / length,
+          depth > 0 ? length * depth : std::numeric_limits<double>::infinity()};
+}
+
+/// Transmittance of the medium between the camera and what it sees in a pixel.
+glm::vec3 seen_through(const TracedImage& traced, std::size_t pixel) {
+  if (!traced.medium) return glm::vec3(1);
+  const PrimaryRay ray = primary_ray(traced.view, pixel, traced.depth[pixel]);
+  return glm::vec3(transmittance(*traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
 }
 
 using Clock = std::chrono::steady_clock;
@@ -48,10 +71,12 @@ class ImageTracer {
         progress_(progress),
         ranks_(ranks),
         hits_(std::size_t{view.width} * view.height),
-        rank_sums_(2 * hits_.size(), glm::dvec3(0)),
+        layers_(scene.medium ? 2 : 1),
+        rank_sums_(2 * layers_ * hits_.size(), glm::dvec3(0)),
         counts_(rank_sums_.size(), 0) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
+    image_.medium = scene.medium;
     threads_ = options.threads > 0 ? options.threads : ranks.processors();
   }
 
@@ -59,7 +84,7 @@ class ImageTracer {
   void trace_primary_rays() {
     image_.depth.assign(hits_.size(), 0);
     for (auto* layer :
-         {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance}) {
+         {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance, &image_.scattered}) {
       layer->assign(hits_.size(), glm::vec3(0));
     }
     parallel_for({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
@@ -81,13 +106,19 @@ class ImageTracer {
       std::vector<std::pair<std::size_t, glm::dvec3>>
           sums;  // by index, stored under the lock: observe() reads them
       for_each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
-        if (!hits_[i]) return;
-        glm::dvec3 sum = rank_sums_[2 * i + half];
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
-        for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted();
-             ++s)
-          sum += sampler.indirect(*hits_[i], s, stream);
-        sums.emplace_back(2 * i + half, sum);
+        const auto add = [&](std::size_t pixel, const auto& path_of) {
+          glm::dvec3 sum = rank_sums_[2 * pixel + half];
+          for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted(); ++s)
+            sum += path_of(s);
+          sums.emplace_back(2 * pixel + half, sum);
+        };
+        if (hits_[i]) add(i, [&](std::uint32_t s) { return sampler.indirect({*hits_[i]}, s, stream); });
+        if (layers_ == 1) return;
+        const PrimaryRay ray = primary_ray(image_.view, i, image_.depth[i]);
+        add(hits_.size() + i, [&](std::uint32_t s) {
+          return sampler.scattered_towards(ray.origin, ray.direction, ray.length, s, stream);
+        });
       });
       const std::lock_guard lock(mutex_);
       for (const auto& [index, sum] : sums) {
@@ -107,9 +138,8 @@ class ImageTracer {
   }
 
   TracedImage finish() {
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
-      image_.irradiance[i] = glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
-    }
+    for (std::size_t i = 0; i < layers_ * hits_.size(); ++i)
+      layer_number(image_, i) = glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
     auto rays = static_cast<double>(image_.rays);
     ranks_.sum({&rays, 1});
     image_.rays = static_cast<std::uint64_t>(rays);
@@ -121,10 +151,10 @@ class ImageTracer {
     const Clock::time_point now = Clock::now();
     if (!options_.observer || !ranks_.is_root() || now - observed_ < kObserveEvery) return;
     TracedImage partial = image_;
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
+    for (std::size_t i = 0; i < layers_ * hits_.size(); ++i) {
       const std::uint32_t count = counts_[2 * i] + counts_[2 * i + 1];
       if (count > 0)
-        partial.irradiance[i] = glm::vec3((rank_sums_[2 * i] + rank_sums_[2 * i + 1]) / double(count));
+        layer_number(partial, i) = glm::vec3((rank_sums_[2 * i] + rank_sums_[2 * i + 1]) / double(count));
     }
     options_.observer(partial);
     observed_ = Clock::now();
@@ -145,6 +175,11 @@ class ImageTracer {
   std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }
   std::uint32_t tiles() const { return columns() * ((image_.view.height + kTile - 1) / kTile); }
 
+  /// Entry `i` of the sums: a pixel's irradiance, or after all of these its scattered radiance.
+  glm::vec3& layer_number(TracedImage& image, std::size_t i) const {
+    return i < hits_.size() ? image.irradiance[i] : image.scattered[i - hits_.size()];
+  }
+
   void trace_primary_ray(PathSampler& sampler, std::size_t i, std::uint32_t x, std::uint32_t y) {
     hits_[i] = sampler.primary_hit(image_.view, x, y);
     if (!hits_[i]) {
@@ -157,7 +192,7 @@ class ImageTracer {
     const Footprint pixel = footprint(image_.view, x, y, hit);
     image_.albedo[i] = rays_.materials().albedo(hit.point, pixel);
     image_.emissive[i] = rays_.materials().emissive(hit.point, pixel);
-    image_.direct[i] = glm::vec3(sampler.direct(hit));
+    image_.direct[i] = glm::vec3(sampler.direct({hit}));
   }
 
   /// Calls action(i, x, y) for each pixel of a tile.
@@ -177,7 +212,7 @@ class ImageTracer {
   void parallel_for(const Items& items, const Action& action) {
     std::atomic<std::size_t> next{items.first};
     const auto run = [&] {
-      PathSampler sampler(rays_, lights_, emitters_, sky_, options_);
+      PathSampler sampler(rays_, lights_, emitters_, sky_, image_.medium ? &*image_.medium : nullptr, options_);
       for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
         action(sampler, item);
       const std::lock_guard lock(mutex_);
@@ -195,15 +230,20 @@ class ImageTracer {
   double noise() const {
     const std::uint32_t counts[2] = {half_of(image_.samples, 0), half_of(image_.samples, 1)};
     if (counts[1] == 0) return std::numeric_limits<double>::quiet_NaN();
-    double error = 0, signal = 0;
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
-      const glm::dvec3 a = sums_[2 * i] / double(counts[0]), b = sums_[2 * i + 1] / double(counts[1]);
-      const glm::dvec3 albedo(image_.albedo[i]);
-      const glm::dvec3 mean = albedo * (a + b) / 2.0, deviation = albedo * (a - b) / 2.0;
-      error += glm::dot(deviation, deviation);
-      signal += glm::dot(mean, mean);
+    double most = 0;
+    for (std::size_t layer = 0; layer < layers_; ++layer) {
+      double error = 0, signal = 0;
+      for (std::size_t i = 0; i < hits_.size(); ++i) {
+        const std::size_t at = 2 * (layer * hits_.size() + i);
+        const glm::dvec3 a = sums_[at] / double(counts[0]), b = sums_[at + 1] / double(counts[1]);
+        const glm::dvec3 factor = layer == 0 ? glm::dvec3(image_.albedo[i]) : glm::dvec3(1);
+        const glm::dvec3 mean = factor * (a + b) / 2.0, deviation = factor * (a - b) / 2.0;
+        error += glm::dot(deviation, deviation);
+        signal += glm::dot(mean, mean);
+      }
+      if (signal > 0) most = std::max(most, std::sqrt(error / signal));
     }
-    return signal > 0 ? std::sqrt(error / signal) : 0.0;
+    return most;
   }
 
   RayScene rays_;
@@ -214,7 +254,9 @@ class ImageTracer {
   const TraceProgress& progress_;
   Ranks& ranks_;
   std::vector<std::optional<Hit>> hits_;  // primary hits, one per pixel
-  // Irradiance [W/m^2] summed over paths, of this rank and of all ranks: two independent halves per pixel.
+  std::size_t layers_;                    // 2 with a medium
+  // Irradiance [W/m^2], and with a medium scattered radiance [W/m^2/sr], summed over paths, of this rank and of all ranks: two
+  // independent halves per pixel.
   std::vector<glm::dvec3> rank_sums_, sums_;
   std::vector<std::uint32_t> counts_;  // paths in rank_sums_
   Clock::time_point observed_ = Clock::now();
@@ -277,7 +319,7 @@ glm::vec3 shown(const TracedImage& t, std::size_t i, Show show) {
   const glm::vec3 reflectance = t.albedo[i] * std::numbers::inv_pi_v<float>;
   switch (show) {
     case Show::full:
-      return reflectance * (t.direct[i] + t.irradiance[i]) + t.emissive[i];
+      return seen_through(t, i) * (reflectance * (t.direct[i] + t.irradiance[i]) + t.emissive[i]) + t.scattered[i];
     case Show::direct:
       return reflectance * t.direct[i] + t.emissive[i];
     case Show::indirect:
@@ -290,6 +332,8 @@ glm::vec3 shown(const TracedImage& t, std::size_t i, Show show) {
       return t.normal[i];
     case Show::depth:
       return glm::vec3(t.depth[i]);
+    case Show::medium:
+      return t.scattered[i];
     case Show::cells:  // require_traceable()
       break;
   }
@@ -303,8 +347,9 @@ Image traced_view(const TracedImage& traced, Show show) {
                            {"R", "G", "B", "A"});
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
     const bool surface = traced.depth[i] > 0;
-    if (!surface && !(traced.sky && shows_sky(show))) continue;
-    const glm::vec3 colour = surface ? shown(traced, i, show) : traced.emissive[i];
+    const bool air = traced.medium && shows_medium(show);
+    if (!surface && !air && !(traced.sky && shows_sky(show))) continue;
+    const glm::vec3 colour = surface || air ? shown(traced, i, show) : traced.emissive[i];
     for (int c = 0; c < 3; ++c) image.pixels[4 * i + c] = colour[c];
     image.pixels[4 * i + 3] = 1;
   }

@@ -5,12 +5,15 @@
 // pixel is one ray through its centre, as in the rasteriser, without antialiasing. Its indirect irradiance is
 //   E = pi mean(L(w)) over cosine-distributed directions w,
 //   L(w) = L_emitted + albedo / pi (E_direct + E of the next bounce) at the surface hit by w, or the sky's radiance.
+// In a medium (kernels/shared/light.h) a path may scatter before it meets a surface, which counts as a bounce; and the medium
+// scatters light towards the camera, L = integral of T sigma_s p L(w) over the ray and all directions.
 // Light of emissive surfaces and of the sky is indirect: volumes carry it in the pipeline. Method: docs/quality.md.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "image/image.hpp"
@@ -48,9 +51,11 @@ struct TracedImage {
   bool sky = false;                   ///< true if the scene has a sky
   std::vector<glm::vec3> direct;      ///< irradiance from the scene's lights [W/m^2]
   std::vector<glm::vec3> irradiance;  ///< indirect irradiance, from other surfaces and the sky [W/m^2]
+  std::optional<ClpvMedium> medium;   ///< the scene's
+  std::vector<glm::vec3> scattered;   ///< radiance that the medium scatters towards the camera [W/m^2/sr]
   std::uint32_t samples = 0;          ///< paths per pixel
-  /// Standard error of the indirect radiance: its root mean square over that of the image, all pixels and channels. Estimated
-  /// from two independent halves of the paths; NaN with one path.
+  /// Standard error of the indirect radiance: its root mean square over that of the image, all pixels and channels. The same of
+  /// scattered radiance where that is larger. Estimated from two independent halves of the paths; NaN with one path.
   double noise = 0;
   std::uint64_t rays = 0;
 };

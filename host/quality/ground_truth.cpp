@@ -42,9 +42,15 @@ std::string in_file_name(std::string name) {
   return name;
 }
 
+std::vector<Show> views_of(bool medium) {
+  std::vector<Show> views(kSurfaceViews.begin(), kSurfaceViews.end());
+  if (medium) views.push_back(Show::medium);
+  return views;
+}
+
 Image all_views(const TracedImage& traced) {
   Image image;
-  for (const Show show : kSurfaceViews)
+  for (const Show show : views_of(traced.medium.has_value()))
     append_layer(image, traced_view(traced, show), std::string(name_of(show)));
   return image;
 }
@@ -62,11 +68,11 @@ void describe(Image& image, const Scene& scene, const SceneCamera& camera, const
   image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
 }
 
-GroundTruth read_reference(const std::filesystem::path& file) {
+GroundTruth read_reference(const std::filesystem::path& file, const Scene& scene) {
   GroundTruth truth;
   truth.image = read_image(file);
   truth.file = file;
-  for (const Show show : kSurfaceViews)
+  for (const Show show : views_of(scene.medium.has_value()))
     extract_layer(truth.image, std::string(name_of(show)), file.string());  // throws
   truth.samples = static_cast<std::uint32_t>(std::stoul(truth.image.metadata.at("spp_traced")));
   truth.noise = std::stod(truth.image.metadata.at("noise_reached"));
@@ -82,16 +88,17 @@ std::string scene_fingerprint(const Scene& scene) {
     print.add(texture.width).add(texture.height).add(texture.wrap_u).add(texture.wrap_v).add(texture.rgba);
   }
   if (scene.sky) add_sky(print, *scene.sky);
+  if (scene.medium) print.add(*scene.medium);
   return print.hex();
 }
 
 namespace {
 
 /// Returns the cached ground truth if its file is readable.
-std::optional<GroundTruth> read_cached(const std::filesystem::path& file) {
+std::optional<GroundTruth> read_cached(const std::filesystem::path& file, const Scene& scene) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
-    return read_reference(file);
+    return read_reference(file, scene);
   } catch (const std::exception& error) {
     spdlog::warn("{}; traced again", error.what());
     return std::nullopt;
@@ -124,12 +131,12 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   std::optional<GroundTruth> kept;
   bool cached = false;
   const std::string found = ranks.from_root([&] {
-    kept = read_cached(file);
+    kept = read_cached(file, scene);
     if (!kept) cached = can_be_cached(file);
     return kept ? "there" : "";
   });
   if (!found.empty()) {
-    GroundTruth truth = kept ? *std::move(kept) : read_reference(file);
+    GroundTruth truth = kept ? *std::move(kept) : read_reference(file, scene);
     truth.exposure = scene.exposure;
     return truth;
   }

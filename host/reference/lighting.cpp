@@ -2,13 +2,18 @@
 #include "reference/lighting.hpp"
 
 #include <algorithm>
+#include <limits>
 
+#include "reference/medium.hpp"
 #include "reference/view.hpp"
 #include "scene/light_kind.hpp"
 
 namespace clpv::reference {
 
-Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
+namespace {
+
+/// light_at() without the medium.
+Incident clear_light_at(const ClpvLight& light, const glm::dvec3& position) {
   const glm::dvec3 direction = vector(light.direction), intensity = vector(light.intensity);
   const LightKind kind = kind_of(light);
   if (kind == LightKind::directional) return {intensity, -direction};
@@ -29,6 +34,17 @@ Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
     }
   }
   return {intensity * attenuation, towards};
+}
+
+}  // namespace
+
+Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
+  Incident incident = clear_light_at(light, position);
+  const double distance = kind_of(light) == LightKind::directional
+                              ? std::numeric_limits<double>::infinity()
+                              : glm::length(vector(light.position) - position);
+  incident.irradiance *= transmittance(light.medium, medium_part(light.medium, position, incident.towards, distance));
+  return incident;
 }
 
 }  // namespace clpv::reference

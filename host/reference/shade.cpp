@@ -113,7 +113,8 @@ std::vector<glm::dvec4> shade(Show show, const SurfaceImage& camera, const std::
       case Show::depth:
         shown = glm::dvec3(camera.depth[pixel]);
         break;
-      case Show::cells:  // not a view of surfaces
+      case Show::medium:  // not views of surfaces
+      case Show::cells:
         break;
     }
     image[pixel] = glm::dvec4(shown, 1);

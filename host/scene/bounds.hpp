@@ -23,6 +23,10 @@ inline constexpr std::size_t kTextures = 4096;
 inline constexpr int kSkyWidth = 8192, kSkyHeight = 4096, kSkyChannels = 16;
 inline constexpr double kSkyRadiance = 1e10;
 
+// Coefficients of a medium [1/m], and its anisotropy.
+inline constexpr double kExtinction = 1e6;
+inline constexpr double kAnisotropy = 0.9;
+
 // Entries of a JSON array (nodes, meshes, accessors, ...), materials (about 3 kB each in tinygltf), and depth of the node
 // tree.
 inline constexpr std::size_t kListEntries = 1u << 18;

@@ -152,6 +152,7 @@ void MovingScene::load_scene_file(const std::filesystem::path& path, const std::
   scene_.cascade_size = description_.cascade_size;
   scene_.cascades = description_.cascades;
   scene_.sky = description_.sky;
+  scene_.medium = description_.medium;
 }
 
 void MovingScene::set_views(SceneViews views) {
@@ -183,6 +184,16 @@ void MovingScene::set_lights(std::vector<SceneLight> lights) {
   forget_missing_lights();
 }
 
+void MovingScene::set_medium(ClpvMedium medium) {
+  if (vector(medium.lower) == vector(medium.upper)) {
+    for (int i = 0; i < 3; ++i) {
+      medium.lower[i] = scene_.lower[i];
+      medium.upper[i] = scene_.upper[i];
+    }
+  }
+  scene_.medium = medium;
+}
+
 MovingScene::MovingScene(const std::filesystem::path& path, const std::filesystem::path& replacement) {
   Notes notes;
   const std::string extension = extension_of(path);
@@ -199,6 +210,7 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
   if (motion_.empty()) motion_.tree = {};  // frees its memory
   scene_.moving = ranges_of(motion_.meshes);
   find_bounds(scene_);
+  if (scene_.medium) set_medium(*scene_.medium);
   add_defaults(scene_, description_.lights.has_value() || scene_.sky, notes);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();

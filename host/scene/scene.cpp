@@ -31,12 +31,13 @@ const SceneCamera& Scene::camera(const std::string& name) const {
 }
 
 std::vector<SceneLight> Scene::lights_for(const SceneCamera& camera) const {
-  if (camera.light.empty()) return lights;
-  std::vector<SceneLight> named;
+  std::vector<SceneLight> shining;
   for (const SceneLight& light : lights) {
-    if (light.name == camera.light) named.push_back(light);
+    if (!camera.light.empty() && light.name != camera.light) continue;
+    shining.push_back(light);
+    if (medium) shining.back().data.medium = *medium;
   }
-  return named;
+  return shining;
 }
 
 void add_range(Fingerprint& print, const Scene& scene, const MeshRange& range) {

@@ -23,7 +23,7 @@ using Material = ClpvMaterial;
 
 static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX && sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE &&
               sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL && sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE &&
-              sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
+              sizeof(ClpvMedium) == CLPV_SIZEOF_MEDIUM && sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
 
 /// Texture of RGBA with 8 bits per channel, row 0 (v = 0) first: sRGB-encoded colour, linear alpha.
 struct Texture {
@@ -74,6 +74,7 @@ struct Scene {
   std::vector<SceneCamera> cameras;  ///< at least one after loading
   std::vector<SceneLight> lights;
   std::shared_ptr<const Sky> sky;     ///< null without a sky
+  std::optional<ClpvMedium> medium;   ///< fog or dust
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
   std::optional<double> start_reach;  ///< reach() at 0 s, for animated scenes
   float exposure = 0;                 ///< [EV]: display values are radiance x 2^exposure
@@ -87,7 +88,7 @@ struct Scene {
   /// The camera with this name, or the first for an empty name. Throws Error(usage) that lists all names.
   const SceneCamera& camera(const std::string& name) const;
 
-  /// Lights for a camera: the one it names, or all.
+  /// Lights for a camera, the one it names or all, in the scene's medium.
   std::vector<SceneLight> lights_for(const SceneCamera& camera) const;
 };
 

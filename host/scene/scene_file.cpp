@@ -92,6 +92,13 @@ const std::vector<Rule>& rules() {
         text("/sky/map"),
         number("/sky/scale", 0, kBright),
         number("/sky/rotation_degrees", -360, 360),
+        object("/medium"),
+        vector("/medium/scattering", 3, 0, bounds::kExtinction),
+        vector("/medium/absorption", 3, 0, bounds::kExtinction),
+        number("/medium/anisotropy", -bounds::kAnisotropy, bounds::kAnisotropy),
+        object("/medium/box"),
+        vector("/medium/box/lower", 3, -kFar, kFar).must(),
+        vector("/medium/box/upper", 3, -kFar, kFar).must(),
     };
     for (const std::vector<Rule>& more :
          {camera_and_light_rules(), key_rules(keyed_cameras()), key_rules(keyed_lights())})
@@ -246,6 +253,28 @@ Sky read_sky_member(const json& given, const std::filesystem::path& path, const 
                   given.value("rotation_degrees", 0.0) * kRadians);
 }
 
+/// Reads a medium. Without a box its bounds are empty: they become those of the scene.
+ClpvMedium read_medium(const json& given, double scale, const std::string& file) {
+  if (!given.contains("scattering") && !given.contains("absorption"))
+    reject(file, "/medium", "neither scattering nor absorption", "at least one of them");
+  const Vec3 scattering = numbers_in(given, "scattering", {}), absorption = numbers_in(given, "absorption", {});
+  ClpvMedium medium{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    medium.scattering[i] = static_cast<float>(scattering[i]);
+    medium.extinction[i] = static_cast<float>(scattering[i] + absorption[i]);
+  }
+  medium.anisotropy = given.value("anisotropy", 0.0f);
+  if (!given.contains("box")) return medium;
+  const json& box = given["box"];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double lower = box["lower"][i], upper = box["upper"][i];
+    if (!(upper > lower)) reject(file, "/medium/box/upper", fmt::format("{} m", upper), fmt::format("more than {} m", lower));
+    medium.lower[i] = static_cast<float>(lower * scale);
+    medium.upper[i] = static_cast<float>(upper * scale);
+  }
+  return medium;
+}
+
 }  // namespace
 
 bool SceneDescription::moves() const {
@@ -277,6 +306,8 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
   }
   if (parsed.contains("sky"))
     scene.sky = std::make_shared<const Sky>(read_sky_member(parsed["sky"], path, scene.file));
+  if (parsed.contains("medium"))
+    scene.medium = read_medium(parsed["medium"], scene.metres_per_unit, scene.file);
   scene.cameras = read_entries(parsed, "cameras", keyed_cameras(), scene.file);
   scene.lights = read_entries(parsed, "lights", keyed_lights(), scene.file);
   return scene;

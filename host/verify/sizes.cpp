@@ -22,6 +22,7 @@ namespace clpv::reference {
 namespace {
 
 static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
+static_assert(sizeof(ClpvMedium) == CLPV_SIZEOF_MEDIUM);
 static_assert(sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
 static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX);
 static_assert(sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE);

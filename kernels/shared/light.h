@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: MIT
-// A light, shared by host and kernels. Photometric quantities count 1:1 as radiometric ones.
+// A light and the medium that it passes, shared by host and kernels. Photometric quantities count 1:1 as radiometric ones.
 #ifndef CLPV_SHARED_LIGHT_H
 #define CLPV_SHARED_LIGHT_H
 
 #define CLPV_LIGHT_DIRECTIONAL 0
 #define CLPV_LIGHT_SPOT 1
 #define CLPV_LIGHT_POINT 2
+
+// A homogeneous medium, such as fog or dust, in a box.
+//
+//   T = exp(-sigma_t l)         transmittance of a path of length l [m] in the box
+//   p = (1 - g^2) / (4 pi (1 + g^2 - 2 g w' . w)^(3/2))   [1/sr]   phase function (Henyey and Greenstein 1941): light
+//                                                                  travels along w', then along w
+typedef struct {
+  float lower[3], upper[3];  // [m] the box
+  float scattering[3];       // sigma_s [1/m] of red, green and blue
+  float extinction[3];       // sigma_t = sigma_s + sigma_a [1/m]; all 0: no medium
+  float anisotropy;          // g in (-1, 1); above 0: forwards
+  float unused[3];
+} ClpvMedium;
+
+#define CLPV_SIZEOF_MEDIUM 64
 
 typedef struct {
   float position[3];   // [m]; unused for a directional light
@@ -16,9 +31,10 @@ typedef struct {
   float cone_scale;    // spot, glTF: attenuation = clamp(cos(angle) * cone_scale + cone_offset, 0, 1)^2
   float cone_offset;
   float unused[3];
+  ClpvMedium medium;  // attenuates the light
 } ClpvLight;
 
-#define CLPV_SIZEOF_LIGHT 64
+#define CLPV_SIZEOF_LIGHT 128
 
 // d_min [m]: a smaller distance from a spot or point light counts as this one, so that irradiance stays finite.
 #define CLPV_LIGHT_LEAST_DISTANCE 1e-3f

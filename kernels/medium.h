@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Paths through a medium (shared/light.h), eight at a time.
+#ifndef CLPV_MEDIUM_H
+#define CLPV_MEDIUM_H
+
+#include "lanes.h"
+#include "shared/light.h"
+#include "vec.h"
+
+// Part of a ray inside the medium: from `start` to `end`, in lengths of the ray's direction. Empty: end <= start.
+typedef struct {
+  float8 start, end;
+} MediumPart;
+
+// Part of the ray origin + t direction with t in (0, end). fmin and fmax return the other number for 0 / 0, of rays within
+// a face's plane.
+CLPV_INLINE MediumPart clpv_medium_part(const ClpvMedium medium, const Vec origin, const Vec direction,
+                                        const float8 end) {
+  const Vec lower = vec_of(medium.lower), upper = vec_of(medium.upper);
+  const float8 x0 = (lower.x - origin.x) / direction.x, x1 = (upper.x - origin.x) / direction.x;
+  const float8 y0 = (lower.y - origin.y) / direction.y, y1 = (upper.y - origin.y) / direction.y;
+  const float8 z0 = (lower.z - origin.z) / direction.z, z1 = (upper.z - origin.z) / direction.z;
+  MediumPart part;
+  part.start = fmax(fmax(fmin(x0, x1), fmin(y0, y1)), fmax(fmin(z0, z1), (float8)(0.0f)));
+  part.end = fmin(fmin(fmax(x0, x1), fmax(y0, y1)), fmin(fmax(z0, z1), end));
+  return part;
+}
+
+// exp(-sigma_t l) for each channel, l [m].
+CLPV_INLINE Vec clpv_transmittance(const ClpvMedium medium, const float8 length) {
+  const float8 l = length > (float8)(0.0f) ? length : (float8)(0.0f);
+  return vec(exp(-medium.extinction[0] * l), exp(-medium.extinction[1] * l), exp(-medium.extinction[2] * l));
+}
+
+// p for the cosine of the angle between both directions [1/sr].
+CLPV_INLINE float8 clpv_phase(const float g, const float8 cosine) {
+  const float8 d = 1.0f + g * g - 2.0f * g * cosine;
+  return (1.0f - g * g) / (4.0f * M_PI_F * d * sqrt(d));
+}
+
+#endif

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Media: path tracing, kernels and CPU reference against closed forms.
+#include "reference/medium.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "basis/sampling.hpp"
+#include "tests/support/traced_scenes.hpp"
+
+namespace clpv::medium_test {
+namespace {
+
+using std::numbers::pi;
+using namespace test;
+
+ClpvMedium medium_of(const glm::vec3& scattering, const glm::vec3& absorption, float anisotropy, const glm::vec3& lower,
+                     const glm::vec3& upper) {
+  ClpvMedium medium{};
+  for (int i = 0; i < 3; ++i) {
+    medium.lower[i] = lower[i], medium.upper[i] = upper[i];
+    medium.scattering[i] = scattering[i], medium.extinction[i] = scattering[i] + absorption[i];
+  }
+  medium.anisotropy = anisotropy;
+  return medium;
+}
+
+TracedImage traced(const Scene& scene, const ClpvView& view, int bounces, std::uint32_t samples) {
+  PathTracerOptions options;
+  options.bounces = bounces;
+  options.samples = samples;
+  return reference::trace_paths(scene, scene.lights_for({}), view, options);
+}
+
+glm::dvec3 mean_of(const Image& image) {
+  glm::dvec3 sum(0);
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    for (int c = 0; c < 3; ++c) sum[c] += image.pixels[4 * i + c];
+  }
+  return sum / double(image.pixel_count());
+}
+
+TEST(Medium, PhaseFunctionIntegratesToOneAndHasTheMeanCosineOfItsAnisotropy) {
+  for (const double g : {-0.9, -0.3, 0.0, 0.5, 0.9}) {
+    double integral = 0, mean_cosine = 0;
+    constexpr int kSteps = 200000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double cosine = -1 + 2 * (i + 0.5) / kSteps, weight = 4 * pi / kSteps * reference::phase(g, cosine);
+      integral += weight;
+      mean_cosine += cosine * weight;
+    }
+    EXPECT_NEAR(integral, 1, 1e-6);
+    EXPECT_NEAR(mean_cosine, g, 1e-6);
+  }
+}
+
+TEST(Medium, SampledDirectionsHaveTheMomentsOfThePhaseFunction) {
+  const glm::dvec3 along = glm::normalize(glm::dvec3(1, -2, 0.5));
+  for (const double g : {-0.7, 0.0, 0.6}) {
+    double first = 0, second = 0;
+    constexpr std::uint32_t kCount = 1u << 16;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const double cosine = glm::dot(along, phase_direction(along, g, sobol_point(i, 7)));
+      first += cosine / kCount;
+      second += (3 * cosine * cosine - 1) / 2 / kCount;
+    }
+    EXPECT_NEAR(first, g, 1e-3);
+    EXPECT_NEAR(second, g * g, 1e-3);
+  }
+}
+
+TEST(Medium, PartOfARayIsThatInTheBox) {
+  const ClpvMedium medium = medium_of(glm::vec3(1), {}, 0, {-1, -2, -3}, {1, 2, 3});
+  const double far = std::numeric_limits<double>::infinity();
+  const auto length = [&](const glm::dvec3& origin, const glm::dvec3& direction, double end) {
+    return reference::medium_part(medium, origin, direction, end).length();
+  };
+  EXPECT_DOUBLE_EQ(length({-5, 0, 0}, {1, 0, 0}, far), 2);
+  EXPECT_DOUBLE_EQ(length({-5, 0, 0}, {1, 0, 0}, 5), 1);
+  EXPECT_DOUBLE_EQ(length({0, 0, 0}, {0, 0, -1}, far), 3);
+  EXPECT_DOUBLE_EQ(length({0, 0, 0}, {0, 0, -1}, 0.5), 0.5);
+  EXPECT_DOUBLE_EQ(length({-5, 0, 0}, {-1, 0, 0}, far), 0);
+  EXPECT_DOUBLE_EQ(length({-5, 2.5, 0}, {1, 0, 0}, far), 0);
+}
+
+/// A room of 2 m, faces inwards, whose walls emit and do not reflect.
+Scene room(float emitted) {
+  Scene scene;
+  scene.path = "room";
+  add_grey(scene, 0);
+  for (float& e : scene.materials[0].emissive) e = emitted;
+  const glm::vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2), o(-1);
+  add_quad(scene, o, z, x, 0), add_quad(scene, o + y, x, z, 0);
+  add_quad(scene, o, y, z, 0), add_quad(scene, o + x, z, y, 0);
+  add_quad(scene, o, x, y, 0), add_quad(scene, o + z, y, x, 0);
+  return scene;
+}
+
+const ClpvView kInRoom = view_of({0.1, 0.2, 0.3}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 6, 6);
+
+TEST(Medium, AbsorptionFollowsBeersLaw) {
+  Scene scene = room(3);
+  const glm::vec3 absorption(0.2, 1, 4);
+  scene.medium = medium_of({}, absorption, 0, glm::vec3(-1), {1, 1, 0});
+  const ClpvView view = view_of({0, 0, 0.5}, {0, 0, -1}, {0, 1, 0}, 1e-3f, 1, 1);
+  const glm::dvec3 seen = mean_of(reference::traced_view(traced(scene, view, 1, 16), Show::full));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], 3 * std::exp(-double{absorption[c]}), 1e-5);
+}
+
+// Uniform light stays uniform in a medium that only scatters, whatever its density and phase function.
+TEST(Medium, WhiteFurnaceIsUniform) {
+  Scene scene = room(1);
+  for (const float anisotropy : {0.0f, 0.6f, -0.5f}) {
+    scene.medium = medium_of({0.3, 1, 3}, {}, anisotropy, {-0.8, -1, -1}, {1, 0.7, 1});
+    const TracedImage image = traced(scene, kInRoom, PathTracerOptions::kAllBounces, 4096);
+    const glm::dvec3 seen = mean_of(reference::traced_view(image, Show::full));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], 1, 0.01) << "anisotropy " << anisotropy;
+  }
+}
+
+// A sun from above; the ray runs along x through a medium that absorbs so much more than it scatters that light scattered
+// twice does not count:   L = sigma_s p(0) E exp(-sigma_t h) (1 - exp(-sigma_t l)) / sigma_t.
+TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
+  Scene scene = floor_scene(0);
+  scene.lights = {sun({0, -1, 0}, 5)};
+  const float scattering = 1e-3f, absorption = 0.5f;
+  scene.medium = medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {1, 0.5, -2}, {4, 2, 2});
+  const ClpvView view = view_of({0, 1.2, 0}, {1, 0, 0}, {0, 1, 0}, 1e-3f, 1, 1);
+  const double extinction = scattering + absorption;
+  const double expected = scattering * reference::phase(0.4, 0) * 5 * std::exp(-extinction * 0.8) *
+                          -std::expm1(-extinction * 3) / extinction;
+  const glm::dvec3 seen = mean_of(reference::traced_view(traced(scene, view, 1, 1024), Show::medium));
+  EXPECT_NEAR(seen.x, expected, 2e-3 * expected);
+}
+
+}  // namespace
+}  // namespace clpv::medium_test
