@@ -95,7 +95,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(
     __constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
     __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
     __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
-    __global float* plane_buffer, CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT halo_light, const int dark) {
+    __global float* plane_buffer, CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT halo_light,
+    const int dark CLPV_MEDIUM_PARAMETER) {
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
   const BinSweep s = CLPV_BIN_SWEEP(b);

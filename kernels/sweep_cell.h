@@ -8,6 +8,9 @@
 // Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light along a direction, I
 // [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k in [0, 1] the transmittance of the link from cell k; t_k and share_d are in
 // ClpvSweepDirection.
+//
+// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel: D = I + a sum_k t_k T_k D_k,
+// a = 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part of the cell in the medium.
 #ifndef CLPV_SWEEP_CELL_H
 #define CLPV_SWEEP_CELL_H
 
@@ -28,7 +31,18 @@ typedef struct {
   CLPV_BUFFER_IN border;                            // D in the cells beside the grid (sweep_border.h)
   CLPV_BUFFER_OUT sums;                             // L s^2, a volume for each channel and bin
   CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
+#if CLPV_MEDIUM
+  __global const float* inside;                     // part of each cell in the medium along x, y and z, in rows
+#endif
 } BinSweep;
+
+#if CLPV_MEDIUM
+#define CLPV_MEDIUM_PARAMETER , __global const float* inside
+#define CLPV_MEDIUM_MEMBER , inside
+#else
+#define CLPV_MEDIUM_PARAMETER
+#define CLPV_MEDIUM_MEMBER
+#endif
 
 #define CLPV_BIN_SWEEP(b)                                                                                     \
   {b,                                                                                                         \
@@ -41,7 +55,7 @@ typedef struct {
    links,                                                                                                     \
    border,                                                                                                    \
    sums,                                                                                                      \
-   halo_light}
+   halo_light CLPV_MEDIUM_MEMBER}
 
 // Nonzero if CLPV_LANES cells hold sources.
 #if CLPV_SOURCE_LANES >= CLPV_LANES
@@ -92,6 +106,11 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
 #else
 #define CLPV_TAP(k) ((CLPV_REAL)(s->directions[part].taps[k]))
 #endif
+#if CLPV_MEDIUM
+  const CLPV_REAL in_medium = s->inside[bin.plane_axis * CLPV_SWEEP_ROW + plane] *
+                              s->inside[bin.row_axis * CLPV_SWEEP_ROW + row] *
+                              CLPV_PLANE_LOAD(s->inside, bin.column_axis * CLPV_SWEEP_ROW + column);
+#endif
   CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
   for (int part = 0; part < CLPV_PARTS; ++part) {
@@ -103,6 +122,9 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
       d = fma(w1, CLPV_PLANE_LOAD(from1, ordinate), d);
       d = fma(w2, CLPV_PLANE_LOAD(from2, ordinate), d);
       d = fma(w3, CLPV_PLANE_LOAD(from3, ordinate), d);
+#if CLPV_MEDIUM
+      d *= fma(in_medium, (CLPV_REAL)(s->directions[part].attenuation[channel] - 1.0f), (CLPV_REAL)(1.0f));
+#endif
       CLPV_PLANE_STORE(to + here, ordinate, d);
       sum[channel] = fma((CLPV_REAL)(s->directions[part].share), d, sum[channel]);
     }

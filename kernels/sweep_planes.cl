@@ -42,7 +42,7 @@ __kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const 
                           __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
                           __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
                           const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
-                          CLPV_BUFFER_OUT halo_light, const int step) {
+                          CLPV_BUFFER_OUT halo_light, const int step CLPV_MEDIUM_PARAMETER) {
   const int column = CLPV_LANES * (int)get_global_id(0), row = (int)get_global_id(1), b = (int)get_global_id(2);
   if (column >= CLPV_GRID || row >= CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];

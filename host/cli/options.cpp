@@ -51,6 +51,27 @@ Light parse_sun(const std::string& text) {
   return sun;
 }
 
+ClpvMedium parse_medium(const std::string& text) {
+  std::string all = text;
+  for (auto commas = std::ranges::count(text, ','); commas < 2; ++commas) all += ",0";
+  const auto numbers = parse_three<double>(all);
+  const auto coefficient = [](double value) { return value >= 0 && value <= bounds::kExtinction; };
+  if (!numbers || !coefficient(numbers->x) || !coefficient(numbers->y) ||
+      !(std::abs(numbers->z) <= bounds::kAnisotropy)) {
+    throw Error(ExitCode::usage,
+                "--medium: found '{}', allowed: scattering and absorption, 0..{:.0f} /m, and anisotropy, -{}..{}, like "
+                "0.05,0.01,0.6",
+                text, bounds::kExtinction, bounds::kAnisotropy, bounds::kAnisotropy);
+  }
+  ClpvMedium medium{};
+  for (int c = 0; c < 3; ++c) {
+    medium.scattering[c] = static_cast<float>(numbers->x);
+    medium.extinction[c] = static_cast<float>(numbers->x + numbers->y);
+  }
+  medium.anisotropy = static_cast<float>(numbers->z);
+  return medium;
+}
+
 CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
                       const std::function<void(const std::string&)>& take) {
   return command
@@ -185,10 +206,15 @@ void SceneChanges::apply(MovingScene& scene) const {
     scene.set_cameras({scene_camera(given, rejected_in("camera"))});
   }
   if (sun) scene.set_lights({scene_light(*sun, rejected_in("--sun"))});
+  if (medium) scene.set_medium(*medium);
 }
 
 void SceneChanges::describe(nlohmann::json& inputs) const {
   if (sun) inputs["sun"] = fmt::format("{},{}", fmt::join(sun->direction, ","), sun->intensity[0]);
+  if (medium) {
+    inputs["medium"] = fmt::format("{},{},{}", medium->scattering[0], medium->extinction[0] - medium->scattering[0],
+                                   medium->anisotropy);
+  }
 }
 
 void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera) {
@@ -226,6 +252,14 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
               "direction of a sun's light and its illuminance [lx] (default: {}), in place of all lights",
               kSunIlluminance))
       ->type_name("X,Y,Z[,LUX]")
+      ->group(kGroup);
+  const auto take_medium = [&changes](const std::string& text) { changes.medium = parse_medium(text); };
+  command
+      .add_option_function<std::string>(
+          "--medium", take_medium,
+          "scattering and absorption of a medium in the scene's bounding box [1/m], and the anisotropy of its phase "
+          "function (default: 0), in place of the scene's")
+      ->type_name("S[,A[,G]]")
       ->group(kGroup);
 }
 

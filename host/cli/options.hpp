@@ -109,14 +109,15 @@ struct SceneChanges {
   std::optional<Vec3> eye, target;  ///< both or none
   Camera camera;                    ///< its other numbers
   std::optional<Light> sun;
+  std::optional<ClpvMedium> medium;  ///< fills the scene's bounding box
 
   /// Throws Error(usage) for numbers that no camera or light has.
   void apply(MovingScene& scene) const;
-  /// Adds the sun to the inputs of an image; the camera's name has its numbers.
+  /// Adds sun and medium to the inputs of an image; the camera's name has its numbers.
   void describe(nlohmann::json& inputs) const;
 };
 
-/// Adds --eye, --target, --up, --fov, --near-plane and --sun. `camera`: the option that excludes --eye.
+/// Adds --eye, --target, --up, --fov, --near-plane, --sun and --medium. `camera`: the option that excludes --eye.
 void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera);
 
 /// The options of path tracing, shared by `pathtrace`, `quality` and `report`.

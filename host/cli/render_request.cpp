@@ -123,6 +123,7 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
   add("model", request.model);
   if (const auto& sun = request.changes.sun)  // a camera's numbers change no kernel
     add("sun", fmt::format("{},{},{}", sun->direction[0], sun->direction[1], sun->direction[2]));
+  if (request.changes.medium) add("medium", "1");  // its numbers change no kernel
   add("device", device);
   for (const auto& [name, value] : request.frame) add(name, value);
   return {std::move(arguments), std::nullopt};

@@ -22,24 +22,25 @@ PropagateOptions propagate_options(const RenderOptions& options) {
           .format = options.format()};
 }
 
-SweepOptions sweep_options(const RenderOptions& options) {
+SweepOptions sweep_options(const RenderOptions& options, const std::optional<ClpvMedium>& medium) {
   std::vector<int> parts(static_cast<std::size_t>(options.cascades), parts_of(options.coarser_directions));
   parts.front() = parts_of(options.directions);
   return {.grid = options.grid,
           .parts = parts,
           .blocking = options.occlusion,
           .bounces = options.bounces,
-          .format = options.format()};
+          .format = options.format(),
+          .medium = medium};
 }
 
-GatherOptions gather_options(const RenderOptions& options) {
+GatherOptions gather_options(const RenderOptions& options, bool medium) {
   return {.grid = options.grid,
           .gather = options.gather,
           .gather_offset = options.gather_offset,
           .lobes = options.lobes(),
           .table = options.table,
           .format = options.format(),
-          .packed = options.near != Near::off};
+          .packed = options.near != Near::off || medium};
 }
 
 NearOptions near_options(const RenderOptions& options) {
@@ -47,6 +48,10 @@ NearOptions near_options(const RenderOptions& options) {
           .step = options.near_size == NearSize::half ? 2 : 1,
           .rays = options.near_size == NearSize::half ? 4 : 2,
           .reflects = options.bounces != Bounces::one};
+}
+
+MediumOptions medium_options(const RenderOptions& options) {
+  return {.gather = gather_options(options, true)};
 }
 
 }  // namespace clpv

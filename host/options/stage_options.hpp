@@ -2,10 +2,12 @@
 // Options of each stage, derived from RenderOptions. Independent of OpenCL: stages and their CPU references share them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "kernels/shared/light.h"
 #include "options/choices.hpp"
 
 namespace clpv {
@@ -55,6 +57,7 @@ struct SweepOptions {
   Bounces bounces = Bounces::one;  ///< more than one needs Sweeper::set_reflectors()
   VolumeFormat format = {};        ///< of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
+  std::optional<ClpvMedium> medium = {};
 };
 
 struct GatherOptions {
@@ -76,11 +79,19 @@ struct NearOptions {
   bool reflects = false;      ///< surfaces that rays hit also reflect the volumes' light
 };
 
+struct MediumOptions {
+  GatherOptions gather = {};  ///< of the volumes
+  int light_steps = 8;        ///< points of each ray for each light
+  int volume_steps = 3;       ///< points of each ray for the volumes
+};
+
 /// `unit_flux_lobes`: as in Transport.
 InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes);
 PropagateOptions propagate_options(const RenderOptions& options);
-SweepOptions sweep_options(const RenderOptions& options);
-GatherOptions gather_options(const RenderOptions& options);
+SweepOptions sweep_options(const RenderOptions& options, const std::optional<ClpvMedium>& medium = {});
+/// `medium`: the scene has one.
+GatherOptions gather_options(const RenderOptions& options, bool medium = false);
 NearOptions near_options(const RenderOptions& options);
+MediumOptions medium_options(const RenderOptions& options);
 
 }  // namespace clpv

@@ -22,13 +22,14 @@ enum class Stage {
   visibility,
   gather,
   near,
+  medium,
   shade
 };
 
 template <>
 inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "inject", "blockers",
                                                 "reflectors", "propagate", "sweep", "bounce", "visibility",
-                                                "gather", "near", "shade");
+                                                "gather", "near", "medium", "shade");
 
 /// A part of a frame that is timed separately: a stage, or one use of it. `whole`: everything that a benchmark launches.
 enum class Pass {
@@ -43,7 +44,8 @@ enum class Pass {
   propagate,   ///< steps, or a sweep with its bounces
   visibility,  ///< per cascade
   gather,
-  near,  ///< near field
+  near,    ///< near field
+  medium,  ///< light that a medium scatters towards the camera
   shade,
   whole,
 };
@@ -52,6 +54,6 @@ template <>
 inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow", "rasterize-rsm",
                                                "emit", "inject-light", "inject-geometry", "blockers",
                                                "reflectors", "propagate", "visibility", "gather", "near",
-                                               "shade", "whole");
+                                               "medium", "shade", "whole");
 
 }  // namespace clpv

@@ -3,21 +3,30 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "basis/sweep.hpp"
 #include "pipeline/cells.hpp"
 #include "pipeline/frame_volumes.hpp"
 #include "pipeline/view.hpp"
+#include "reference/medium.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
 namespace {
 
-/// Rejects a sky with step propagation, which takes no light at the border of the cascades.
-void require_sweep(const RenderOptions& options, const Scene& scene) {
-  if (!scene.sky || options.transport == TransportKind::sweep) return;
-  throw Error(ExitCode::usage, "transport: found '{}' with a sky, allowed: sweep (or a scene without a sky)",
-              name_of(options.transport));
+/// Rejects what has no sky or medium: step propagation, which takes no light at the border of the cascades and attenuates
+/// none, and the near field.
+void require_support(const RenderOptions& options, const Scene& scene) {
+  const char* what = scene.sky ? "sky" : "medium";
+  if ((scene.sky || scene.medium) && options.transport != TransportKind::sweep) {
+    throw Error(ExitCode::usage, "transport: found '{}' with a {}, allowed: sweep (or a scene without a {})",
+                name_of(options.transport), what, what);
+  }
+  if (scene.medium && options.near != Near::off) {
+    throw Error(ExitCode::usage, "near: found '{}'{} with a medium, allowed: off (or a scene without a medium)",
+                name_of(options.near), preset_note(options, "near"));
+  }
 }
 
 constexpr std::size_t kPointsPerRow = 1024;  // of the image that irradiance_at() makes of points
@@ -32,8 +41,9 @@ Transport transport_for(const RenderOptions& options, const Basis& basis, const 
   return transport;
 }
 
-/// Sets pixels of an RGBA image without alpha to the sky's radiance in their direction, and their alpha to 1.
-void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) {
+/// Adds the sky's radiance, seen through the medium, to pixels of an RGBA image without alpha, and sets their alpha to 1.
+void paint_sky(const Sky& sky, const std::optional<ClpvMedium>& medium, const ClpvView& view,
+               std::vector<float>& image) {
   const glm::dvec3 forward = vector(view.forward), right = vector(view.right), up = vector(view.up);
   for (unsigned y = 0; y < view.height; ++y) {
     for (unsigned x = 0; x < view.width; ++x) {
@@ -44,8 +54,13 @@ void paint_sky(const Sky& sky, const ClpvView& view, std::vector<float>& image) 
         ray += (2 * (x + 0.5) / view.width - 1) * double{view.half_width} * right +
                (1 - 2 * (y + 0.5) / view.height) * double{view.half_height} * up;
       }
-      const glm::vec3 seen = sky.interpolated(glm::normalize(ray));
-      for (int channel = 0; channel < 3; ++channel) pixel[channel] = seen[channel];
+      const glm::dvec3 along = glm::normalize(ray);
+      glm::dvec3 seen(sky.interpolated(along));
+      if (medium) {
+        const double far = std::numeric_limits<double>::infinity();
+        seen *= reference::transmittance(*medium, reference::medium_part(*medium, vector(view.eye), along, far));
+      }
+      for (int channel = 0; channel < 3; ++channel) pixel[channel] += static_cast<float>(seen[channel]);
       pixel[3] = 1;
     }
   }
@@ -62,13 +77,14 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
       transport_(transport_for(options, *basis_, scene)),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
-      gatherer_(session, gathered(), options.transport, gather_options(options)),
-      shader_(session),
+      gatherer_(session, gathered(), options.transport, gather_options(options, scene.medium.has_value())),
+      shader_(session, scene.medium.has_value()),
       lights_(session, scene, buffers_, rasterizer_, options_),
       cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_),
       packed_(options.cascades) {
-  require_sweep(options, scene);
+  require_support(options, scene);
   if (options.near != Near::off) near_.emplace(session, gathered(), scene, buffers_, near_options(options));
+  if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options));
   const std::size_t pixels = std::size_t(options.width) * options.height;
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
@@ -121,10 +137,20 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
     const GatheredLight light = cascades_.light();
     near_->add(*camera_surface_, gatherer_, lights_.shadowed(), light.scale, light.occluded, irradiance_);
   }
+  if (medium_) {
+    const StageScope scope(session_, {Pass::medium});
+    const GatheredLight light = cascades_.light();
+    medium_->scatter(*camera_surface_, gatherer_, lights_.shadowed(), light.scale, light.occluded);
+  }
   const StageScope scope(session_, {Pass::shade});
   shader_.light(*camera_surface_, lights_.shadowed());
-  shader_.show(Show::full, *camera_surface_, irradiance_, image_);
-  shown_ = Show::full;
+  show(Show::full);
+}
+
+void Frame::show(Show view) {
+  if (view != Show::medium) shader_.show(view, *camera_surface_, irradiance_, image_);
+  if (medium_ && shows_medium(view)) medium_->add(*camera_surface_, view == Show::medium, image_);
+  shown_ = view;
 }
 
 std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
@@ -181,10 +207,15 @@ std::vector<float> Frame::read(Show view) {
     draw_cells(image);
     return image;
   }
-  if (view != shown_) shader_.show(view, *camera_surface_, irradiance_, image_);
-  shown_ = view;
+  if (view == Show::medium && !medium_)
+    throw Error(ExitCode::usage, "view: found 'medium' of a scene without a medium; allowed: the others");
+  if (view != shown_) show(view);
   std::vector<float> image = session_.read<float>(image_, std::size_t(options_.width) * options_.height * 4);
-  if (scene_.sky && shows_sky(view)) paint_sky(*scene_.sky, camera_surface_->view, image);
+  if (scene_.sky && shows_sky(view)) {
+    paint_sky(*scene_.sky, view == Show::full ? scene_.medium : std::nullopt, camera_surface_->view, image);
+  } else if (medium_ && shows_medium(view)) {
+    for (std::size_t i = 3; i < image.size(); i += 4) image[i] = 1;
+  }
   return image;
 }
 

@@ -16,6 +16,7 @@
 #include "pipeline/frame_cascades.hpp"
 #include "pipeline/frame_lights.hpp"
 #include "pipeline/gather.hpp"
+#include "pipeline/medium.hpp"
 #include "pipeline/near.hpp"
 #include "pipeline/rasterize.hpp"
 #include "pipeline/scene_buffers.hpp"
@@ -67,6 +68,7 @@ class Frame {
  private:
   void rasterize_camera(const SceneCamera& camera);
   void gather(const Surface& surface, Buffer& irradiance);
+  void show(Show view);
   void draw_cells(std::vector<float>& image);
 
   Session& session_;
@@ -79,6 +81,7 @@ class Frame {
   Gatherer gatherer_;
   Shader shader_;
   std::optional<NearField> near_;  ///< none: Near::off
+  std::optional<MediumLight> medium_;  ///< none: no medium
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;

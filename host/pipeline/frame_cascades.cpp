@@ -26,7 +26,7 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
       reflected_(options.cascades),
       keys_(options.cascades) {
   if (swept) {
-    sweeper_.emplace(session, basis, transport, sweep_options(options));
+    sweeper_.emplace(session, basis, transport, sweep_options(options, scene.medium));
     if (scene.sky) sweeper_->set_sky(*scene.sky);
   } else {
     propagator_.emplace(session, basis, transport, propagate_options(options));
@@ -142,6 +142,7 @@ void FrameCascades::propagate(int cascade) {
   accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
     inject(cascade);
     update_blockers(cascade);
+    if (sweeper_) sweeper_->place_in_medium(cascade, grids_[cascade]);
     update_reflectors(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});

@@ -21,16 +21,24 @@ std::string cascade_macro(std::size_t cascades) {
   return text + "\n";
 }
 
-ProgramSource source_of(const Basis& basis, TransportKind transport, const GatherOptions& options,
-                        bool packed, const LookupTable& table) {
-  ProgramSource source;
-  source.file = "gather.cl";
-  source.literals.integer("CLPV_GRID", options.grid)
+}  // namespace
+
+void add_gather_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed) {
+  literals.integer("CLPV_GRID", options.grid)
       .flag("CLPV_PACKED", packed)
       .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
       .integer("CLPV_PAIRS", packed_pairs(basis))
       .real("CLPV_GATHER_OFFSET", options.gather_offset)
       .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
+}
+
+namespace {
+
+ProgramSource source_of(const Basis& basis, TransportKind transport, const GatherOptions& options,
+                        bool packed, const LookupTable& table) {
+  ProgramSource source;
+  source.file = "gather.cl";
+  add_gather_literals(source.literals, basis, options, packed);
   if (!packed) {
     add_format_literals(source.literals, options.format);
     source.literals.flag("CLPV_FILTERED", options.filtered);

@@ -70,4 +70,7 @@ class Gatherer {
   cl_uint cascades_ = 0;
 };
 
+/// Adds what kernels/cascades.h needs.
+void add_gather_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed = true);
+
 }  // namespace clpv

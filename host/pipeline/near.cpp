@@ -27,12 +27,7 @@ ProgramSource near_source(const char* file, const SceneBuffers& buffers, const N
 
 /// Adds what kernels/radiance.h needs.
 ProgramSource with_volumes(ProgramSource source, const Basis& basis, const NearOptions& options) {
-  source.literals.integer("CLPV_GRID", options.gather.grid)
-      .flag("CLPV_PACKED", true)
-      .flag("CLPV_VISIBLE", options.gather.gather == Gathering::visible)
-      .integer("CLPV_PAIRS", packed_pairs(basis))
-      .real("CLPV_GATHER_OFFSET", options.gather.gather_offset)
-      .real("CLPV_INVERSE_BLEND", 1 / options.gather.blend_cells);
+  add_gather_literals(source.literals, basis, options.gather);
   source.generated = radiance_source(basis);
   return source;
 }

@@ -89,7 +89,8 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
                                  .flag("CLPV_FROM_LIGHT", wanted.from_light)
                                  .flag("CLPV_TEXTURED", scene_.textured)
                                  .flag("CLPV_COLOURED", scene_.coloured)
-                                 .flag("CLPV_EMISSIVE", wanted.emissive),
+                                 .flag("CLPV_EMISSIVE", wanted.emissive)
+                                 .flag("CLPV_MEDIUM", wanted.from_light && scene_.medium),
                              {}};
   const char* name = wanted.from_light ? "resolve_rsm" : "resolve_camera";
   return resolve_.try_emplace(wanted, session_, source, name).first->second;

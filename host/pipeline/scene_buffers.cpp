@@ -141,6 +141,7 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.coloured = is_coloured(scene.vertices);
   buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
   buffers.masked = std::any_of(scene.materials.begin(), scene.materials.end(), is_masked);
+  buffers.medium = scene.medium.has_value();
   buffers.bounds = bounds_of_all(scene.vertices);
   buffers.clusters = std::make_shared<TriangleClusters>(scene);
   return buffers;

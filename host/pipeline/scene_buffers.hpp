@@ -22,7 +22,7 @@ struct SceneBuffers {
   unsigned white = 0;  ///< index of the white texture
   unsigned vertex_count = 0, triangle_count = 0;
   /// Features of the scene: textures, vertex colours other than 1, emissive materials, masked materials.
-  bool textured = false, coloured = false, emissive = false, masked = false;
+  bool textured = false, coloured = false, emissive = false, masked = false, medium = false;
   Bounds bounds;                               ///< of all vertices [m]
   std::shared_ptr<TriangleClusters> clusters;  ///< bounds of the triangles; shared by all copies
 };

@@ -12,7 +12,11 @@ namespace {
 constexpr std::size_t kShadeGroup = 64;  // pixels per work-group
 constexpr unsigned kMinShadowTexels = CLPV_SHADOW_TAPS;
 
-const ProgramSource kShadeSource{"shade.cl", {}, {}};
+ProgramSource shade_source(bool medium) {
+  ProgramSource source{"shade.cl", {}, {}};
+  if (medium) source.literals.flag("CLPV_MEDIUM", true);
+  return source;
+}
 
 std::size_t pixels_of(const Surface& surface) {
   return static_cast<std::size_t>(surface.view.width) * surface.view.height;
@@ -33,10 +37,10 @@ void require_fit(const ShadowedLight& shadowed) {
 
 }  // namespace
 
-Shader::Shader(Session& session)
+Shader::Shader(Session& session, bool medium)
     : session_(session),
-      light_(session, kShadeSource, "light_surfaces"),
-      shade_(session, kShadeSource, "shade") {}
+      light_(session, shade_source(medium), "light_surfaces"),
+      shade_(session, shade_source(medium), "shade") {}
 
 void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& lights) {
   if (camera.format != RsmFormat::float32)

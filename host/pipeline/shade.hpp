@@ -25,7 +25,8 @@ struct ShadowedLight {
 
 class Shader {
  public:
-  explicit Shader(Session& session);
+  /// `medium`: lights have one.
+  explicit Shader(Session& session, bool medium = false);
 
   /// Computes the irradiance E of all lights on every surface in `camera`; show() displays it as direct light.
   /// Throws Error(run_time) for a camera surface in format paper, a number of maps other than that of the views, or

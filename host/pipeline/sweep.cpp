@@ -90,6 +90,9 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     links_.push_back(volumes_.make(links, "transmittance of the sweep's links"));
   passes_ = make_passes(basis, options.parts);
+  for (std::size_t c = 0; c < options.parts.size() && options.medium; ++c)
+    inside_.push_back(zeroed_buffer(session, 3 * CLPV_SWEEP_ROW_OF(std::size_t(options.grid)) * sizeof(float),
+                                    "cells in the medium"));
   if (options.bounces == Bounces::one) return;
   bouncer_.emplace(session, basis, options);
   bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},
@@ -112,7 +115,8 @@ ProgramSource Sweeper::sweep_program(int coefficients, int emitting, int parts) 
       .integer("CLPV_SOURCES", coefficients)
       .integer("CLPV_EMITTING", emitting)
       .integer("CLPV_SOURCE_LANES", volumes_.lanes())
-      .flag("CLPV_BLOCKING", options_.blocking);
+      .flag("CLPV_BLOCKING", options_.blocking)
+      .flag("CLPV_MEDIUM", options_.medium.has_value());
   add_format_literals(source.literals, options_.format, whole_bins() ? 8 : 1);
   return source;
 }
@@ -128,6 +132,7 @@ Sweeper::Passes Sweeper::make_passes(const Basis& basis, const std::vector<int>&
     const int coarser = c + 1 < parts.size() ? parts[c + 1] : 0;
     const SweepMeans means = sweep_means(basis, parts[c]);
     Pass pass{parts[c],
+              coarser,
               session_.upload(sweep_direction_table(parts[c], coarser), "directions to sweep"),
               session_.upload(means.coefficients, "coefficients of the sweep's bins"),
               session_.upload(means.means, "means of the basis's functions"),
@@ -145,6 +150,20 @@ Sweeper::Passes Sweeper::make_passes(const Basis& basis, const std::vector<int>&
     passes.push_back(std::move(pass));
   }
   return passes;
+}
+
+void Sweeper::place_in_medium(std::size_t cascade, const ClpvGrid& grid) {
+  if (!options_.medium) return;
+  const auto attenuate_in = [&](const Pass& pass) {
+    std::vector<ClpvSweepDirection> table = sweep_direction_table(pass.parts, pass.coarser);
+    attenuate(table, pass.parts, *options_.medium, double{grid.cell});
+    session_.write(pass.directions, table);
+  };
+  attenuate_in(passes_[cascade]);
+  // With all bounces the coarsest cascade alone has a pass for them.
+  const std::size_t first = options_.parts.size() - bounce_passes_.size();
+  if (cascade >= first) attenuate_in(bounce_passes_[cascade - first]);
+  session_.write(inside_[cascade], cells_in_medium(*options_.medium, grid));
 }
 
 void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry) {
@@ -222,6 +241,7 @@ void Sweeper::launch(Pass& pass, std::size_t cascade, const Buffer& sums, const 
   const auto set = [&](cl_int last) {
     pass.sweep.set(bins_, pass.directions, pass.coefficients, pass.means, sources_, lit_, links_[cascade],
                    border_, halo, plane_buffer_, sums, pass.halo_light, last);
+    if (options_.medium) pass.sweep.add(inside_[cascade]);
   };
   if (whole_bins()) {
     set(lit ? 0 : 1);

@@ -32,6 +32,9 @@ class Sweeper {
   /// the blocking mode.
   Sweeper(Session& session, const Basis& basis, const Transport& transport, const SweepOptions& options);
 
+  /// Sets where a cascade lies in SweepOptions::medium. Call first, and when the cascade moves; without a medium does nothing.
+  void place_in_medium(std::size_t cascade, const ClpvGrid& grid);
+
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3 samples.
   void set_blockers(std::size_t cascade, const Volume& geometry);
 
@@ -59,7 +62,7 @@ class Sweeper {
  private:
   /// Directions, kernels and boundary light of one cascade.
   struct Pass {
-    int parts;
+    int parts, coarser;          ///< parts of the bins of this cascade and of the next coarser one; 0: none
     Buffer directions;           ///< ClpvSweepDirection
     Buffer coefficients, means;  ///< SweepMeans
     Kernel sweep;
@@ -96,6 +99,7 @@ class Sweeper {
   /// Along 24 directions, for incident flux: of each cascade, or with all bounces of the coarsest one.
   Passes bounce_passes_;
   std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce
+  std::vector<Buffer> inside_;       ///< cells_in_medium() of each cascade
   Buffer first_swept_;               ///< D_1 of docs/method.md; only with all bounces
   float sky_scale_ = 1;
 };

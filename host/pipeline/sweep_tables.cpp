@@ -2,6 +2,7 @@
 #include "pipeline/sweep_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "basis/sweep.hpp"
@@ -36,6 +37,7 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
       const SweepDirection& d = bins[b].directions[part];
       ClpvSweepDirection entry{};
       for (std::size_t k = 0; k < d.taps.size(); ++k) entry.taps[k] = d.taps[k];
+      for (float& channel : entry.attenuation) channel = 1;
       entry.share = d.solid_angle / (d.flux * bins[b].solid_angle);
       if (coarser_parts > 0) {
         entry.coarser = coarser_part(static_cast<int>(part), parts, coarser_parts);
@@ -46,6 +48,30 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
     }
   }
   return table;
+}
+
+void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium, double cell) {
+  std::size_t i = 0;
+  for (const SweepBin& bin : sweep_bins(parts)) {
+    for (const SweepDirection& d : bin.directions) {
+      for (int c = 0; c < 3; ++c)
+        table[i].attenuation[c] = static_cast<float>(std::exp(-double{medium.extinction[c]} * cell / d.flux));
+      ++i;
+    }
+  }
+}
+
+std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid) {
+  const std::size_t n = grid.n, pitch = CLPV_SWEEP_ROW_OF(n);
+  std::vector<float> inside(3 * pitch, 0.0f);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double low = grid.origin[axis] + double{grid.cell} * i, high = low + grid.cell;
+      const double part = std::min(high, double{medium.upper[axis]}) - std::max(low, double{medium.lower[axis]});
+      inside[axis * pitch + i] = static_cast<float>(std::clamp(part / grid.cell, 0.0, 1.0));
+    }
+  }
+  return inside;
 }
 
 SweepMeans sweep_means(const Basis& basis, int parts) {

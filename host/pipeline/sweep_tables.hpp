@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "kernels/shared/grid.h"
+#include "kernels/shared/light.h"
 #include "kernels/shared/sweep.h"
 
 namespace clpv {
@@ -12,6 +14,13 @@ namespace clpv {
 std::vector<ClpvSweepBin> sweep_bin_table(int grid);
 /// `coarser_parts`: parts of the next coarser cascade; 0 for the coarsest.
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts);
+
+/// Sets the attenuation of a table's directions by a medium, for cells of edge `cell` [m].
+void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium, double cell);
+
+/// Part in [0, 1] of a cascade's cells inside a medium's box: a row of CLPV_SWEEP_ROW_OF(n) numbers along x, y and z, whose
+/// product is that of a cell.
+std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid);
 
 /// part_means() without the coefficients that no direction of a bin depends on (those of other bins).
 struct SweepMeans {

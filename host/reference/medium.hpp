@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/medium.h: paths through a homogeneous medium in a box (kernels/shared/light.h).
+// Paths through a homogeneous medium in a box (kernels/shared/light.h, kernels/medium.h), and CPU reference of stage `medium`
+// (kernels/medium.cl), in double.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <vector>
 
+#include "basis/basis.hpp"
+#include "image/surface_image.hpp"
 #include "kernels/shared/light.h"
+#include "options/stage_options.hpp"
+#include "reference/gather.hpp"
+#include "reference/shade.hpp"
 
 namespace clpv::reference {
 
@@ -26,5 +33,16 @@ double phase(double anisotropy, double cosine);
 
 /// Returns true if light is scattered or absorbed at all.
 bool attenuates(const ClpvMedium& medium);
+
+struct MediumScene {
+  const ClpvMedium& medium;
+  const std::vector<MappedLight>& lights;
+  const std::vector<Cascade>& cascades;  ///< finest first
+};
+
+/// Returns the radiance [W/m^2/sr] that the medium scatters towards the camera in each pixel. `basis`: of the cascades' volumes,
+/// swept_basis().
+std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options, const MediumScene& scene,
+                                        const SurfaceImage& camera);
 
 }  // namespace clpv::reference

@@ -26,14 +26,14 @@ double tap_weight(double distance) {
   return std::clamp(CLPV_SHADOW_TAPS / 2 - std::abs(distance), 0.0, 1.0);
 }
 
-/// The shadow map of a light whose axis is closest to `offset`.
+
+}  // namespace
+
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset) {
   const auto along = [&](const ShadowMap& map) { return glm::dot(offset, vector(map.view.forward)); };
   return *std::max_element(maps.begin(), maps.end(),
                            [&](const ShadowMap& a, const ShadowMap& b) { return along(a) < along(b); });
 }
-
-}  // namespace
 
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal, double cosine) {
   const ProjectedPoint at = project(map.view, position);

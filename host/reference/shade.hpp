@@ -24,6 +24,9 @@ struct MappedLight {
   std::vector<ShadowMap> maps;
 };
 
+/// Returns the map of a light that covers a point: the one whose view looks most along `offset`, from the light to the point.
+const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset);
+
 /// Returns the share [0, 1] of the light that reaches a surface at `position` [m] with unit `normal` on the lit side.
 /// `cosine`: cosine between the normal and the direction to the light.
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal, double cosine);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// D = I + sum_k t_k T_k D_k from upstream to downstream, for each direction; L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).
+// D = I + a sum_k t_k T_k D_k from upstream to downstream, for each direction; L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).
+// a: attenuation by a medium, 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part of the cell in it.
 #include "reference/sweep.hpp"
 
 #include <algorithm>
@@ -49,21 +50,35 @@ class Sweep {
         p[axis] = sweep_bin.sign[axis] > 0 ? step : n_ - 1 - step;
       }
       for (int channel = 0; channel < 3; ++channel) {
-        double value = dot(means, cascade_.injected->cell(channel, p));
+        double arriving = 0;
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
           const glm::ivec3 q = p - sweep_bin.offset[k];
           const double transmitted = transmittance_[link_of(sweep_bin.offset[k])].value(0, 0, p.x, p.y, p.z);
           const double upstream = field.inside(q.x, q.y, q.z) ? field.value(channel, 0, q.x, q.y, q.z)
                                                               : inflow(channel, bin, part, d, q);
-          value += d.taps[k] * transmitted * upstream;
+          arriving += d.taps[k] * transmitted * upstream;
         }
-        field.at(channel, 0, p.x, p.y, p.z) = value;
+        field.at(channel, 0, p.x, p.y, p.z) =
+            dot(means, cascade_.injected->cell(channel, p)) + attenuation(channel, d, p) * arriving;
       }
     });
     return field;
   }
 
  private:
+  double attenuation(int channel, const SweepDirection& d, const glm::ivec3& p) const {
+    if (cascade_.medium == nullptr) return 1;
+    const ClpvMedium& medium = *cascade_.medium;
+    const double cell = double{cascade_.grid.cell};
+    double inside = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = cascade_.grid.origin[axis] + cell * p[axis];
+      const double upper = medium.upper[axis], lower = medium.lower[axis];
+      inside *= std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
+    }
+    return 1 + inside * std::expm1(-double{medium.extinction[channel]} * cell / d.flux);
+  }
+
   static std::size_t link_of(const glm::ivec3& offset) {
     return offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1);
   }

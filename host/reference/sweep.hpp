@@ -19,6 +19,7 @@ struct SweptCascade {
   const Volume* injected = nullptr;  ///< n^3 cells, coefficients in the basis [W/sr]
   const Volume* geometry = nullptr;  ///< blockers at the cells' corners; null: no blockers
   int parts = 1;                     ///< subdivision of its bins (sweep_bins)
+  const ClpvMedium* medium = nullptr;  ///< null: none
 };
 
 /// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of its first cell.

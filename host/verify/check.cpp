@@ -9,7 +9,7 @@ namespace {
 constexpr StageCheck* kChecks[] = {check_sizes,    check_rasterize,  check_emit,      check_inject,
                                    check_blockers, check_reflectors, check_propagate, check_sweep,
                                    check_bounce,   check_visibility, check_gather,    check_near,
-                                   check_shade};
+                                   check_medium,   check_shade};
 static_assert(std::size(kChecks) == kNames<Stage>.size());
 
 }  // namespace

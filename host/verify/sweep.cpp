@@ -23,6 +23,9 @@ namespace {
 constexpr double kEdge = 4;  // edge of the finest grid [m]
 constexpr float kSkyScale = 0.5f;
 
+/// Its box cuts cells of every cascade.
+const ClpvMedium kSweptMedium{{-1.1f, -0.7f, -3.3f}, {1.3f, 4, 0.9f}, {0.1f, 0.2f, 0.3f}, {0.2f, 0.5f, 2}, 0, {}};
+
 struct SweepCase {
   std::string basis;
   int grid;
@@ -33,15 +36,16 @@ struct SweepCase {
   VolumeFormat format = {};
   SweepForm form = SweepForm::bins;
   bool sky = false;
+  bool medium = false;
 
   std::string name() const {
     std::string directions;
     for (const int p : parts)
       directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
-    return fmt::format("{}/{}^3/{}{}{}{}{}{}/{}", basis, grid, directions,
+    return fmt::format("{}/{}^3/{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
-                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", format_name(format));
+                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", medium ? "/medium" : "", format_name(format));
   }
 };
 
@@ -86,7 +90,8 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                    .blocking = c.blocking,
                    .bounces = c.bounces,
                    .format = c.format,
-                   .form = c.form});
+                   .form = c.form,
+                   .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
   if (c.sky) {
     sweeper.set_sky(uneven_sky(1));
     sweeper.scale_sky(kSkyScale);
@@ -100,7 +105,8 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
     reflectors.push_back(random_reflectors(c.grid, random));
   }
   for (int i = 0; i < count; ++i) {
-    cascades.push_back({grids[i], &lights[i], c.blocking ? &blockers[i] : nullptr, c.parts[i]});
+    cascades.push_back({grids[i], &lights[i], c.blocking ? &blockers[i] : nullptr, c.parts[i],
+                        c.medium ? &kSweptMedium : nullptr});
     reflecting.push_back(&reflectors[i]);
   }
   std::vector<std::vector<float>> found(count);
@@ -109,6 +115,7 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                        geometry = on_device(session, blockers[i], c.format),
                        sides = on_device(session, reflectors[i], c.format);
     clpv::Volume swept(session, {c.grid, swept_basis()->size(), 3}, "check: swept", c.format);
+    sweeper.place_in_medium(i, grids[i]);
     if (c.blocking) sweeper.set_blockers(i, geometry);
     if (c.bounces != Bounces::one) sweeper.set_reflectors(i, sides);
     sweeper.sweep(i, grids, light, swept);
@@ -146,6 +153,8 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       {.basis = "sh2", .grid = 9, .parts = {1, 1}, .blocked_by = Blocking::one_sided},
       {.basis = "bins24", .grid = 5, .parts = {3, 2}, .blocking = false},
       {.basis = "srbf8v2", .grid = 1, .parts = {1, 1, 1}},
+      {.basis = "sh3", .grid = 9, .parts = {2, 1}, .medium = true},
+      {.basis = "bins24", .grid = 7, .parts = {1, 2}, .form = SweepForm::planes, .medium = true},
   };
   for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
     cases.push_back({.basis = "sh3", .grid = 9, .parts = {1, 1}, .format = format});
@@ -164,6 +173,7 @@ CheckResults check_bounce(Session& session, const CheckScope& scope) {
       {.basis = "bins24", .grid = 8, .parts = {2, 2}, .bounces = Bounces::two, .form = SweepForm::planes},
       {.basis = "sh2", .grid = 7, .parts = {1, 2, 1}, .bounces = all, .form = SweepForm::planes},
       {.basis = "srbf8v2", .grid = 1, .parts = {1}, .bounces = all},
+      {.basis = "sh3", .grid = 7, .parts = {1, 2}, .bounces = all, .medium = true},
   };
   for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
     cases.push_back({.basis = "sh3", .grid = 9, .parts = {1, 1}, .bounces = all, .format = format});

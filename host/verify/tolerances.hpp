@@ -67,6 +67,8 @@ inline constexpr Tolerance kTolerances[] = {
     // float32 positions and directions of rays, and sums over 100 of them; pixels that rounding may decide are left out;
     // measured 1e-6. float16 as gather.
     {"near", 1e-4, 2e-2},
+    // exp and log of float32, and ends of rays that differ by rounding among pixels whose weight falls steeply.
+    {"medium", 1e-4, 2e-2},
     // float32 light angles and distances; shadow filter weights use coordinates accurate to 1e-6 of the map's side.
     {"shade", 5e-6},
 };

@@ -36,6 +36,7 @@
     OFFSET(ClpvSweepBin, transposed) OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)         \
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
     OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \
+    OFFSET(ClpvSweepDirection, attenuation)                                                        \
   SIZE(ClpvSweepHalo) OFFSET(ClpvSweepHalo, first) OFFSET(ClpvSweepHalo, side)                  \
     OFFSET(ClpvSweepHalo, layers)                                                                 \
   SIZE(ClpvRegion) OFFSET(ClpvRegion, base) OFFSET(ClpvRegion, cell) OFFSET(ClpvRegion, first)     \

@@ -23,10 +23,11 @@ typedef struct {
   float share;         // Omega_d / (|w_m| Omega_b): solid angles of direction and bin, component across planes
   float from_coarser;  // D here for 1 of the coarser cascade's D
   int coarser;         // part of the bin that contains this direction in the coarser cascade
-  int unused;
+  float attenuation[3];  // exp(-sigma_t s / |w_m|) of a medium, by channel; 1 without one
+  int unused[2];
 } ClpvSweepDirection;
 
-#define CLPV_SIZEOF_SWEEP_DIRECTION 32
+#define CLPV_SIZEOF_SWEEP_DIRECTION 48
 
 // Halo: cells of a coarser cascade that the border of the next finer one interpolates.
 typedef struct {
