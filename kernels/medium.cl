@@ -55,15 +55,18 @@ CLPV_INLINE void air_rays(const ClpvView view, const PixelRow p, const float8 de
   a->end = a->inside ? part.end : none;
 }
 
-// Rays of the pixels of a row of planes.
+// Rays of the pixels of a row of planes; none in the border.
 CLPV_INLINE void plane_rays(const ClpvView view, const NearRow r, __global const float* depths, const ClpvMedium medium,
                             AirRays* a) {
-  const int8 x = min(r.x + (int8)(0, 1, 2, 3, 4, 5, 6, 7), (int8)((int)r.width - 1)) * CLPV_NEAR_STEP;
+  const int8 column = r.x + (int8)(0, 1, 2, 3, 4, 5, 6, 7), last = (int8)((int)r.width - 1);
+  const int8 x = min(column, last) * CLPV_NEAR_STEP;
   const uint8 pixel = as_uint8(r.y * CLPV_NEAR_STEP * (int)view.width + x);
   PixelRow p;
   p.x = convert_float8(x);
   p.y = (float8)((float)(r.y * CLPV_NEAR_STEP));
   air_rays(view, p, (float8)CLPV_GATHER(depths, pixel), medium, a);
+  a->inside &= column <= last;
+  a->end = a->inside ? a->end : (float8)(0.0f);
 }
 
 // Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile (Bayer 1973).

@@ -10,7 +10,8 @@
 // ClpvSweepDirection.
 //
 // With CLPV_MEDIUM, light from the previous plane is attenuated in each channel: D = I + a sum_k t_k T_k D_k,
-// a = 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part of the cell in the medium.
+// a = 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part in the medium of the way from the previous plane: the mean of both
+// cells along m.
 #ifndef CLPV_SWEEP_CELL_H
 #define CLPV_SWEEP_CELL_H
 
@@ -32,7 +33,7 @@ typedef struct {
   CLPV_BUFFER_OUT sums;                             // L s^2, a volume for each channel and bin
   CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
 #if CLPV_MEDIUM
-  __global const float* inside;                     // part of each cell in the medium along x, y and z, in rows
+  __global const float* inside;                     // part in the medium of each cell along x, y and z, rows with border
 #endif
 } BinSweep;
 
@@ -107,9 +108,11 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
 #define CLPV_TAP(k) ((CLPV_REAL)(s->directions[part].taps[k]))
 #endif
 #if CLPV_MEDIUM
-  const CLPV_REAL in_medium = s->inside[bin.plane_axis * CLPV_SWEEP_ROW + plane] *
-                              s->inside[bin.row_axis * CLPV_SWEEP_ROW + row] *
-                              CLPV_PLANE_LOAD(s->inside, bin.column_axis * CLPV_SWEEP_ROW + column);
+#define CLPV_INSIDE(axis, i) ((axis)*CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + (i))
+  const float along = s->inside[CLPV_INSIDE(bin.plane_axis, plane)] +
+                      s->inside[CLPV_INSIDE(bin.plane_axis, plane - bin.plane_sign)];
+  const CLPV_REAL in_medium = 0.5f * along * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
+                              CLPV_PLANE_LOAD(s->inside, CLPV_INSIDE(bin.column_axis, column));
 #endif
   CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll

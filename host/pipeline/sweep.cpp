@@ -91,8 +91,9 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     links_.push_back(volumes_.make(links, "transmittance of the sweep's links"));
   passes_ = make_passes(basis, options.parts);
   for (std::size_t c = 0; c < options.parts.size() && options.medium; ++c)
-    inside_.push_back(zeroed_buffer(session, 3 * CLPV_SWEEP_ROW_OF(std::size_t(options.grid)) * sizeof(float),
-                                    "cells in the medium"));
+    inside_.push_back(zeroed_buffer(
+        session, (3 * CLPV_SWEEP_PITCH_OF(std::size_t(options.grid)) + CLPV_SWEEP_FIRST) * sizeof(float),
+        "cells in the medium"));
   if (options.bounces == Bounces::one) return;
   bouncer_.emplace(session, basis, options);
   bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},

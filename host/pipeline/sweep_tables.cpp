@@ -62,13 +62,13 @@ void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedi
 }
 
 std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid) {
-  const std::size_t n = grid.n, pitch = CLPV_SWEEP_ROW_OF(n);
-  std::vector<float> inside(3 * pitch, 0.0f);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < n; ++i) {
+  const int n = static_cast<int>(grid.n), pitch = CLPV_SWEEP_PITCH_OF(n);
+  std::vector<float> inside(3 * std::size_t(pitch) + CLPV_SWEEP_FIRST, 0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = -1; i <= n; ++i) {
       const double low = grid.origin[axis] + double{grid.cell} * i, high = low + grid.cell;
       const double part = std::min(high, double{medium.upper[axis]}) - std::max(low, double{medium.lower[axis]});
-      inside[axis * pitch + i] = static_cast<float>(std::clamp(part / grid.cell, 0.0, 1.0));
+      inside[axis * pitch + CLPV_SWEEP_FIRST + i] = static_cast<float>(std::clamp(part / grid.cell, 0.0, 1.0));
     }
   }
   return inside;

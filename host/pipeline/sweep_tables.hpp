@@ -18,8 +18,8 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
 /// Sets the attenuation of a table's directions by a medium, for cells of edge `cell` [m].
 void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium, double cell);
 
-/// Part in [0, 1] of a cascade's cells inside a medium's box: a row of CLPV_SWEEP_ROW_OF(n) numbers along x, y and z, whose
-/// product is that of a cell.
+/// Part in [0, 1] of a cascade's cells inside a medium's box along x, y and z, whose product is that of a cell: three rows of
+/// CLPV_SWEEP_PITCH_OF(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the cells beside the grid.
 std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid);
 
 /// part_means() without the coefficients that no direction of a bin depends on (those of other bins).

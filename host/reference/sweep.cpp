@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // D = I + a sum_k t_k T_k D_k from upstream to downstream, for each direction; L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).
-// a: attenuation by a medium, 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part of the cell in it.
+// a: attenuation by a medium, 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part in it of the way from the previous plane.
 #include "reference/sweep.hpp"
 
 #include <algorithm>
@@ -59,22 +59,25 @@ class Sweep {
           arriving += d.taps[k] * transmitted * upstream;
         }
         field.at(channel, 0, p.x, p.y, p.z) =
-            dot(means, cascade_.injected->cell(channel, p)) + attenuation(channel, d, p) * arriving;
+            dot(means, cascade_.injected->cell(channel, p)) + attenuation(channel, sweep_bin, d, p) * arriving;
       }
     });
     return field;
   }
 
  private:
-  double attenuation(int channel, const SweepDirection& d, const glm::ivec3& p) const {
+  double attenuation(int channel, const SweepBin& bin, const SweepDirection& d, const glm::ivec3& p) const {
     if (cascade_.medium == nullptr) return 1;
     const ClpvMedium& medium = *cascade_.medium;
     const double cell = double{cascade_.grid.cell};
+    const auto part_of = [&](int axis, int i) {
+      const double low = cascade_.grid.origin[axis] + cell * i, upper = medium.upper[axis], lower = medium.lower[axis];
+      return std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
+    };
     double inside = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = cascade_.grid.origin[axis] + cell * p[axis];
-      const double upper = medium.upper[axis], lower = medium.lower[axis];
-      inside *= std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
+      const double here = part_of(axis, p[axis]);
+      inside *= axis == bin.axis ? (here + part_of(axis, p[axis] - bin.sign[axis])) / 2 : here;
     }
     return 1 + inside * std::expm1(-double{medium.extinction[channel]} * cell / d.flux);
   }

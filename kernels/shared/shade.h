@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Quantities that an image can show, and the shadow filter, shared by host and kernels. Images are RGBA with alpha 1 on
-// surfaces and all 0 elsewhere; the first two show a sky, with alpha 1.
+// surfaces and all 0 elsewhere; the first two show a sky, with alpha 1, and the first a medium.
 #ifndef CLPV_SHARED_SHADE_H
 #define CLPV_SHARED_SHADE_H
 
