@@ -37,8 +37,6 @@ endif()
 set(CLPV_EMBREE_LIBRARY embree${CLPV_EMBREE_MAJOR})
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
-find_path(NLOPT_INCLUDE_DIR nlopt.h REQUIRED)
-find_library(NLOPT_LIBRARY nlopt REQUIRED)
 find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 
 function(clpv_link_dependencies target)
@@ -48,7 +46,7 @@ function(clpv_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json
            spdlog::spdlog Threads::Threads
-    PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} ${NLOPT_LIBRARY} embree)
-  target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR} ${NLOPT_INCLUDE_DIR})
+    PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} embree)
+  target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
   target_include_directories(${target} SYSTEM PRIVATE ${EIGEN_INCLUDE_DIR})
 endfunction()

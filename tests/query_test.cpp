@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light at points: equal to the frame's where the camera sees them; valid and invalid files of points; `clpv query`.
+// Light at points: irradiance equal to the frame's where the camera sees them, radiance to the CPU reference; valid and invalid files of points; `clpv query`.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -7,7 +7,9 @@
 #include "pipeline/cascade.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/view.hpp"
+#include "pipeline/visibility.hpp"
 #include "quality/points_file.hpp"
+#include "reference/radiance.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/error_of.hpp"
@@ -86,6 +88,75 @@ TEST(IrradianceAtPoints, EqualsTheCamerasIrradiance) {
     // Positions are rounded to floats; light changes by much over a cell.
     EXPECT_LT(worst, 1e-3 * brightest) << name_of(transport);
   }
+}
+
+glm::dvec3 even(std::uint32_t i) {
+  const auto part = [i](double step) { return std::fmod(0.5 + step * i, 1.0); };
+  return {part(0.8191725), part(0.6710436), part(0.5497005)};
+}
+
+TEST(RadianceAtPoints, IsThatOfTheReference) {
+  const Scene scene = load_scene(kCornell);
+  for (const Gathering gather : {Gathering::visible, Gathering::all}) {
+    RenderOptions options = small_options(scene);
+    options.cascades = 2, options.cascade_size = 0.5;  // the box reaches into the coarser one
+    options.gather = gather;
+    options.layout = Layout::soa;
+    Session& session = test_session();
+    Frame frame(session, scene, options);
+    frame.render(scene.camera(""));
+    const GatheredLight light = frame.light();
+    std::vector<reference::Volume> volumes;
+    for (const Volume* volume : light.accumulated) {
+      const std::vector<float> values = volume->read(session);
+      volumes.emplace_back(options.grid, 9);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        volumes.back().values[i] = double{values[i]} / light.scale;
+    }
+    const std::size_t bytes = CellVisibility::bytes(options.grid);
+    std::vector<std::uint8_t> occluded;
+    if (light.occluded != nullptr) occluded = session.read<std::uint8_t>(*light.occluded, 2 * bytes);
+    std::vector<reference::Cascade> cascades;
+    for (std::size_t c = 0; c < 2; ++c)
+      cascades.push_back({light.grids[c], &volumes[c], occluded.empty() ? nullptr : &occluded[c * bytes]});
+
+    std::vector<glm::vec4> positions, directions;
+    for (std::uint32_t i = 0; i < 2100; ++i) {  // more than two rows of the points' image
+      positions.emplace_back(glm::vec3(0.02 + 0.52 * even(i)), 0);
+      directions.emplace_back(glm::vec3(glm::normalize(even(7 * i + 3) - 0.5)), 0);
+    }
+    positions.back() = {900, 0, 0, 0};
+    const std::vector<glm::vec4> found = frame.radiance_at(positions, directions);
+    ASSERT_EQ(found.size(), positions.size());
+    EXPECT_EQ(found.back(), glm::vec4(0)) << "outside the cascades";
+    double brightest = 0, worst = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto field =
+          reference::radiance_field(gather_options(options), cascades, 9, glm::dvec3(positions[i]));
+      const glm::dvec3 expected = reference::radiance(frame.gathered(), field, glm::dvec3(directions[i]));
+      brightest = std::max(brightest, expected.x);
+      worst = std::max(worst, glm::length(glm::dvec3(found[i]) - expected));
+    }
+    EXPECT_GT(brightest, 0.05) << name_of(gather);
+    EXPECT_LT(worst, 1e-4 * brightest) << name_of(gather);  // sums of floats; half volumes are exact
+  }
+}
+
+TEST(RadianceAtPoints, NeedsPackedVolumesOfASweep) {
+  const Scene scene = load_scene(kCornell);
+  const std::vector<glm::vec4> at{{0.2f, 0.2f, 0.2f, 0}}, along{{0, 1, 0, 0}};
+  const auto rejected = [&](const RenderOptions& options, bool rendered) {
+    Frame frame(test_session(), scene, options);
+    if (rendered) frame.render(scene.camera(""));
+    return error_of(ExitCode::usage, [&] { frame.radiance_at(at, along); });
+  };
+  RenderOptions options = small_options(scene);
+  EXPECT_THAT(rejected(options, false), HasSubstr("radiance: no frame was rendered"));
+  options.transport = TransportKind::sampled;
+  EXPECT_THAT(rejected(options, true), AllOf(HasSubstr("transport 'sampled'"), HasSubstr("allowed: sweep")));
+  options.transport = TransportKind::sweep;
+  options.layout = Layout::image, options.gather = Gathering::all;
+  EXPECT_THAT(rejected(options, true), AllOf(HasSubstr("layout 'image'"), HasSubstr("'visible'")));
 }
 
 struct PointsFile : ::testing::Test {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "basis/lobe_aims.hpp"
 #include "basis/lobe_quality.hpp"
 #include "basis/quadrature.hpp"
 #include "basis/transport.hpp"

@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "image/image_io.hpp"
+#include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::view_values_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
 const std::string kFront = " --eye 0.278,0.273,-0.18 --target 0.278,0.273,0.28 --fov 75";
@@ -51,6 +54,20 @@ TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
     EXPECT_EQ(outcome.exit_code, 0) << command << outcome.err;
   }
   EXPECT_THAT(run("bench frame --help").out, HasSubstr("--eye"));
+}
+
+// The loader adds a camera and a sun to a bare model, and says so unless the command line replaces them.
+TEST_F(CameraByNumbers, NotesNameOnlyWhatIsShown) {
+  GltfBuilder bare;
+  bare.triangle();
+  const std::string model = bare.write(folder, "bare.gltf").string();
+  const auto notes = [&](const std::string& more) {
+    return run("pathtrace " + model + " --spp 1 --width 4 --height 4 -o a.exr" + more).err;
+  };
+  const std::string eye = " --eye 0,0,3 --target 0,0,0", sun = " --sun 0,-1,-1";
+  EXPECT_THAT(notes(""), AllOf(HasSubstr("added one that frames"), HasSubstr("added a sun")));
+  EXPECT_THAT(notes(eye), AllOf(Not(HasSubstr("added one that frames")), HasSubstr("added a sun")));
+  EXPECT_THAT(notes(eye + sun), Not(HasSubstr("added")));
 }
 
 TEST_F(CameraByNumbers, TheSunReplacesAllLights) {

@@ -29,14 +29,40 @@ void check_view(View view) {
               static_cast<int>(View::cells));
 }
 
-glm::vec4 unit_normal(const glm::dvec3& normal, const glm::dvec3& position, std::size_t i) {
-  const double length = glm::length(normal);
-  if (length > 0 && std::isfinite(length) && std::isfinite(position.x + position.y + position.z))
-    return {glm::vec3(normal / length), 0};
-  throw Error(ExitCode::usage,
-              "irradiance: point {}: found position ({}, {}, {}) and normal ({}, {}, {}), allowed: finite "
-              "numbers, a nonzero normal",
-              i, position.x, position.y, position.z, normal.x, normal.y, normal.z);
+using Vectors = std::span<const std::array<float, 3>>;
+
+/// Points with a unit vector each.
+struct Points {
+  std::vector<glm::vec4> positions, vectors;
+};
+
+/// Checks points and a vector of any length for each. Messages name the function and the vectors: "irradiance", "normal".
+Points checked_points(const char* function, const char* vector, Vectors positions, Vectors vectors) {
+  if (positions.size() != vectors.size()) {
+    throw Error(ExitCode::usage, "{}: found {} positions and {} {}s, allowed: equal numbers", function,
+                positions.size(), vectors.size(), vector);
+  }
+  Points points;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto &p = positions[i], &v = vectors[i];
+    const glm::dvec3 along(v[0], v[1], v[2]);
+    const double length = glm::length(along);
+    if (!(length > 0 && std::isfinite(length) && std::isfinite(p[0] + p[1] + p[2]))) {
+      throw Error(ExitCode::usage,
+                  "{}: point {}: found position ({}, {}, {}) and {} ({}, {}, {}), allowed: finite numbers, a "
+                  "nonzero {}",
+                  function, i, p[0], p[1], p[2], vector, v[0], v[1], v[2], vector);
+    }
+    points.positions.emplace_back(p[0], p[1], p[2], 0);
+    points.vectors.emplace_back(glm::vec3(along / length), 0);
+  }
+  return points;
+}
+
+std::vector<std::array<float, 3>> without_alpha(const std::vector<glm::vec4>& values) {
+  std::vector<std::array<float, 3>> colours;
+  for (const glm::vec4& value : values) colours.push_back({value.x, value.y, value.z});
+  return colours;
 }
 
 }  // namespace
@@ -124,22 +150,18 @@ std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& nor
 
 std::vector<std::array<float, 3>> Renderer::irradiance(std::span<const std::array<float, 3>> positions,
                                                        std::span<const std::array<float, 3>> normals) {
-  if (positions.size() != normals.size()) {
-    throw Error(ExitCode::usage, "irradiance: found {} positions and {} normals, allowed: equal numbers",
-                positions.size(), normals.size());
-  }
+  Points points = checked_points("irradiance", "normal", positions, normals);
   const std::lock_guard lock(state_->mutex);
   state_->require_frame("irradiance");
-  std::vector<glm::vec4> at, facing;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto &p = positions[i], &n = normals[i];
-    facing.push_back(unit_normal({n[0], n[1], n[2]}, {p[0], p[1], p[2]}, i));
-    at.emplace_back(p[0], p[1], p[2], 0);
-  }
-  std::vector<std::array<float, 3>> found;
-  for (const glm::vec4& e : state_->frame.irradiance_at(std::move(at), std::move(facing)))
-    found.push_back({e.x, e.y, e.z});
-  return found;
+  return without_alpha(state_->frame.irradiance_at(std::move(points.positions), std::move(points.vectors)));
+}
+
+std::vector<std::array<float, 3>> Renderer::radiance(std::span<const std::array<float, 3>> positions,
+                                                     std::span<const std::array<float, 3>> directions) {
+  Points points = checked_points("radiance", "direction", positions, directions);
+  const std::lock_guard lock(state_->mutex);
+  state_->require_frame("radiance");
+  return without_alpha(state_->frame.radiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<LightVolume> Renderer::volumes() {

@@ -69,6 +69,7 @@ bool SceneFile::moves() const {
 }
 
 std::vector<std::string> SceneFile::notes() const {
+  const std::shared_lock lock(contents_->mutex);
   return contents_->moving.scene().notes;
 }
 

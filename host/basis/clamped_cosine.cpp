@@ -19,8 +19,6 @@ double next_moment(double b, int k) {
   return -b * (2.0 * k - 1) / (2.0 * k + 4);
 }
 
-constexpr double kNegligible = 1e-17;
-
 }  // namespace
 
 double cosine_band(int band) {
@@ -71,26 +69,6 @@ std::vector<double> CosineOfPoisson::chebyshev() const {
   }
   while (c.size() > 1 && std::abs(c.back()) < kKernelTail * std::abs(c[0])) c.pop_back();
   return c;
-}
-
-ZonalValue ZonalSeries::operator()(double t, double mu) const {
-  ZonalValue sum{0, 0, 0};
-  double p = 1, p_before = 0;          // P_k, P_{k-1}
-  double slope = 0, slope_before = 0;  // their derivatives
-  double power = 1, power_before = 0;  // mu^k, mu^(k-1)
-  for (std::size_t i = 0; i < coefficients_.size() && power > kNegligible; ++i) {
-    const double k = i;
-    const double c = coefficients_[i];
-    sum.value += c * power * p;
-    sum.by_t += c * power * slope;
-    sum.by_mu += c * k * power_before * p;
-    const double next = ((2 * k + 1) * t * p - k * p_before) / (k + 1);
-    const double next_slope = slope_before + (2 * k + 1) * p;  // P'_{k+1} = P'_{k-1} + (2k+1) P_k
-    p_before = p, p = next;
-    slope_before = slope, slope = next_slope;
-    power_before = power, power *= mu;
-  }
-  return sum;
 }
 
 }  // namespace clpv

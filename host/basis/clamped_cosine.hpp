@@ -32,21 +32,4 @@ class CosineOfPoisson {
   std::vector<double> terms_;  ///< 4 pi a_2k lambda^2k
 };
 
-/// Value of a function of (t, mu) with its partial derivatives.
-struct ZonalValue {
-  double value, by_t, by_mu;
-};
-
-/// Function sum_k c_k mu^k P_k(t).
-class ZonalSeries {
- public:
-  explicit ZonalSeries(std::vector<double> coefficients) : coefficients_(std::move(coefficients)) {}
-
-  /// Value for t in [-1, 1] and mu in (0, 1), truncated where mu^k falls below double's resolution.
-  ZonalValue operator()(double t, double mu) const;
-
- private:
-  std::vector<double> coefficients_;
-};
-
 }  // namespace clpv

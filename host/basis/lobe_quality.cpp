@@ -7,14 +7,14 @@
 #include <numbers>
 #include <vector>
 
-#include "basis/lobe_aims.hpp"
-
 namespace clpv {
 namespace {
 
 using std::numbers::pi;
-constexpr double kSpacing = pi / 90;  // between start points: finer than any lobe's features
-constexpr double kResolution = 1e-7;   // [rad] of the maximum's direction
+constexpr double kCosineNorm = 2 * pi / 3;  // Int max(0, w . d)^2 dw
+constexpr int kEvenDirections = 2000;       // give means to three digits
+constexpr double kSpacing = pi / 90;        // between start points: finer than any lobe's features
+constexpr double kResolution = 1e-7;        // [rad] of the maximum's direction
 
 // Unit direction of f's maximum: the best of a grid of directions, refined by pattern search with shrinking steps.
 glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
@@ -41,6 +41,22 @@ glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
 }
 
 }  // namespace
+
+double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
+  std::vector<double> alpha(c.size());
+  basis.cosine_integrals(d, alpha);
+  return std::sqrt(std::max(0.0, kCosineNorm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / kCosineNorm);
+}
+
+std::vector<glm::dvec3> even_directions(int count) {
+  std::vector<glm::dvec3> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, radius = std::sqrt(1 - z * z);
+    const double azimuth = pi * (3 - std::sqrt(5.0)) * i;
+    directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+  }
+  return directions;
+}
 
 LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
   std::vector<double> b(c.size());

@@ -4,6 +4,7 @@
 
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
@@ -17,6 +18,12 @@ struct LobeQuality {
   double flux;                ///< Int f dw; pi for the clamped cosine
   double peak_error_degrees;  ///< angle between the maximum of f and d
 };
+
+/// Returns |f - max(0, w . d)| / |max(0, w . d)|, L2 norms over the sphere, for f with coefficients c (N).
+double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d);
+
+/// Returns `count` evenly distributed unit directions on a golden spiral.
+std::vector<glm::dvec3> even_directions(int count);
 
 /// Returns the quality of coefficients c (N) as a clamped cosine about the unit vector d.
 LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const glm::dvec3& d);

@@ -22,7 +22,6 @@ struct Options {
   double lambda = kDefaultLambda;
   LobeOptions lobes;
   bool json = false;
-  BasisSearchOptions search;
 };
 
 glm::dvec3 unit_axis(const std::string& text) {
@@ -45,6 +44,64 @@ std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {
   return bases;
 }
 
+/// Lobe method, and the axis of the reported lobe.
+struct BasisView {
+  LobeOptions lobes;
+  glm::dvec3 axis;  ///< unit
+};
+
+/// Describes a basis as a JSON object.
+nlohmann::json describe(const Basis& basis, const BasisView& view) {
+  const Lobes lobes(basis, view.lobes);
+  const std::vector<double> c = lobes(view.axis);
+  const LobeQuality quality = lobe_quality(basis, c, view.axis);
+  const Transport sampled = make_transport(TransportKind::sampled, basis, view.lobes),
+                  exact = make_transport(TransportKind::exact, basis, view.lobes);
+  const auto energy = [&](const Transport& transport, int steps) {
+    return energy_after(basis, std::get<FaceTransport>(transport.scheme), steps);
+  };
+  nlohmann::json centres = nlohmann::json::array();
+  for (const glm::dvec3& xi : basis.centres()) centres.push_back({xi.x, xi.y, xi.z});
+  return {{"name", basis.name()},
+          {"n", basis.size()},
+          {"lambda", basis.lambda()},
+          {"lambdas", basis.lambdas()},
+          {"lobe", name_of(view.lobes.kind)},
+          {"centres", centres},
+          {"condition", basis.condition()},
+          {"axis", {view.axis.x, view.axis.y, view.axis.z}},
+          {"coefficients", c},
+          {"relative_l2", quality.relative_l2},
+          {"mean_relative_l2", mean_relative_l2(basis, lobes)},
+          {"minimum", quality.minimum},
+          {"flux", quality.flux},
+          {"peak_error_degrees", quality.peak_error_degrees},
+          {"energy_sampled_8", energy(sampled, 8)},
+          {"energy_sampled_24", energy(sampled, 24)},
+          {"energy_exact_8", energy(exact, 8)},
+          {"energy_exact_24", energy(exact, 24)}};
+}
+
+/// Formats one line per object.
+std::string table_of(const nlohmann::json& bases) {
+  std::string text =
+      fmt::format("{:10} {:>3} {:>6} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>9} {:>8} {:>8}\n", "basis",
+                  "N", "lambda", "condition", "L2 error", "mean L2", "minimum", "flux", "peak", "sampled 8",
+                  "sampled24", "exact 8", "exact 24");
+  for (const nlohmann::json& b : bases) {
+    const auto number = [&](const char* key) { return b.at(key).get<double>(); };
+    const bool several = number("lambda") == 0 && !b.at("lambdas").empty();
+    text += fmt::format(
+        "{:10} {:3} {:>6} {:9.4g} {:8.3f} {:8.3f} {:8.3f} {:7.4f} {:6.2f}d {:9.3f} {:9.3f} {:8.3f} {:8.3f}\n",
+        b.at("name").get<std::string>(), b.at("n").get<int>(),
+        several ? "each" : fmt::format("{:.4g}", number("lambda")), number("condition"),
+        number("relative_l2"), number("mean_relative_l2"), number("minimum"), number("flux"),
+        number("peak_error_degrees"), number("energy_sampled_8"), number("energy_sampled_24"),
+        number("energy_exact_8"), number("energy_exact_24"));
+  }
+  return text;
+}
+
 void run(const Options& options) {
   if (!options.figures.empty()) {
     BasisFigures figures{{}, options.lobes, options.lambda};
@@ -54,7 +111,6 @@ void run(const Options& options) {
     return;
   }
   const BasisView view{options.lobes, unit_axis(options.axis)};
-  if (options.search.centres) return print_search(options.search, options.lambda, view, options.json);
   nlohmann::json bases = nlohmann::json::array();
   for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, view));
   if (options.json) {
@@ -89,64 +145,11 @@ void add_basis(CLI::App& app, Shared&) {
       ->add_option("--table-size", options->lobes.table_size,
                    "number of entries in the table of rotated lobes")
       ->capture_default_str();
-  add_search_options(*command, options->search);
   CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
   add(*command, "--figures", "DIR", options->figures,
       "output folder for the paper's figures 2, 3 and 6, in place of the report")
       ->excludes(json);
   command->callback([options] { run(*options); });
-}
-
-nlohmann::json describe(const Basis& basis, const BasisView& view) {
-  const Lobes lobes(basis, view.lobes);
-  const std::vector<double> c = lobes(view.axis);
-  const LobeQuality quality = lobe_quality(basis, c, view.axis);
-  const Transport sampled = make_transport(TransportKind::sampled, basis, view.lobes),
-                  exact = make_transport(TransportKind::exact, basis, view.lobes);
-  const auto energy = [&](const Transport& transport, int steps) {
-    return energy_after(basis, std::get<FaceTransport>(transport.scheme), steps);
-  };
-  nlohmann::json centres = nlohmann::json::array();
-  for (const glm::dvec3& xi : basis.centres()) centres.push_back({xi.x, xi.y, xi.z});
-  return {{"name", basis.name()},
-          {"n", basis.size()},
-          {"lambda", basis.lambda()},
-          {"lambdas", basis.lambdas()},
-          {"lobe", name_of(view.lobes.kind)},
-          {"centres", centres},
-          {"condition", basis.condition()},
-          {"axis", {view.axis.x, view.axis.y, view.axis.z}},
-          {"coefficients", c},
-          {"relative_l2", quality.relative_l2},
-          {"mean_relative_l2", mean_relative_l2(basis, lobes)},
-          {"minimum", quality.minimum},
-          {"flux", quality.flux},
-          {"peak_error_degrees", quality.peak_error_degrees},
-          {"energy_sampled_8", energy(sampled, 8)},
-          {"energy_sampled_24", energy(sampled, 24)},
-          {"energy_exact_8", energy(exact, 8)},
-          {"energy_exact_24", energy(exact, 24)}};
-}
-
-std::string table_of(const nlohmann::json& bases) {
-  const bool aimed = !bases.empty() && bases.front().contains("error_over");
-  std::string text =
-      fmt::format("{:10} {:>3} {:>6} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>9} {:>8} {:>8}{}\n",
-                  "basis", "N", "lambda", "condition", "L2 error", "mean L2", "minimum", "flux", "peak",
-                  "sampled 8", "sampled24", "exact 8", "exact 24", aimed ? "    aimed" : "");
-  for (const nlohmann::json& b : bases) {
-    const auto number = [&](const char* key) { return b.at(key).get<double>(); };
-    const bool several = number("lambda") == 0 && !b.at("lambdas").empty();
-    text += fmt::format(
-        "{:10} {:3} {:>6} {:9.4g} {:8.3f} {:8.3f} {:8.3f} {:7.4f} {:6.2f}d {:9.3f} {:9.3f} {:8.3f} {:8.3f}",
-        b.at("name").get<std::string>(), b.at("n").get<int>(),
-        several ? "each" : fmt::format("{:.4g}", number("lambda")), number("condition"),
-        number("relative_l2"), number("mean_relative_l2"), number("minimum"), number("flux"),
-        number("peak_error_degrees"), number("energy_sampled_8"), number("energy_sampled_24"),
-        number("energy_exact_8"), number("energy_exact_24"));
-    text += aimed ? fmt::format(" {:8.4f}\n", number("error_over")) : "\n";
-  }
-  return text;
 }
 
 }  // namespace clpv

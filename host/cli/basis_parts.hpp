@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Parts of `clpv basis`: report on a basis, search for centres, and the paper's figures.
+// Part of `clpv basis`: the paper's figures.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "basis/centre_search.hpp"
 #include "basis/rotated_lobe.hpp"
-#include "support/named_enum.hpp"
 
 namespace clpv {
-
-/// Lobe method, and the axis of the reported lobe.
-struct BasisView {
-  LobeOptions lobes;
-  glm::dvec3 axis;  ///< unit
-};
-
-/// Describes a basis as a JSON object.
-nlohmann::json describe(const Basis& basis, const BasisView& view);
-/// Formats one line per object, including "error_over" (error_over() of a search's aims) if present.
-std::string table_of(const nlohmann::json& bases);
-
-/// Clamped cosines of a search without a weights file.
-enum class SearchedCosines { all, axes };
-template <>
-inline constexpr auto kNames<SearchedCosines> = name_list("all", "axes");
-
-struct BasisSearchOptions {
-  std::optional<int> centres;  ///< empty: no search
-  SearchedCosines over = SearchedCosines::all;
-  std::string weights, output;
-  CentreSearch search;
-};
-void add_search_options(CLI::App& command, BasisSearchOptions& options);
-/// `clpv basis --search N`: finds the centres with the smallest clamped-cosine error. Writes the file for --centres,
-/// and prints the set's metrics and those of the named sets.
-void print_search(const BasisSearchOptions& options, double lambda, const BasisView& view, bool json);
 
 struct BasisFigures {
   std::vector<std::unique_ptr<Basis>> bases;  ///< bases of Figures 3 and 6; empty: the paper's

@@ -103,7 +103,7 @@ std::string reject_old_name(const std::string& name) {
                                                            {"block", "blockers"},
                                                            {"reflect", "reflectors"},
                                                            {"see", "visibility"},
-                                                           {"--most-condition", "--max-condition"}};
+                                                           {"--search", "python3 -m clpv.search"}};
   const auto found = kRenamed.find(name);
   return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
 }

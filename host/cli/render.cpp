@@ -12,8 +12,8 @@
 #include "image/image_io.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/frame_stats.hpp"
-#include "quality/unreached.hpp"
 #include "quality/normal_weights.hpp"
+#include "quality/unreached.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
@@ -184,7 +184,8 @@ void add_render(CLI::App& app, Shared& shared) {
       "float32 [W/sr], of either sign, ordered (red, green, blue; coefficient; z; y; x). grids.json has "
       "origin and cell");
   add(*command, "--dump-normals", "FILE.json", options->normals,
-      "output file for lit surface normals, weighted by reflected flux, for clpv basis --weights");
+      "output file for lit surface normals, weighted by reflected flux, for python3 -m clpv.search "
+      "--weights");
   add_tev(*command, options->tev);
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -69,7 +69,7 @@ struct GatherOptions {
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< of the cascades' volumes
   bool filtered = true;      ///< images: filtered by the sampler; false: from texels in float
-  bool packed = false;       ///< packs images too, for stage `near`
+  bool packed = false;       ///< packs images too, for stages `near` and `medium`
 };
 
 struct NearOptions {

@@ -29,7 +29,27 @@ void require_support(const RenderOptions& options, const Scene& scene) {
   }
 }
 
-constexpr std::size_t kPointsPerRow = 1024;  // of the image that irradiance_at() makes of points
+constexpr std::size_t kPointsPerRow = 1024;
+
+/// Points as an image without a view. Copies of the last point fill its last row.
+SurfaceImage image_of_points(std::vector<glm::vec4> positions, std::vector<glm::vec4> vectors) {
+  SurfaceImage points;
+  const std::size_t count = positions.size();
+  points.view.width = static_cast<unsigned>(std::min(count, kPointsPerRow));
+  points.view.height = static_cast<unsigned>((count + kPointsPerRow - 1) / kPointsPerRow);
+  const std::size_t pixels = std::size_t{points.view.width} * points.view.height;
+  positions.resize(pixels, positions.back());
+  vectors.resize(pixels, vectors.back());
+  points.position = std::move(positions);
+  points.normal = std::move(vectors);
+  return points;
+}
+
+std::vector<glm::vec4> first_points(const std::vector<float>& image, std::size_t count) {
+  std::vector<glm::vec4> values(count);
+  std::memcpy(values.data(), image.data(), count * sizeof(glm::vec4));
+  return values;
+}
 
 /// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most visible with a sky.
 constexpr double kClosedUnderASky = 0.75;
@@ -110,6 +130,11 @@ void Frame::rasterize_camera(const SceneCamera& camera) {
   rasterizer_.rasterize_camera(*camera_surface_);
 }
 
+void Frame::require_light(const char* what) const {
+  if (light().grids.empty())
+    throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
+}
+
 void Frame::gather(const Surface& surface, Buffer& irradiance) {
   const GatheredLight gathered = light();
   std::vector<bool> changed(packed_.size(), false);
@@ -164,22 +189,40 @@ std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
 
 std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions,
                                             std::vector<glm::vec4> normals) {
-  if (light().grids.empty())
-    throw Error(ExitCode::usage, "irradiance: no frame was rendered; allowed: after a render");
+  require_light("irradiance");
   const std::size_t count = positions.size();
   if (count == 0) return {};
-  SurfaceImage points;
-  points.view.width = static_cast<unsigned>(std::min(count, kPointsPerRow));
-  points.view.height = static_cast<unsigned>((count + kPointsPerRow - 1) / kPointsPerRow);
-  const std::size_t pixels = std::size_t{points.view.width} * points.view.height;
-  positions.resize(pixels, positions.back());
-  normals.resize(pixels, normals.back());
-  points.position = std::move(positions);
-  points.normal = std::move(normals);
-  const std::vector<float> found = irradiance_on(points);
-  std::vector<glm::vec4> irradiance(count);
-  std::memcpy(irradiance.data(), found.data(), count * sizeof(glm::vec4));
-  return irradiance;
+  return first_points(irradiance_on(image_of_points(std::move(positions), std::move(normals))), count);
+}
+
+std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
+                                          std::vector<glm::vec4> directions) {
+  require_light("radiance");
+  if (!swept_) {
+    throw Error(ExitCode::usage, "radiance: found transport '{}', allowed: sweep",
+                name_of(options_.transport));
+  }
+  if (!gatherer_.packs()) {
+    throw Error(
+        ExitCode::usage,
+        "radiance: found layout 'image' with gather 'all', allowed: gather 'visible', or another layout");
+  }
+  const std::size_t count = positions.size();
+  if (count == 0) return {};
+  const SurfaceImage points = image_of_points(std::move(positions), std::move(directions));
+  const Buffer places = session_.upload(points.position, "points"),
+               vectors = session_.upload(points.normal, "directions");
+  const std::size_t numbers = points.position.size() * 4;
+  Buffer radiances = session_.buffer(numbers * sizeof(float), "radiance at points");
+  if (!radiance_) {
+    radiance_.emplace(session_, with_radiance({"radiance.cl", {}, {}}, *swept_, gather_options(options_)),
+                      "radiance");
+  }
+  const GatheredLight gathered = light();
+  radiance_->set(points.view, places, vectors, radiances);
+  gatherer_.add_radiance(*radiance_, gathered.scale, gathered.occluded);
+  radiance_->launch(rows_of_tiles(points.view), kTileRow);
+  return first_points(session_.read<float>(radiances, numbers), count);
 }
 
 /// Draws the spheres of visible_spheres() with the irradiance that gathering has at their cells' centres.

@@ -56,6 +56,9 @@ class Frame {
   std::vector<float> irradiance_on(const SurfaceImage& surfaces);
   /// The same at points: position [m] and unit normal of each; one value per point. Throws Error(usage) before the first render.
   std::vector<glm::vec4> irradiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> normals);
+  /// Radiance [W/m^2/sr] at positions [m], of light that travels along the unit vector of each; may be negative. Throws Error(usage)
+  /// before the first render, without a sweep, and if gathering reads images.
+  std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> directions);
 
   /// One view of the last render as RGBA float, top row first.
   std::vector<float> read(Show view);
@@ -67,6 +70,7 @@ class Frame {
 
  private:
   void rasterize_camera(const SceneCamera& camera);
+  void require_light(const char* what) const;
   void gather(const Surface& surface, Buffer& irradiance);
   void show(Show view);
   void draw_cells(std::vector<float>& image);
@@ -85,8 +89,9 @@ class Frame {
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
-  std::vector<Cached> packed_;  ///< accumulated light as packed by the gatherer
-  Buffer irradiance_;           ///< float4 per pixel, like image_
+  std::optional<Kernel> radiance_;  ///< of radiance_at(), built when it is first called
+  std::vector<Cached> packed_;      ///< accumulated light as packed by the gatherer
+  Buffer irradiance_;               ///< float4 per pixel, like image_
   Buffer image_;
   Show shown_ = Show::full;
 };

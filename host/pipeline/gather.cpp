@@ -21,9 +21,7 @@ std::string cascade_macro(std::size_t cascades) {
   return text + "\n";
 }
 
-}  // namespace
-
-void add_gather_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed) {
+void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed) {
   literals.integer("CLPV_GRID", options.grid)
       .flag("CLPV_PACKED", packed)
       .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
@@ -32,13 +30,10 @@ void add_gather_literals(Literals& literals, const Basis& basis, const GatherOpt
       .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
 }
 
-namespace {
-
 ProgramSource source_of(const Basis& basis, TransportKind transport, const GatherOptions& options,
                         bool packed, const LookupTable& table) {
-  ProgramSource source;
-  source.file = "gather.cl";
-  add_gather_literals(source.literals, basis, options, packed);
+  ProgramSource source{"gather.cl", {}, {}};
+  add_literals(source.literals, basis, options, packed);
   if (!packed) {
     add_format_literals(source.literals, options.format);
     source.literals.flag("CLPV_FILTERED", options.filtered);
@@ -48,6 +43,12 @@ ProgramSource source_of(const Basis& basis, TransportKind transport, const Gathe
 }
 
 }  // namespace
+
+ProgramSource with_radiance(ProgramSource source, const Basis& swept, const GatherOptions& options) {
+  add_literals(source.literals, swept, options, true);
+  source.generated = radiance_source(swept);
+  return source;
+}
 
 Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport,
                    const GatherOptions& options)
@@ -123,6 +124,11 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
   }
   table_.add_to(kernel);
   kernel.launch(rows_of_tiles(camera.view), kTileRow);
+}
+
+void Gatherer::add_radiance(Kernel& kernel, float scale, const Buffer* occluded) const {
+  kernel.add(grids_, cascades_, 1 / scale, packed_);
+  if (sees()) kernel.add(*occluded);
 }
 
 }  // namespace clpv

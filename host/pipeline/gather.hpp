@@ -20,6 +20,9 @@
 
 namespace clpv {
 
+/// Adds to a program's source what kernels/radiance.h needs. `swept`: basis of swept light.
+ProgramSource with_radiance(ProgramSource source, const Basis& swept, const GatherOptions& options);
+
 /// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces). c is the volume, sampled trilinearly
 /// `gather_offset` cells off the surface. Negative E is clamped to 0.
 ///
@@ -45,12 +48,16 @@ class Gatherer {
   /// Grids and packed volumes (kernels/gather_packed.h) of the last gather() on the device.
   const Buffer& grids() const { return grids_; }
   cl_uint cascades() const { return cascades_; }
-  const Buffer& packed() const { return packed_; }
+
+  /// Returns true if volumes are packed. Images are sampled directly, unless gathering selects single cells or another stage
+  /// needs packed volumes.
+  bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
+
+  /// Adds the arguments CLPV_RADIANCE (kernels/radiance.h): the packed volumes of the last gather(). `scale`, `occluded`: as there.
+  void add_radiance(Kernel& kernel, float scale, const Buffer* occluded) const;
 
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
-  /// Images are sampled directly, unless gathering selects single cells or another stage needs packed volumes.
-  bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
   Kernel& gather_kernel(std::size_t cascades, bool points);
   void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
                    const std::vector<const Volume*>& volumes) const;
@@ -69,8 +76,5 @@ class Gatherer {
   Buffer packed_, grids_;
   cl_uint cascades_ = 0;
 };
-
-/// Adds what kernels/cascades.h needs.
-void add_gather_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed = true);
 
 }  // namespace clpv

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "codegen/gather_source.hpp"
 #include "kernels/shared/near.h"
 
 namespace clpv {
@@ -16,8 +15,7 @@ unsigned medium_pixels(unsigned pixels) {
 }
 
 ProgramSource medium_source(const Basis& basis, const MediumOptions& options) {
-  ProgramSource source{"medium.cl", {}, radiance_source(basis)};
-  add_gather_literals(source.literals, basis, options.gather);
+  ProgramSource source = with_radiance({"medium.cl", {}, {}}, basis, options.gather);
   source.literals.integer("CLPV_NEAR_STEP", kMediumStep)
       .number("CLPV_NEAR_RAYS", 1)
       .integer("CLPV_LIGHT_STEPS", options.light_steps)
@@ -54,9 +52,8 @@ void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer, const
   const ClpvView& view = camera.view;
   reserve(view);
   const cl::NDRange rows(tiles_along(medium_pixels(view.width)), medium_pixels(view.height));
-  volumes_.set(view, camera.depth, medium_, ends_, scattered_)
-      .add(gatherer.grids(), gatherer.cascades(), 1 / scale, gatherer.packed());
-  if (options_.gather.gather == Gathering::visible) volumes_.add(*occluded);
+  volumes_.set(view, camera.depth, medium_, ends_, scattered_);
+  gatherer.add_radiance(volumes_, scale, occluded);
   volumes_.launch(rows, kTileRow);
   for (const ShadowedLight& shadowed : lights) {
     const cl_uint count = shadowed.views.size();

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "basis/near_directions.hpp"
-#include "codegen/gather_source.hpp"
 #include "kernels/shared/near.h"
 
 namespace clpv {
@@ -22,13 +21,6 @@ ProgramSource near_source(const char* file, const SceneBuffers& buffers, const N
       .flag("CLPV_TEXTURED", buffers.textured)
       .flag("CLPV_COLOURED", buffers.coloured)
       .flag("CLPV_EMISSIVE", buffers.emissive);
-  return source;
-}
-
-/// Adds what kernels/radiance.h needs.
-ProgramSource with_volumes(ProgramSource source, const Basis& basis, const NearOptions& options) {
-  add_gather_literals(source.literals, basis, options.gather);
-  source.generated = radiance_source(basis);
   return source;
 }
 
@@ -62,18 +54,19 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       buffers_(buffers),
       options_(options),
       tree_(scene),
-      points_kernel_(session, with_volumes(near_source("near.cl", buffers, options), basis, options),
+      points_kernel_(session, with_radiance(near_source("near.cl", buffers, options), basis, options.gather),
                      "near_points"),
       trace_(session, near_source("near_trace.cl", buffers, options), "near_trace"),
       light_(session, near_source("near_light.cl", buffers, options), "near_light"),
       emit_(session, near_source("near_light.cl", buffers, options), "near_emit"),
-      near_(session, with_volumes(near_source("near.cl", buffers, options), basis, options), "near"),
+      near_(session, with_radiance(near_source("near.cl", buffers, options), basis, options.gather), "near"),
       blur_(session, near_source("near_filter.cl", buffers, options), "near_blur"),
       add_(session, near_source("near_filter.cl", buffers, options), "near_add") {
   if (options.reflects) {
-    reflect_.emplace(session,
-                     reflecting(with_volumes(near_source("near_light.cl", buffers, options), basis, options)),
-                     "near_reflect");
+    reflect_.emplace(
+        session,
+        reflecting(with_radiance(near_source("near_light.cl", buffers, options), basis, options.gather)),
+        "near_reflect");
   }
   directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
   upload_tree();
@@ -112,11 +105,6 @@ Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
                     buffers_.materials, buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
 }
 
-void NearField::add_volumes(Kernel& kernel, const Gatherer& gatherer, float scale, const Buffer* occluded) {
-  kernel.add(gatherer.grids(), gatherer.cascades(), 1 / scale, gatherer.packed());
-  if (options_.gather.gather == Gathering::visible) kernel.add(*occluded);
-}
-
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
   const ClpvView& view = camera.view;
@@ -141,7 +129,7 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
   }
   if (!reflect_) return;
   set_hits(*reflect_, view, fresh);
-  add_volumes(*reflect_, gatherer, scale, occluded);
+  gatherer.add_radiance(*reflect_, scale, occluded);
   reflect_->launch(rays, group);
 }
 
@@ -161,7 +149,7 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
       .launch(rows, kTileRow);
   light_hits(camera, gatherer, lights, scale, occluded);
   near_.set(view, points_, directions_, distances_, radiances_, differences_);
-  add_volumes(near_, gatherer, scale, occluded);
+  gatherer.add_radiance(near_, scale, occluded);
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
   add_.set(view, camera.depth, camera.normal, points_, blurred_, irradiance)

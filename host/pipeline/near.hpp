@@ -38,7 +38,6 @@ class NearField {
   void light_hits(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
                   float scale, const Buffer* occluded);
   Kernel& set_hits(Kernel& kernel, const ClpvView& view, bool fresh);
-  void add_volumes(Kernel& kernel, const Gatherer& gatherer, float scale, const Buffer* occluded);
 
   Session& session_;
   const Scene& scene_;

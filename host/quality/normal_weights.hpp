@@ -3,21 +3,27 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <vector>
 
-#include "basis/lobe_aims.hpp"
 #include "device/session.hpp"
 #include "options/render_options.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
 
+/// A direction and its weight.
+struct WeightedDirection {
+  glm::dvec3 direction;  ///< unit
+  double weight;         ///< above 0
+};
+
 /// Groups the normals of all texels that injection reads for this camera, in all cascades, by patches of the sphere.
 /// Returns each patch's mean normal, weighted by its share of the flux. Empty if no surface is lit.
 std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const SceneCamera& camera,
                                               const RenderOptions& options);
 
-/// Writes the format that load_aims reads.
+/// Writes a JSON file {"weights": [[x, y, z, weight], ...]}, which clpv.search reads.
 void write_normal_weights(const std::filesystem::path& path, const std::vector<WeightedDirection>& weights);
 
 }  // namespace clpv

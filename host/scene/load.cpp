@@ -117,21 +117,24 @@ SceneLight added_sun() {
   return sun;
 }
 
-/// Adds a default camera and light, with a note each, to a scene whose bounding box is set. `has_lights`: an empty list of
-/// lights is intended, and gets no default.
-void add_defaults(Scene& scene, bool has_lights, Notes& notes) {
-  if (scene.triangles.empty()) notes.add("the model has no triangles");
-  if (scene.cameras.empty()) {
-    scene.cameras.push_back(framing_camera(scene));
-    notes.add("no camera: added one that frames the model");
-  }
-  if (scene.lights.empty() && !has_lights) {
-    scene.lights.push_back(added_sun());
-    notes.add(fmt::format("no light: added a sun of {} lux", kSunIlluminance));
-  }
-}
+const std::string kAddedCamera = "no camera: added one that frames the model",
+                  kAddedSun = fmt::format("no light: added a sun of {} lux", kSunIlluminance);
 
 }  // namespace
+
+/// Adds a default camera and light, with a note each, to a scene whose bounding box is set. `has_lights`: an empty list of
+/// lights is intended, and gets no default.
+void MovingScene::add_defaults(bool has_lights) {
+  if (scene_.triangles.empty()) scene_.notes.push_back("the model has no triangles");
+  if (scene_.cameras.empty()) {
+    scene_.cameras.push_back(framing_camera(scene_));
+    scene_.notes.push_back(kAddedCamera);
+  }
+  if (scene_.lights.empty() && !has_lights) {
+    scene_.lights.push_back(added_sun());
+    scene_.notes.push_back(kAddedSun);
+  }
+}
 
 void MovingScene::load_scene_file(const std::filesystem::path& path, const std::filesystem::path& replacement,
                                   Notes& notes) {
@@ -170,6 +173,7 @@ void MovingScene::set_cameras(std::vector<SceneCamera> cameras) {
   motion_.cameras.clear();
   description_.cameras.reset();
   scene_.cameras = std::move(cameras);
+  std::erase(scene_.notes, kAddedCamera);
   forget_missing_lights();
   if (scene_.start_reach) {
     scene_.start_reach.reset();
@@ -181,6 +185,7 @@ void MovingScene::set_lights(std::vector<SceneLight> lights) {
   motion_.lights.clear();
   description_.lights.reset();
   scene_.lights = std::move(lights);
+  std::erase(scene_.notes, kAddedSun);
   forget_missing_lights();
 }
 
@@ -211,11 +216,11 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
   scene_.moving = ranges_of(motion_.meshes);
   find_bounds(scene_);
   if (scene_.medium) set_medium(*scene_.medium);
-  add_defaults(scene_, description_.lights.has_value() || scene_.sky, notes);
+  scene_.notes = notes.take();
+  add_defaults(description_.lights.has_value() || scene_.sky);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
   scene_.name = path.stem().string();
-  scene_.notes = notes.take();
 }
 
 void MovingScene::pose(double seconds) {

@@ -44,6 +44,7 @@ class MovingScene {
  private:
   void load_scene_file(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
   void set_views(SceneViews views);
+  void add_defaults(bool has_lights);
   void forget_missing_lights();
 
   Motion motion_;

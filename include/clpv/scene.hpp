@@ -62,7 +62,7 @@ class SceneFile {
   void set_lights(const std::vector<Light>& lights);
 
   bool moves() const;                        ///< returns true if anything in it is animated
-  std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader
+  std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader and not replaced
   std::array<Vec3, 2> bounds() const;        ///< lower and upper corner of the bounding box at 0 s [m]
   double exposure() const;                   ///< [EV], for save_image()
 

@@ -55,8 +55,17 @@ class Basis:
         """Array (N,); (0,) without centres."""
     def evaluate(self, directions: ArrayLike) -> NDArray[np.float64]:
         """evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w)."""
-    def clamped_cosine(self, axes: ArrayLike) -> NDArray[np.float64]:
-        """clamped_cosine(axes (..., 3)) -> float64 array (..., N): exact projection of max(0, w . axis)."""
+    def clamped_cosine(self, axes: ArrayLike, table_size: int | None = None) -> NDArray[np.float64]:
+        """clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of max(0, w . axis), exact,
+        or along +z and rotated through a table of that many entries as in the paper (0: without a table).
+        """
+    @property
+    def mean_error(self) -> float:
+        """Mean relative L2 error of exactly projected clamped cosines over all axes."""
+    def energy(self, steps: int, transport: Literal["sampled", "exact"] = 'sampled', table_size: int | None = None) -> float:
+        """energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source after `steps` steps of
+        propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for clamped_cosine().
+        """
     def project(self, function: Callable[[NDArray[np.float64]], ArrayLike]) -> NDArray[np.float64]:
         """project(function) -> float64 array (N,): least-squares projection of a function that takes directions
         (K, 3) and returns (K,) values.
@@ -237,6 +246,13 @@ class Renderer:
 
         points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, without option near;
         0 outside of the cascades. Computed on the device.
+        """
+    def radiance(self, points: ArrayLike, directions: ArrayLike) -> NDArray[np.float32]:
+        """radiance(points, directions) -> float32 array of their shape: indirect light [W/m^2/sr], red, green, blue.
+
+        points [m] and directions in which the light travels (of any length): arrays (..., 3). As irradiance(), of the last
+        frame's volumes, on the device; negative where nine harmonics undershoot. Raises UsageError without transport 'sweep',
+        and for layout 'image' with gather 'all'.
         """
     def volumes(self) -> list[Volume]:
         """volumes() -> list of Volume of the last frame, finest cascade first."""

@@ -4,11 +4,15 @@
 
 #include "basis/lobe_quality.hpp"
 #include "basis/quadrature.hpp"
+#include "basis/rotated_lobe.hpp"
+#include "basis/transport.hpp"
 #include "module.hpp"
 #include "support/error.hpp"
 
 namespace clpv::python {
 namespace {
+
+constexpr int kMaxSteps = 100000;  // bounds the run time of energy()
 
 glm::dvec3 unit(const double* v) {
   const glm::dvec3 w(v[0], v[1], v[2]);
@@ -77,6 +81,22 @@ py::array_t<double> project(const Basis& basis, const py::function& function) {
   return vector_array(basis.gram_inverse() * moments);
 }
 
+/// None: exact lobes; else those of the paper, by a table of that size.
+LobeOptions lobe_options(const std::optional<int>& table_size) {
+  return table_size ? LobeOptions{.kind = LobeKind::rotate, .table_size = *table_size} : LobeOptions{};
+}
+
+double energy(const Basis& basis, int steps, const std::string& transport,
+              const std::optional<int>& table_size) {
+  const auto kind = named<TransportKind>("transport", transport);
+  if (!has_faces(kind))
+    throw Error(ExitCode::usage, "transport: found '{}', allowed: sampled|exact", transport);
+  if (steps < 0 || steps > kMaxSteps)
+    throw Error(ExitCode::usage, "steps: found {}, allowed: 0..{}", steps, kMaxSteps);
+  const Transport made = make_transport(kind, basis, lobe_options(table_size));
+  return energy_after(basis, std::get<FaceTransport>(made.scheme), steps);
+}
+
 py::dict lobe(const Basis& basis, const py::object& axis, const py::object& given) {
   const DoubleArray direction = vectors<DoubleArray>(axis, "axis");
   if (direction.ndim() != 1) throw py::value_error("axis: allowed: three numbers");
@@ -132,14 +152,23 @@ void add_basis(py::module_& module) {
       py::arg("directions"), "evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w).");
   type.def(
       "clamped_cosine",
-      [](const Basis& basis, const py::object& axes) {
+      [](const Basis& basis, const py::object& axes, const std::optional<int>& table_size) {
+        const Lobes lobes(basis, lobe_options(table_size));
         return at_each(axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
-          const std::vector<double> c = basis.clamped_cosine(d);
+          const std::vector<double> c = lobes(d);
           std::copy(c.begin(), c.end(), out.begin());
         });
       },
-      py::arg("axes"),
-      "clamped_cosine(axes (..., 3)) -> float64 array (..., N): exact projection of max(0, w . axis).");
+      py::arg("axes"), py::arg("table_size") = py::none(),
+      "clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of max(0, w . axis), exact,\n"
+      "or along +z and rotated through a table of that many entries as in the paper (0: without a table).");
+  type.def_property_readonly(
+      "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
+      "Mean relative L2 error of exactly projected clamped cosines over all axes.");
+  type.def("energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
+           py::arg("table_size") = py::none(),
+           "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source after `steps` steps of\n"
+           "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for clamped_cosine().");
   type.def("project", &project, py::arg("function"),
            "project(function) -> float64 array (N,): least-squares projection of a function that takes "
            "directions\n"

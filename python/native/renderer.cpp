@@ -46,19 +46,23 @@ py::dict dict_of(const Stats& stats) {
   return all;
 }
 
-py::array_t<float> irradiance(Renderer& renderer, const py::object& points, const py::object& normals) {
-  const FloatArray positions = vectors<FloatArray>(points, "points"),
-                   facing = vectors<FloatArray>(normals, "normals");
+using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(std::span<const std::array<float, 3>>,
+                                                                 std::span<const std::array<float, 3>>);
+
+/// Calls `function` for points and a vector of each; `what` names the vectors.
+py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::object& points,
+                             const py::object& given, const char* what) {
+  const FloatArray positions = vectors<FloatArray>(points, "points"), along = vectors<FloatArray>(given, what);
   const auto shape = shape_with_last(positions, 3);
-  if (shape != shape_with_last(facing, 3)) {
-    throw py::value_error("normals: found shape " + std::string(py::str(facing.attr("shape"))) +
+  if (shape != shape_with_last(along, 3)) {
+    throw py::value_error(std::string(what) + ": found shape " + std::string(py::str(along.attr("shape"))) +
                           ", allowed: that of points, " + std::string(py::str(positions.attr("shape"))));
   }
   const auto as_span = [](const FloatArray& array) {
     return std::span(reinterpret_cast<const std::array<float, 3>*>(array.data()),
                      static_cast<std::size_t>(array.size()) / 3);
   };
-  const auto found = interruptible([&] { return renderer.irradiance(as_span(positions), as_span(facing)); });
+  const auto found = interruptible([&] { return (renderer.*function)(as_span(positions), as_span(along)); });
   py::array_t<float> result(shape);
   if (!found.empty()) std::memcpy(result.mutable_data(), found.data(), found.size() * sizeof(found[0]));
   return result;
@@ -131,12 +135,25 @@ void add_renderer(py::module_& module) {
         return interruptible([&] { return renderer.show(what); });
       },
       py::arg("view"), "show(view) -> Image: another view of the last frame, without rendering it again.");
-  type.def("irradiance", &irradiance, py::arg("points"), py::arg("normals"),
+  type.def("irradiance",
+           [](Renderer& renderer, const py::object& points, const py::object& normals) {
+             return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
+           },
+           py::arg("points"), py::arg("normals"),
            "irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, green, "
            "blue.\n\n"
            "points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, without "
            "option near;\n"
            "0 outside of the cascades. Computed on the device.");
+  type.def("radiance",
+           [](Renderer& renderer, const py::object& points, const py::object& directions) {
+             return at_points(renderer, &Renderer::radiance, points, directions, "directions");
+           },
+           py::arg("points"), py::arg("directions"),
+           "radiance(points, directions) -> float32 array of their shape: indirect light [W/m^2/sr], red, green, blue.\n\n"
+           "points [m] and directions in which the light travels (of any length): arrays (..., 3). As irradiance(), of the "
+           "last\nframe's volumes, on the device; negative where nine harmonics undershoot. Raises UsageError without "
+           "transport 'sweep',\nand for layout 'image' with gather 'all'.");
   type.def("volumes", &volumes, "volumes() -> list of Volume of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Bases, against closed forms."""
+import json
 import math
 
 import numpy as np
 import pytest
 
 import clpv
+from conftest import program
 
 
 def directions(count=200):
@@ -37,6 +39,21 @@ def test_lobes():
     assert basis.clamped_cosine(np.eye(3)).shape == (3, 9)
 
 
+def test_lobes_of_the_paper_are_those_of_the_program():
+    for name, size in (("srbf4", 256), ("srbf14", 257), ("sh2", 256)):
+        basis = clpv.Basis(name)
+        expected = json.loads(program("basis", name, "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--json"))["bases"][0]
+        c = basis.clamped_cosine((-2, 1, -3), size)
+        assert np.allclose(c, expected["coefficients"], rtol=1e-12, atol=1e-12)
+        assert basis.lobe((-2, 1, -3), c)["minimum"] == pytest.approx(expected["minimum"])
+        for steps in (8, 24):
+            assert basis.energy(steps, table_size=size) == pytest.approx(expected[f"energy_sampled_{steps}"])
+            assert basis.energy(steps, "exact", size) == pytest.approx(expected[f"energy_exact_{steps}"])
+    exact = json.loads(program("basis", "srbf4", "--json"))["bases"][0]
+    assert clpv.Basis("srbf4").mean_error == pytest.approx(exact["mean_relative_l2"])
+    assert clpv.Basis("srbf4").energy(0) == pytest.approx(1)
+
+
 def test_own_centres():
     basis = clpv.Basis("mine", bandwidth=0.3, centres=[[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -2, 0]])
     assert len(basis) == 4 and basis.name == "mine"
@@ -47,6 +64,10 @@ def test_own_centres():
     (lambda: clpv.Basis("nothing"), clpv.UsageError), (lambda: clpv.Basis("srbf4", bandwidth=1.5), clpv.UsageError),
     (lambda: clpv.Basis("mine", centres=[[0, 0, 0]]), clpv.UsageError),
     (lambda: clpv.Basis("mine", centres=[[1, 0]]), ValueError),
+    (lambda: clpv.Basis().energy(8, "sweep"), clpv.UsageError), (lambda: clpv.Basis().energy(-1), clpv.UsageError),
+    (lambda: clpv.Basis().energy(10 ** 9), clpv.UsageError), (lambda: clpv.Basis("srbf4").energy(8, table_size=1), clpv.UsageError),
+    (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], 2 ** 21), clpv.UsageError),
+    (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], "many"), TypeError),
     (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError), (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),
     (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError), (lambda: clpv.Basis().project(lambda w: w), ValueError),
     (lambda: clpv.Basis().project(lambda w: 1 / 0), ZeroDivisionError),

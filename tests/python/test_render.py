@@ -120,9 +120,47 @@ def test_irradiance_takes_arrays_of_any_layout(renderer):
 ])
 @pytest.mark.filterwarnings("ignore")
 def test_bad_points(renderer, points, normals, error, text):
-    with pytest.raises(error) as raised:
-        renderer.irradiance(points, normals)
-    assert text in str(raised.value)
+    for function, vectors in ((renderer.irradiance, "normal"), (renderer.radiance, "direction")):
+        with pytest.raises(error) as raised:
+            function(points, normals)
+        assert text.replace("normal", vectors) in str(raised.value)
+
+
+def test_radiance(scene, renderer):
+    renderer.render()
+    points = np.random.default_rng(1).uniform(0.1, 0.4, (5, 7, 3))
+    light = renderer.radiance(points, np.broadcast_to([0, -2, 0], points.shape))
+    assert light.shape == points.shape and light.dtype == np.float32 and light.max() > 0
+    assert np.array_equal(renderer.radiance(points[2, 3], [0, -1, 0]), light[2, 3])
+    assert renderer.radiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
+    assert (renderer.radiance([900, 0, 0], [0, 1, 0]) == 0).all()
+    # The mean over all directions is that of the volumes' 0th coefficient, by hand at the centre of a cell.
+    volume = renderer.volumes()[0]
+    cell = (np.array((0.28, 0.3, 0.25)) - volume.origin) // volume.cell
+    w = np.random.default_rng(2).normal(size=(20000, 3))
+    mean = renderer.radiance(np.broadcast_to(volume.origin + (cell + 0.5) * volume.cell, w.shape), w).mean(axis=0)
+    x, y, z = cell.astype(int)
+    c0 = volume.coefficients[:, 0, z, y, x]
+    assert np.allclose(mean, c0 / math.sqrt(4 * math.pi) / volume.cell ** 2, rtol=0.03)
+    steps = clpv.Renderer(scene, **SMALL, transport="sampled")
+    with pytest.raises(clpv.UsageError, match="no frame was rendered"):
+        steps.radiance([0, 0, 0], [0, 1, 0])
+    steps.render()
+    with pytest.raises(clpv.UsageError, match="found transport 'sampled', allowed: sweep"):
+        steps.radiance([0, 0, 0], [0, 1, 0])
+
+
+def test_threads_ask_one_renderer_for_light(renderer):
+    renderer.render()
+    points = np.random.default_rng(1).uniform(0.1, 0.4, (3000, 3))
+    expected, found = renderer.radiance(points, points), []
+    threads = [threading.Thread(target=lambda: found.append((renderer.radiance(points, points), renderer.irradiance(points, points))))
+               for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 4 and all(np.array_equal(each[0], expected) for each in found)
 
 
 @pytest.mark.parametrize("change, text", [
