@@ -152,7 +152,7 @@ TEST(Frame, WithoutOcclusionThereIsMoreLight) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   RenderOptions options = small_options(scene);
   const Image occluded = render(scene, options, Show::irradiance);
-  options.occlusion = false;
+  options.blockers = Blockers::none;
   const Image open = render(scene, options, Show::irradiance);
   EXPECT_GT(mean(open, 0, 0, kWidth, kHeight, 1), 1.05 * mean(occluded, 0, 0, kWidth, kHeight, 1));
 }
@@ -197,7 +197,7 @@ std::vector<float> finest_light(const Scene& scene, const RenderOptions& options
 TEST(Frame, MovingByACellShiftsLightByOne) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   RenderOptions options = small_options(scene);
-  options.occlusion = false;
+  options.blockers = Blockers::none;
   options.transport = TransportKind::sampled;
   options.iterations = 0;  // what stands inside both grids is then the same; light from outside has no way in
   const auto cell = static_cast<float>(options.cascade_size / options.grid);

@@ -116,13 +116,13 @@ TEST(HostileCommandLines, OfFrames) {
             "allowed with --transport sampled or exact"}},
           {"--lambda 0.3", {"--lambda 0.3 has no effect with --basis sh3 (the default)"}},
           {"--lobe rotate --basis bins24", {"--lobe rotate has no effect with --basis bins24;"}},
-          {"--evaluate table --basis srbf4", {"--evaluate table has no effect with --transport sweep"}},
+          {"--evaluate buffer --basis srbf4", {"--evaluate buffer has no effect with --transport sweep"}},
           {"--table-size 64 --basis srbf4", {"--table-size 64 has no effect with --lobe exact"}},
           {"--directions 24 --preset paper",
            {"--directions 24 has no effect with --transport sampled (set by --preset paper)"}},
           {"--blocker-stride 2", {"--blocker-stride 2 has no effect with --blockers scene"}},
           {"--near-size full", {"--near-size full has no effect with --near off"}},
-          {"--blocking areas --occlusion off", {"--blocking areas has no effect with --occlusion off;"}},
+          {"--blocking areas --blockers none", {"--blocking areas has no effect with --blockers none;"}},
           {"--preset paper --transport sweep", {"found 'kernel' (set by --preset paper)"}},
           {"--grid 8 --grid 16", {"--grid"}},
           {"--grid", {"--grid"}},
@@ -225,8 +225,9 @@ TEST(HostileSurroundings, Outputs) {
     rejected(command, {"none/a.", "no folder"});
   for (const std::string& command :
        {"render " + kCornell + " -o @/out.exr --dump-volume @/file",
-        "sequence " + kCornell + " --frames 1 --fps 1 -o @/file", std::string("report @/file/there " + kCornell),
-        std::string("basis sh2 --figures @/file/there"), std::string("bench ceilings --plot @/file/there")})
+        "sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
+        std::string("report @/file/there " + kCornell), std::string("basis sh2 --figures @/file/there"),
+        std::string("bench ceilings --plot @/file/there")})
     rejected(command, {"file"});
 }
 

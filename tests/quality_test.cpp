@@ -142,7 +142,7 @@ class QualityCommand : public ::testing::Test {
   test::Outcome quality(const std::string& arguments) const {
     return test::run_here(
         "quality " + file("room.json") + " --cache " + file("cache") +
-        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --occlusion off --rsm-size 64 " + arguments);
+        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --blockers none --rsm-size 64 " + arguments);
   }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t kept() const {

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 using std::numbers::pi;
-constexpr double kCosineNorm = 2 * pi / 3;       // Int max(0, w . d)^2 dw
+constexpr double kCosineNorm = 2 * pi / 3;  // Int max(0, w . d)^2 dw
 constexpr std::size_t kMaxWeights = 10000;  // bounds a search's run time
 
 WeightedDirection weighted_direction(const json& entry, const std::string& path, std::size_t index) {

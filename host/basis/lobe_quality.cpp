@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr double kSpacing = pi / 90;  // between start points: finer than any lobe's features
-constexpr double kResolution = 1e-7;   // [rad] of the maximum's direction
+constexpr double kResolution = 1e-7;  // [rad] of the maximum's direction
 
 // Unit direction of f's maximum: the best of a grid of directions, refined by pattern search with shrinking steps.
 glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {

@@ -63,7 +63,7 @@ CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
 /// Group of a frame option in the help: those that most people need, or a stage.
 std::string group_of(const std::string& name) {
   static const std::map<std::string_view, std::vector<std::string_view>> kStages{
-      {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size", "table"}},
+      {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size"}},
       {"shadow maps", {"rsm-format", "shadow-size"}},
       {"blockers", {"blockers", "blocking", "blocker-stride"}},
       {"propagation", {"iterations", "directions", "coarser-directions", "state", "layout", "storage"}},
@@ -82,7 +82,9 @@ std::string reject_old_name(const std::string& name) {
                                                            {"block", "blockers"},
                                                            {"reflect", "reflectors"},
                                                            {"see", "visibility"},
-                                                           {"--most-condition", "--max-condition"}};
+                                                           {"--most-condition", "--max-condition"},
+                                                           {"--occlusion", "--blockers none|scene|seen"},
+                                                           {"--table", "--evaluate buffer|image"}};
   const auto found = kRenamed.find(name);
   return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
 }

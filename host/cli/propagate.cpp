@@ -38,9 +38,9 @@ RenderOptions plain_options() {
 
 /// Frame options that affect a propagation.
 const std::vector<std::string>& taken_options() {
-  static const std::vector<std::string> names{
-      "basis", "centres",   "lambda", "lobe",   "lobe-time", "evaluate",   "table-size",
-      "table", "transport", "state",  "layout", "storage",   "iterations", "grid"};
+  static const std::vector<std::string> names{"basis",    "centres",    "lambda",    "lobe",  "lobe-time",
+                                              "evaluate", "table-size", "transport", "state", "layout",
+                                              "storage",  "iterations", "grid"};
   return names;
 }
 
