@@ -157,7 +157,7 @@ TEST(SearchCentres, WritesAFileThatIsABasis) {
   const test::TemporaryFolder folder;
   const std::string file = (folder.path() / "mine.json").string();
   const test::Outcome outcome =
-      test::run_here("basis --search 5 --starts 4 --lambdas each --json -o " + file);
+      test::run_here("basis --search 5 --starts 4 --lambdas each --format json -o " + file);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json.at("search").at("valid"), 4);
@@ -266,7 +266,7 @@ TEST_F(CentresFile, WeightsAreRejectedWithThePlaceToo) {
 }
 
 TEST_F(CentresFile, IsDescribedByTheProgram) {
-  const test::Outcome good = test::run_here("basis --json --lambda 0.3 --centres " + file(kAxesFile));
+  const test::Outcome good = test::run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
   ASSERT_EQ(good.exit_code, 0) << good.err;
   const auto json = nlohmann::json::parse(good.out);
   EXPECT_EQ(json.at("schema"), 1);

@@ -66,7 +66,7 @@ TEST(CommandLine, AClosedPipeEndsTheProgram) {
 }
 
 TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
-  const test::Outcome outcome = clpv("devices --json >/dev/full");
+  const test::Outcome outcome = clpv("devices --format json >/dev/full");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));
 }

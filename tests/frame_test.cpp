@@ -240,5 +240,24 @@ TEST(LightScale, LampsCountWithTheirTotalFlux) {
   EXPECT_LE(100 * 4 * scale, 257);
 }
 
+TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
+  Device device = choose_device();
+  device.memory_bytes = 64u << 20;
+  Session session(device);
+  RenderOptions options;
+  options.grid = 64;
+  const std::string message = test::error_of(
+      ExitCode::run_time, [&] { Frame(session, load_scene(scene_path("cornell.json")), options); });
+  ASSERT_THAT(message, HasSubstr("grid: found 64, and at most "));
+  const int fits = std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
+  EXPECT_GT(fits, 8);
+  EXPECT_LT(fits, 64);
+  options.grid = 512;
+  EXPECT_THAT(
+      test::error_of(ExitCode::device,
+                     [&] { Frame(test::test_session(), load_scene(scene_path("cornell.json")), options); }),
+      HasSubstr("kernels address at most 2147483647: grid 4"));
+}
+
 }  // namespace
 }  // namespace clpv::frame_test

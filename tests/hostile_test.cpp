@@ -216,9 +216,9 @@ TEST(HostileSurroundings, Outputs) {
        {"render " + kCornell + " -o @/none/a.exr",
         "render " + kCornell + " -o @/out.exr --stats @/none/a.json",
         "render " + kCornell + " -o @/out.exr --dump-normals @/none/a.json",
-        std::string("bench ceilings --out @/none/a.json"), "pathtrace " + kCornell + " -o @/none/a.exr",
+        std::string("bench ceilings --output @/none/a.json"), "pathtrace " + kCornell + " -o @/none/a.exr",
         "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",
-        "quality " + kCornell + " --cache @/out --json @/none/a.json",
+        "quality " + kCornell + " --cache @/out --output @/none/a.json",
         std::string("compare a.exr b.exr -o @/none/a.png"),
         "query " + kCornell + " --points @/points.csv -o @/none/a.csv",
         std::string("propagate --at 4,4,4 --grid 8 -o @/none/a.npy")})

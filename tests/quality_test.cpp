@@ -170,7 +170,7 @@ TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
 
 TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   const std::string matrix =
-      "--transport sampled --vary basis=sh2,srbf4 --format json --csv " + file("a.csv");
+      "--transport sampled --vary basis=sh2,srbf4 --format json --output " + file("a.csv");
   const test::Outcome first = quality(matrix);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const nlohmann::json json = nlohmann::json::parse(first.out);

@@ -84,7 +84,10 @@ std::string reject_old_name(const std::string& name) {
                                                            {"see", "visibility"},
                                                            {"--most-condition", "--max-condition"},
                                                            {"--occlusion", "--blockers none|scene|seen"},
-                                                           {"--table", "--evaluate buffer|image"}};
+                                                           {"--table", "--evaluate buffer|image"},
+                                                           {"--out", "--output"},
+                                                           {"--json", "--format json, or --output FILE.json"},
+                                                           {"--csv", "--output FILE.csv"}};
   const auto found = kRenamed.find(name);
   return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
 }
@@ -163,6 +166,20 @@ void add_some_frame_options(CLI::App& command, RenderOptions& options,
 
 nlohmann::json to_json(const Device& device) {
   return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
+}
+
+CLI::Option* add_format(CLI::App& command, std::string& format, const std::vector<std::string>& formats) {
+  format = formats.front();
+  return command.add_option("--format", format, "format of the results on stdout")
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str();
+}
+
+CLI::Option* add_fail_above(CLI::App& command, double& ratio) {
+  return add(command, "--fail-above", "RATIO", ratio,
+             "exit with 5 if a value of the new report is more than RATIO times the earlier one, beyond the "
+             "spread")
+      ->check(CLI::Range(1.0, 1e6));
 }
 
 void require_extension(const std::string& option, const std::filesystem::path& file,

@@ -261,7 +261,7 @@ void add_propagate(CLI::App& app, Shared& shared) {
           "included; repeatable")
       ->take_all()
       ->type_name("i0,j0,k0:i1,j1,k1");
-  add(*command, "-o,--out", "FILE.npy", options->npy,
+  add(*command, "-o,--output", "FILE.npy", options->npy,
       "output file for accumulated light: .npy, float32, shape 3,N,z,y,x [W/sr]");
   add(*command, "--vti", "FILE.vti", options->vti,
       "output file for accumulated light: VTK ImageData, for ParaView [W/sr]");

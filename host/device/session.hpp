@@ -18,6 +18,7 @@
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
 #include "device/timeline.hpp"
+#include "support/error.hpp"
 #include "support/helpers.hpp"
 
 namespace clpv {
@@ -44,6 +45,13 @@ struct Compilation {
 };
 
 /// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.
+/// More memory or numbers than the device allows.
+class TooLarge : public Error {
+ public:
+  TooLarge(Error error, double share) : Error(std::move(error)), share(share) {}
+  double share;  ///< what the device allows over what the session has and needs; less than 1
+};
+
 class Session {
  public:
   /// `cache`: source of compiled programs and target of store_programs(). Without one every program is
