@@ -17,6 +17,7 @@
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
+#include "quality/unreached.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
@@ -101,6 +102,7 @@ Image render_indirect(Session& session, const Subject& subject, const SceneCamer
                       const Options& options, const PageVariant& variant) {
   Frame frame(session, subject.scene, resolve_options(sized(options, variant.given), subject.scene));
   frame.render(camera);
+  warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
   return view_image(frame, Show::indirect);
 }
 

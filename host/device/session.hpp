@@ -44,7 +44,6 @@ struct Compilation {
   std::optional<Claims> claims;
 };
 
-/// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.
 /// More memory or numbers than the device allows.
 class TooLarge : public Error {
  public:
@@ -52,6 +51,7 @@ class TooLarge : public Error {
   double share;  ///< what the device allows over what the session has and needs; less than 1
 };
 
+/// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.
 class Session {
  public:
   /// `cache`: source of compiled programs and target of store_programs(). Without one every program is
