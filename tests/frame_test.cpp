@@ -2,6 +2,7 @@
 // Whole frames against golden images and known properties of the scenes.
 #include "pipeline/frame.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -248,7 +249,7 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
   options.grid = 64;
   const std::string message = test::error_of(
       ExitCode::run_time, [&] { Frame(session, load_scene(scene_path("cornell.json")), options); });
-  ASSERT_THAT(message, HasSubstr("grid: found 64, and at most "));
+  ASSERT_THAT(message, ::testing::HasSubstr("grid: found 64, and at most "));
   const int fits = std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
   EXPECT_GT(fits, 8);
   EXPECT_LT(fits, 64);
@@ -256,7 +257,7 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
   EXPECT_THAT(
       test::error_of(ExitCode::device,
                      [&] { Frame(test::test_session(), load_scene(scene_path("cornell.json")), options); }),
-      HasSubstr("kernels address at most 2147483647: grid 4"));
+      ::testing::HasSubstr("kernels address at most 2147483647: grid 4"));
 }
 
 }  // namespace
