@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The linked image codecs. A file of its own, which the linker leaves out of a program that defines image_codec().
+// The linked image codecs. The linker leaves this file out of a program that defines image_codec().
 #include "image/codec.hpp"
 
 extern "C" clpv::GetImageCodec clpv_image_codec;
