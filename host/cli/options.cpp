@@ -65,7 +65,7 @@ std::string group_of(const std::string& name) {
   static const std::map<std::string_view, std::vector<std::string_view>> kStages{
       {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size"}},
       {"shadow maps", {"rsm-format", "shadow-size"}},
-      {"blockers", {"blockers", "blocking", "blocker-stride"}},
+      {"blockers", {"blocking", "blocker-stride"}},
       {"propagation", {"iterations", "directions", "coarser-directions", "state", "layout", "storage"}},
       {"gathering", {"gather", "gather-offset", "near-size"}},
   };
