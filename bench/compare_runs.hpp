@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Comparison of two runs of a suite: changes of time that exceed the spread of both runs.
+// Comparison of two reports of one kind: changes that exceed the spread of both. Reports are those of `clpv bench`, of
+// `clpv quality`, and the statistics of `clpv render --stats`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,26 +11,28 @@ namespace clpv::bench {
 
 struct Change {
   std::string name;
-  double before_ms = 0, after_ms = 0;    ///< medians
-  double before_mad = 0, after_mad = 0;  ///< median absolute deviations [ms]
-  /// False if a run has a single repetition, whose deviation is unknown.
+  double before = 0, after = 0;          ///< median times [ms], or errors
+  double before_mad = 0, after_mad = 0;  ///< median absolute deviations; 0 for errors, which repeat exactly
+  /// False if a report has no deviation, as from a single repetition.
   bool spread_known = true;
-  /// True if the spread is known and the difference exceeds both kSignificantDeviations standard deviations (1.4826 MAD each, added in quadrature) and
-  /// kMinRelativeChange of the time before.
+  /// True if the spread is known and the difference exceeds both kSignificantDeviations standard deviations (1.4826 MAD
+  /// each, added in quadrature) and kMinRelativeChange of the value before.
   bool significant = false;
-  double ratio() const { return before_ms > 0 ? after_ms / before_ms : 0; }
+  double ratio() const { return before > 0 ? after / before : 0; }
 };
 
 inline constexpr double kSignificantDeviations = 3;
 inline constexpr double kMinRelativeChange = 0.02;
 
 struct Comparison {
-  std::vector<Change> changes;                       ///< rows timed in both runs, in the order of the new run
+  std::vector<Change> changes;                       ///< rows of both reports, in the order of the new one
   std::vector<std::string> only_before, only_after;  ///< names of the other rows
 };
 
-/// Compares two reports (report_json). Throws Error(bad_input) if `before`, read from `file`, is no report of schema 1.
-Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file);
+/// Compares two reports. Throws Error(bad_input) if one is no report of schema 1, or if their kinds differ. `file`,
+/// `after_file`: where they are from, for errors.
+Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
+                        const std::string& after_file = "this run");
 
 /// Throws Error(validation) that names the rows whose ratio exceeds `limit`: beyond the spread, or with unknown spread.
 void require_ratios(const Comparison& comparison, double limit);

@@ -140,7 +140,7 @@ Job make_job(Bench& bench, const Variant& variant, const VolumeSelection& volume
 }  // namespace
 
 Job inject_job(Bench& bench, const Variant& variant) {
-  return make_job(bench, variant, {true, variant.options.occlusion});
+  return make_job(bench, variant, {true, variant.options.blocked()});
 }
 
 Job inject_light_job(Bench& bench, const Variant& variant) {

@@ -31,7 +31,7 @@ struct Propagation {
         injected(session, light_shape(), "bench: injected light", v.options.format()),
         accumulated(session, light_shape(), "bench: accumulated light", v.options.format()),
         propagator(session, *basis, transport, propagate_options(v.options)) {
-    if (v.options.occlusion)
+    if (v.options.blocked())
       geometry = std::make_unique<Volume>(
           session, VolumeShape{v.options.grid + 1, blocking_size(v.options.blocking, *basis), 1},
           "bench: geometry volume", v.options.format());
@@ -107,7 +107,7 @@ Cost cost_of(Propagation& p) {
 std::string reference_key(const Variant& v) {
   const RenderOptions& o = v.options;
   return fmt::format("propagate {} {} {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
-                     lobes_of(o), o.occlusion, o.grid, o.iterations, v.cascade.value_or(0));
+                     lobes_of(o), o.blocked(), o.grid, o.iterations, v.cascade.value_or(0));
 }
 
 }  // namespace

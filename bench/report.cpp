@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -119,19 +120,46 @@ std::string report_github_action(const std::vector<Row>& rows) {
   return list.dump(2) + "\n";
 }
 
+namespace {
+
+/// Reasons of rows above 100 % of a ceiling, one line each.
+std::string notes_above_ceilings(const std::vector<Row>& rows) {
+  static constexpr std::pair<std::string_view, const char*> kReasons[] = {
+      {"bandwidth", "caches serve some of the counted bytes, or the machine was slower for the ceiling"},
+      {"fma",
+       "the compiler removes some of the counted operations, or the machine was slower for the ceiling"},
+      {"launch", "the machine was slower for the ceiling"}};
+  std::string text;
+  for (const auto& [ceiling, reason] : kReasons) {
+    const auto above = [&, name = ceiling](const Row& row) {
+      return row.ceiling == name && std::round(100 * row.ceiling_share) > 100;
+    };
+    if (std::ranges::any_of(rows, above)) text += fmt::format("above 100% {}: {}\n", ceiling, reason);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string report_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string head =
       fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width, "median ms", "mad",
                   "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
-  return head + row_lines(rows, width, [](const Row& row) {
-           return fmt::format(
-               "{:>10.4f} {:>8.4f} {:>10.4f} {:>9} {:>8} {:>16} {:>9}", row.times.median, row.times.mad,
-               row.wall_ms, or_dash(row.cost.flops > 0, fmt::format("{:.1f}", row.gflops())),
-               or_dash(row.cost.bytes > 0, fmt::format("{:.1f}", row.gbps())),
-               or_dash(!row.ceiling.empty(), fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling)),
-               or_dash(row.max_rel_error.has_value(), fmt::format("{:.1e}", row.max_rel_error.value_or(0))));
-         });
+  return head +
+         row_lines(rows, width,
+                   [](const Row& row) {
+                     return fmt::format(
+                         "{:>10.4f} {:>8.4f} {:>10.4f} {:>9} {:>8} {:>16} {:>9}", row.times.median,
+                         row.times.mad, row.wall_ms,
+                         or_dash(row.cost.flops > 0, fmt::format("{:.1f}", row.gflops())),
+                         or_dash(row.cost.bytes > 0, fmt::format("{:.1f}", row.gbps())),
+                         or_dash(!row.ceiling.empty(),
+                                 fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling)),
+                         or_dash(row.max_rel_error.has_value(),
+                                 fmt::format("{:.1e}", row.max_rel_error.value_or(0))));
+                   }) +
+         notes_above_ceilings(rows);
 }
 
 }  // namespace clpv::bench

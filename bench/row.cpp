@@ -30,7 +30,7 @@ nlohmann::json variant_json(const Variant& variant) {
           {"state", name_of(o.state)},
           {"lobe", lobes_of(o)},
           {"transport", name_of(o.transport)},
-          {"occlusion", o.occlusion},
+          {"occlusion", o.blocked()},
           {"grid", o.grid},
           {"iterations", o.iterations},
           {"cascade", variant.cascade},
@@ -68,11 +68,10 @@ RenderOptions timed_options() {
   RenderOptions options;
   options.transport = TransportKind::sampled;
   options.storage = Storage::float32;
-  options.blockers = Blockers::seen;
   options.blocking = Blocking::one_sided;
   options.gather = Gathering::all;
   options.gather_offset = usual_gather_offset(options.gather);
-  options.occlusion = false;
+  options.blockers = Blockers::none;
   return options;
 }
 

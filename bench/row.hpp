@@ -33,6 +33,11 @@ Statistics statistics_of(std::vector<double> samples);
 /// occlusion.
 RenderOptions timed_options();
 
+/// Blockers of a timed stage: as published, or none.
+constexpr Blockers blockers_if(bool occlusion) {
+  return occlusion ? Blockers::seen : Blockers::none;
+}
+
 /// Settings of a timed stage.
 struct Variant {
   RenderOptions options = timed_options();

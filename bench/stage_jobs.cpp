@@ -21,7 +21,7 @@ Row make_row(const std::string& suite, std::string_view stage, const Variant& va
   if (lobes_of(o) != lobes_of(usual)) row.name += fmt::format("/{}", lobes_of(o));
   if (o.transport != usual.transport && stage != name_of(Stage::sweep))
     row.name += fmt::format("/{}", name_of(o.transport));
-  if (o.occlusion) row.name += "/occlusion";
+  if (o.blocked()) row.name += "/occlusion";
   if (variant.cascade) row.name += fmt::format("/cascade:{}", *variant.cascade);
   if (!variant.filtered) row.name += "/texels";
   row.name += suffix;
@@ -31,7 +31,8 @@ Row make_row(const std::string& suite, std::string_view stage, const Variant& va
 Variant with_sweep(Variant variant) {
   RenderOptions& o = variant.options;
   o.transport = TransportKind::sweep;
-  o.blockers = Blockers::scene, o.blocking = Blocking::areas;
+  if (o.blocked()) o.blockers = Blockers::scene;
+  o.blocking = Blocking::areas;
   return variant;
 }
 

@@ -95,7 +95,7 @@ Cost cost_of(const CascadeSweep& p) {
 std::string sweep_reference_key(const Variant& v) {
   const RenderOptions& o = v.options;
   return fmt::format("sweep {} {} {} {} {} {}", o.basis, name_of(o.directions), name_of(o.blocking),
-                     o.occlusion, o.grid, v.cascade.value_or(0));
+                     o.blocked(), o.grid, v.cascade.value_or(0));
 }
 
 /// Expected accumulated light, in Volume's host order.
@@ -108,7 +108,7 @@ std::vector<double> expected_light(Inputs& inputs, const Variant& variant) {
   reference::SweptCascade swept{inputs.grids().at(cascade), &light, nullptr,
                                 sweep_options(o).parts.at(cascade)};
   reference::Volume areas;
-  if (o.occlusion) {
+  if (o.blocked()) {
     areas = to_reference(inputs.areas(cascade), o.grid + 1, blocking_size(o.blocking, *basis), 1);
     swept.geometry = &areas;
   }

@@ -13,9 +13,6 @@ if(CLPV_MPI AND MPI_C_FOUND)
   target_link_libraries(clpv_mpi PRIVATE MPI::MPI_C Threads::Threads)
   clpv_warn(clpv_mpi)
   add_dependencies(clpv clpv_mpi)
-  # dlopen searches the program's RPATH.
-  set_target_properties(clpv PROPERTIES BUILD_RPATH "$ORIGIN"
-    INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/clpv")
   install(TARGETS clpv_mpi LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clpv)
   set(CLPV_MPIEXEC ${MPIEXEC_EXECUTABLE})
 endif()

@@ -87,8 +87,8 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
   EXPECT_EQ(found.only_before, std::vector<std::string>{"gone"});
   EXPECT_EQ(found.only_after, std::vector<std::string>{"new"});
   const std::string table = comparison_table(found);
-  EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 SLOWER"));
-  EXPECT_THAT(table, HasSubstr("0.500 faster"));
+  EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 HIGHER"));
+  EXPECT_THAT(table, HasSubstr("0.500 lower"));
 }
 
 TEST(BenchCompare, OneRepetitionHasNoSpread) {
@@ -117,6 +117,51 @@ TEST(BenchCompare, RatiosAboveALimitFail) {
   const test::Outcome alone = test::run_here("bench ceilings --fail-above 1.2");
   EXPECT_EQ(alone.exit_code, 2);
   EXPECT_THAT(alone.err, HasSubstr("--compare"));
+}
+
+/// Runs `clpv compare NEW OLD --fail-above 1.2` on these reports.
+test::Outcome compare_files(const nlohmann::json& before, const nlohmann::json& after) {
+  const test::TemporaryFolder folder;
+  const std::string old = folder.write("old.json", before.dump()).string(),
+                    now = folder.write("new.json", after.dump()).string();
+  return test::run_here("compare " + now + " " + old + " --fail-above 1.2");
+}
+
+TEST(BenchCompare, ReportsOfQualityAndStats) {
+  const auto quality = [](double nrmse, double ms) {
+    return nlohmann::json{{"cells",
+                           {{{"scene", "cornell"},
+                             {"camera", "front"},
+                             {"rejected", ""},
+                             {"options", {{"basis", "sh2"}}},
+                             {"nrmse", nrmse},
+                             {"frame_ms", ms}}}}};
+  };
+  const auto stats = [](double ms) {
+    return nlohmann::json{{"frame_ms", 2 * ms},
+                          {"stages", {{{"stage", "gather"}, {"cascade", 1}, {"light", -1}, {"ms", ms}}}}};
+  };
+  EXPECT_EQ(compare_files(quality(0.2, 10), quality(0.21, 11)).exit_code, 0);
+  const test::Outcome worse = compare_files(quality(0.2, 10), quality(0.3, 10));
+  EXPECT_EQ(worse.exit_code, 5);
+  EXPECT_THAT(worse.out, HasSubstr("1.500 HIGHER"));
+  EXPECT_THAT(worse.err, HasSubstr("cornell:front basis=sh2 nrmse (1.500)"));
+  const test::Outcome slow = compare_files(stats(10), stats(13));
+  EXPECT_EQ(slow.exit_code, 5);
+  EXPECT_THAT(slow.out, HasSubstr("spread unknown"));
+  EXPECT_THAT(slow.err, HasSubstr("gather/cascade:1 (1.300)"));
+  EXPECT_EQ(compare_files(stats(10), stats(11)).exit_code, 0);
+  const test::Outcome mixed = compare_files(stats(10), quality(0.2, 10));
+  EXPECT_EQ(mixed.exit_code, 3);
+  EXPECT_THAT(mixed.err, HasSubstr("two reports of one command"));
+}
+
+TEST(BenchReport, AboveACeilingIsExplained) {
+  Row row;
+  row.name = "row", row.ceiling = "bandwidth", row.ceiling_share = 0.9;
+  EXPECT_THAT(report_table({row}), Not(HasSubstr("above 100%")));
+  row.ceiling_share = 1.2;
+  EXPECT_THAT(report_table({row}), HasSubstr("above 100% bandwidth: caches"));
 }
 
 TEST(BenchCompare, RejectsWhatIsNoReport) {
@@ -275,10 +320,10 @@ TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
   const std::string old = folder.write("old.json", report({{"propagate/sh2/soa/float", 1e-6, 0}}).dump())
                               .string(),
                     now = (folder / "new.json").string();
-  const auto out = test::run_here("bench " + kOneRow + " --format json --out " + now + " --compare " + old +
-                                  " --plot " + (folder / "plots").string());
+  const auto out = test::run_here("bench " + kOneRow + " --output " + now + " --compare " + old + " --plot " +
+                                  (folder / "plots").string());
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_THAT(out.out, ::testing::ContainsRegex("propagate/sh2/soa/float .* SLOWER"));
+  EXPECT_THAT(out.out, ::testing::ContainsRegex("propagate/sh2/soa/float .* HIGHER"));
   const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
   const nlohmann::json& row = document["benchmarks"][0];
   EXPECT_EQ(document["context"]["schema"], 1);

@@ -174,7 +174,7 @@ TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
 }
 
 TEST(Bounce, KernelsAgreeWithTheReference) {
-  expect_passed(reference::check(Stage::bounce, test_session(), few_variants()), 4);
+  expect_passed(reference::check(Stage::bounce, test_session()), 4);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 test::Outcome clpv(const std::string& arguments) {
   return test::run(CLPV_PROGRAM " " + arguments);
@@ -66,9 +67,30 @@ TEST(CommandLine, AClosedPipeEndsTheProgram) {
 }
 
 TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
-  const test::Outcome outcome = clpv("devices --json >/dev/full");
+  const test::Outcome outcome = clpv("devices --format json >/dev/full");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));
+}
+
+// They take 0.3 s to load, and most commands read no image.
+TEST(CommandLine, StartsWithoutImageCodecs) {
+  const test::Outcome libraries = test::run("LD_TRACE_LOADED_OBJECTS=1 " CLPV_PROGRAM);
+  EXPECT_THAT(libraries.out, HasSubstr("libOpenCL"));
+  EXPECT_THAT(libraries.out, Not(HasSubstr("libOpenImageIO")));
+}
+
+TEST(CommandLine, OldNamesOfOptionsNameTheNewOnes) {
+  const std::pair<const char*, const char*> renamed[] = {
+      {"check --json", "'--json' is now '--format json, or --output FILE.json'"},
+      {"bench bases --out a.json", "'--out' is now '--output'"},
+      {"quality a.json --csv=b.csv", "'--csv' is now '--output FILE.csv'"},
+      {"render a.json -o a.png --occlusion off", "'--occlusion' is now '--blockers none|scene|seen'"},
+      {"render a.json -o a.png --table=image", "'--table' is now '--evaluate buffer|image'"}};
+  for (const auto& [words, message] : renamed) {
+    const test::Outcome outcome = clpv(words);
+    EXPECT_EQ(outcome.exit_code, 2) << words;
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  }
 }
 
 }  // namespace

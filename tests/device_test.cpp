@@ -81,7 +81,7 @@ TEST(ListDevices, NumbersAndEventsAreSound) {
 }
 
 TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
-  const auto outcome = test::run_here("devices --json --device 0");
+  const auto outcome = test::run_here("devices --format json --device 0");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json.at("schema"), 1);
@@ -98,7 +98,7 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
 TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
   const test::TemporaryFolder empty;
   const std::string none = "OCL_ICD_VENDORS=" + empty.path().string() + " ";
-  const auto listed = test::run(none + CLPV_PROGRAM " devices --json");
+  const auto listed = test::run(none + CLPV_PROGRAM " devices --format json");
   EXPECT_EQ(listed.exit_code, 4);
   EXPECT_TRUE(nlohmann::json::parse(listed.out).at("devices").empty());
   EXPECT_THAT(listed.err, HasSubstr("no OpenCL device"));

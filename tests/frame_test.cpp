@@ -2,6 +2,7 @@
 // Whole frames against golden images and known properties of the scenes.
 #include "pipeline/frame.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -152,7 +153,7 @@ TEST(Frame, WithoutOcclusionThereIsMoreLight) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   RenderOptions options = small_options(scene);
   const Image occluded = render(scene, options, Show::irradiance);
-  options.occlusion = false;
+  options.blockers = Blockers::none;
   const Image open = render(scene, options, Show::irradiance);
   EXPECT_GT(mean(open, 0, 0, kWidth, kHeight, 1), 1.05 * mean(occluded, 0, 0, kWidth, kHeight, 1));
 }
@@ -197,7 +198,7 @@ std::vector<float> finest_light(const Scene& scene, const RenderOptions& options
 TEST(Frame, MovingByACellShiftsLightByOne) {
   const Scene scene = load_scene(scene_path("cornell.json"));
   RenderOptions options = small_options(scene);
-  options.occlusion = false;
+  options.blockers = Blockers::none;
   options.transport = TransportKind::sampled;
   options.iterations = 0;  // what stands inside both grids is then the same; light from outside has no way in
   const auto cell = static_cast<float>(options.cascade_size / options.grid);
@@ -238,6 +239,25 @@ TEST(LightScale, AFullCellIsAThousandthOfTheRange) {
 TEST(LightScale, LampsCountWithTheirTotalFlux) {
   const float scale = light_scale(kHalf, {test::point_light({0, 1, 0}, glm::vec3(100))}, 0.4f);
   EXPECT_LE(100 * 4 * scale, 257);
+}
+
+TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
+  Device device = choose_device();
+  device.memory_bytes = 64u << 20;
+  Session session(device);
+  RenderOptions options;
+  options.grid = 64;
+  const std::string message = test::error_of(
+      ExitCode::run_time, [&] { Frame(session, load_scene(scene_path("cornell.json")), options); });
+  ASSERT_THAT(message, ::testing::HasSubstr("grid: found 64, and at most "));
+  const int fits = std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
+  EXPECT_GT(fits, 8);
+  EXPECT_LT(fits, 64);
+  options.grid = 512;
+  EXPECT_THAT(
+      test::error_of(ExitCode::device,
+                     [&] { Frame(test::test_session(), load_scene(scene_path("cornell.json")), options); }),
+      ::testing::HasSubstr("kernels address at most 2147483647: grid 4"));
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST_F(Killed, WhileQualityMeasures) {
   kill_at_moments("quality " + kTiny + kSmall +
                       "--basis sh2 --gather all --blockers seen --vary transport=sampled,exact --width 24 "
                       "--height 18 --spp 4 --frames 1 --cache " +
-                      (folder_ / "kept").string() + " --json " + json.string(),
+                      (folder_ / "kept").string() + " --output " + json.string(),
                   [&] {
                     expect_whole_json(folder_ / "kept");
                     EXPECT_TRUE(nlohmann::json::accept(read_file(json)));

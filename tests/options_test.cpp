@@ -94,7 +94,7 @@ TEST(Options, ABasisReplacesAFileOfCentres) {
 TEST(Options, StageOptionsMatchTheChoice) {
   RenderOptions options;
   apply_preset(options, PresetName::paper);
-  options.table = TableStorage::image, options.grid = 11, options.state = State::fluxes;
+  options.evaluate = Evaluation::image, options.grid = 11, options.state = State::fluxes;
   const InjectOptions inject = inject_options(options, true);
   EXPECT_TRUE(inject.unit_flux_lobes);
   EXPECT_EQ(inject.grid, 11);
@@ -145,31 +145,39 @@ TEST(Presets, PaperIsThePublishedScheme) {
   options.grid = 16, options.cascades = 2, options.cascade_size = 5, options.iterations = 24;
   options.rsm_size = 64, options.width = 77, options.height = 33;
   set_option(options, "preset", "paper");
-  const nlohmann::json found = to_json(options),
-                       published = {{"preset", "paper"},      {"basis", "srbf8v2"},
-                                    {"lambda", 0.25},         {"lobe", "rotate"},
-                                    {"lobe-time", "kernel"},  {"evaluate", "table"},
-                                    {"table-size", 256},      {"table", "image"},
-                                    {"transport", "sampled"}, {"state", "coefficients"},
-                                    {"layout", "image"},      {"storage", "half"},
-                                    {"rsm-format", "paper"},  {"blocking", "one-sided"},
-                                    {"blockers", "seen"},     {"gather", "all"},
-                                    {"gather-offset", 0.5},   {"grid", 32},
-                                    {"cascades", 3},          {"cascade-size", 12.5},
-                                    {"rsm-size", 256},        {"iterations", 8},
-                                    {"width", 960},           {"height", 540}};
+  const nlohmann::json found = to_json(options), published = {{"preset", "paper"},
+                                                              {"basis", "srbf8v2"},
+                                                              {"lambda", 0.25},
+                                                              {"lobe", "rotate"},
+                                                              {"lobe-time", "kernel"},
+                                                              {"evaluate", "image"},
+                                                              {"table-size", 256},
+                                                              {"transport", "sampled"},
+                                                              {"state", "coefficients"},
+                                                              {"layout", "image"},
+                                                              {"storage", "half"},
+                                                              {"rsm-format", "paper"},
+                                                              {"blocking", "one-sided"},
+                                                              {"blockers", "seen"},
+                                                              {"gather", "all"},
+                                                              {"gather-offset", 0.5},
+                                                              {"grid", 32},
+                                                              {"cascades", 3},
+                                                              {"cascade-size", 12.5},
+                                                              {"rsm-size", 256},
+                                                              {"iterations", 8},
+                                                              {"width", 960},
+                                                              {"height", 540}};
   for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
 }
 
 TEST(Presets, KeepOptionsThatTheyDoNotSet) {
   RenderOptions options;
   set_option(options, "shadow-size", "77");
-  set_option(options, "occlusion", "off");
   set_option(options, "preset", "paper");
   set_option(options, "preset", "best");
   nlohmann::json expected = to_json(RenderOptions{});
   expected["shadow-size"] = 77;
-  expected["occlusion"] = false;
   EXPECT_EQ(to_json(options), expected) << "best undoes all that paper set";
 }
 

@@ -48,7 +48,7 @@ std::vector<double> energies(const Basis& basis, TransportKind kind, reference::
 }
 
 TEST(Propagate, KernelsAgreeWithTheReference) {
-  expect_passed(reference::check(Stage::propagate, test_session(), test::few_variants()));
+  expect_passed(reference::check(Stage::propagate, test_session()));
 }
 
 TEST(Propagate, IsotropicSourceKeepsItsEnergy) {

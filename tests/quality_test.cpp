@@ -142,7 +142,7 @@ class QualityCommand : public ::testing::Test {
   test::Outcome quality(const std::string& arguments) const {
     return test::run_here(
         "quality " + file("room.json") + " --cache " + file("cache") +
-        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --occlusion off --rsm-size 64 " + arguments);
+        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --blockers none --rsm-size 64 " + arguments);
   }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t kept() const {
@@ -170,7 +170,7 @@ TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
 
 TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   const std::string matrix =
-      "--transport sampled --vary basis=sh2,srbf4 --format json --csv " + file("a.csv");
+      "--transport sampled --vary basis=sh2,srbf4 --format json --output " + file("a.csv");
   const test::Outcome first = quality(matrix);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const nlohmann::json json = nlohmann::json::parse(first.out);

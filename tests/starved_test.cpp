@@ -128,5 +128,23 @@ TEST_F(Starved, OfASmallDisk) {
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
 }
 
+/// The driver's cache on a full or read-only disk, where one may be mounted.
+TEST_F(Starved, OfASmallDiskForTheDriversCache) {
+  const std::string disk = folder_.path().string();
+  const auto render = [&](const std::string& kind) {
+    const std::string mount = "mount -t tmpfs -o " + kind + " none " + disk;
+    return run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + disk +
+               "/pocl CLPV_PROGRAM_CACHE=off " + CLPV_PROGRAM + kFrame + "-o " +
+               (folder_ / "a.exr").string() + "'");
+  };
+  if (run("unshare -rm mount -t tmpfs none " + disk).exit_code != 0)
+    GTEST_SKIP() << "no tmpfs may be mounted here";
+  const Outcome full = render("size=64k"), read_only = render("ro");
+  EXPECT_EQ(full.exit_code, 1) << full.err;
+  EXPECT_THAT(full.err, HasSubstr("the disk of the driver's cache is full; POCL_CACHE_DIR"));
+  EXPECT_EQ(read_only.exit_code, 4) << read_only.err;
+  EXPECT_THAT(read_only.err, HasSubstr("cannot write its cache"));
+}
+
 }  // namespace
 }  // namespace clpv::test::starved_test

@@ -344,7 +344,7 @@ TEST(Sweep, IsNoMatterOfSteps) {
 }
 
 TEST(Sweep, KernelsAgreeWithTheReference) {
-  expect_passed(reference::check(Stage::sweep, test_session(), few_variants()), 6);
+  expect_passed(reference::check(Stage::sweep, test_session()), 6);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Job native_job(Bench& bench, const Variant& variant) {
   const auto p = std::make_shared<NativePropagation>(o);
   const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
   const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
-  p->baseline.set(light, o.occlusion ? &geometry : nullptr);
+  p->baseline.set(light, o.blocked() ? &geometry : nullptr);
   Job job;
   job.own_stages = true;  // runs on the host: wall time
   job.run = [p, steps = o.iterations] { p->baseline.propagate(steps); };
@@ -43,14 +43,14 @@ Job native_job(Bench& bench, const Variant& variant) {
                             corners = to_reference(geometry, o.grid + 1, n, 1);
     return compare_volumes(
         p->baseline.accumulated(),
-        reference::propagate(p->transport, injected, o.occlusion ? &corners : nullptr, o.iterations)
+        reference::propagate(p->transport, injected, o.blocked() ? &corners : nullptr, o.iterations)
             .accumulated.values,
         o.grid, reference::tolerance("propagate", o.format().storage));
   };
   job.cost.flops = p->baseline.flops(o.iterations);
   job.cost.bytes = p->baseline.bytes(o.iterations);
   job.cost.working_set =
-      sizeof(float) * std::pow(o.grid, 3) * (3 * 3.0 * p->basis->size() + (o.occlusion ? 30 : 0));
+      sizeof(float) * std::pow(o.grid, 3) * (3 * 3.0 * p->basis->size() + (o.blocked() ? 30 : 0));
   return job;
 }
 
@@ -58,7 +58,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
     Variant variant = basis_variant(options, kBasis);
-    variant.options.occlusion = occlusion;
+    variant.options.blockers = blockers_if(occlusion);
     for (const State state : values_of<State>()) {
       variant.options.state = state;
       cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
@@ -74,7 +74,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
 const Row* native_row(const std::vector<Row>& rows, const Row& row) {
   const auto native = std::ranges::find_if(rows, [&](const Row& other) {
     return other.stage == kNative && other.status == Status::ok &&
-           other.variant->options.occlusion == row.variant->options.occlusion;
+           other.variant->options.blocked() == row.variant->options.blocked();
   });
   return native == rows.end() || row.stage == kNative ? nullptr : &*native;
 }

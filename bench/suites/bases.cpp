@@ -16,7 +16,8 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
   for (const LobeKind lobe : values_of<LobeKind>()) {
     for (const State state : values_of<State>()) {
       for (const bool occlusion : {false, true}) {
-        variant.options.lobe = lobe, variant.options.state = state, variant.options.occlusion = occlusion;
+        variant.options.lobe = lobe, variant.options.state = state,
+        variant.options.blockers = blockers_if(occlusion);
         cases.push_back(stage_case(*bench, "bases", kPropagate, variant));
       }
     }

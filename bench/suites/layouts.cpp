@@ -26,7 +26,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::st
   for (const VolumeFormat& format : all_formats()) {
     Variant variant = basis_variant(options, basis);
     variant.options.layout = format.layout, variant.options.storage = format.storage;
-    variant.options.occlusion = setup.occlusion;
+    variant.options.blockers = blockers_if(setup.occlusion);
     cases.push_back(stage_case(bench, "layouts", setup.job, variant));
     if (setup.job.stage != Stage::gather || format.layout != Layout::image) continue;
     variant.filtered = false;
@@ -40,7 +40,7 @@ const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
   for (const Row& other : rows) {
     const RenderOptions &a = row.variant->options, &b = other.variant->options;
     if (other.status == Status::ok && other.stage == row.stage && a.basis == b.basis &&
-        a.occlusion == b.occlusion && b.format() == kPaperFormat && other.variant->filtered)
+        a.blocked() == b.blocked() && b.format() == kPaperFormat && other.variant->filtered)
       return &other;
   }
   return nullptr;

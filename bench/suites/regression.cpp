@@ -52,7 +52,7 @@ std::vector<Case> stages_of(const std::shared_ptr<Bench>& bench, const SuiteOpti
   for (const StageJob& job : kStageJobs)
     cases.push_back(with_build(stage_case(*bench, "regression", job, usual)));
   Variant with_occlusion = usual;
-  with_occlusion.options.occlusion = true;
+  with_occlusion.options.blockers = Blockers::seen;
   for (const StageJob& job : {kPropagate, kSweep})
     cases.push_back(with_build(stage_case(*bench, "regression", job, with_occlusion)));
   Variant in_half = usual;

@@ -72,7 +72,7 @@ class TimeTable {
       const RenderOptions& o = row.variant->options;
       for (const TablePass& pass : kTablePasses) {
         if (row.stage != name_of(pass.pass)) continue;
-        const TimeKey key{settings_of(o), o.occlusion, pass.pass, row.variant->cascade.value_or(-1), o.basis};
+        const TimeKey key{settings_of(o), o.blocked(), pass.pass, row.variant->cascade.value_or(-1), o.basis};
         const bool timed = row.status == Status::ok;
         times_[key] = {row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
                        std::string(name_of(row.status))};
@@ -186,7 +186,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings sett
     for (int cascade = 0; cascade < (all_cascades ? 1 : options.settings.cascades); ++cascade) {
       for (const std::string& basis : bases_of(options)) {
         Variant variant = variant_of(options, settings, basis);
-        variant.options.occlusion = shadows;
+        variant.options.blockers = blockers_if(shadows);
         if (!all_cascades) variant.cascade = cascade;
         Case added = stage_case(bench, "table1", job, variant);
         added.row.published_ms = published_ms(job.pass, basis, shadows, variant.cascade);

@@ -10,10 +10,10 @@
 namespace clpv {
 namespace {
 
-constexpr int kOrder = 12;            // Gauss points along each side of a triangle
+constexpr int kOrder = 12;                // Gauss points along each side of a triangle
 constexpr double kRelativeError = 4e-15;  // relative to a test function's integral over the sphere
-constexpr int kMaxRefinements = 14;   // bisections of a triangle's edges: resolves peaks 1e-4 rad wide
-constexpr double kOnPlane = 1e-12;    // a corner closer than this lies on a plane
+constexpr int kMaxRefinements = 14;       // bisections of a triangle's edges: resolves peaks 1e-4 rad wide
+constexpr double kOnPlane = 1e-12;        // a corner closer than this lies on a plane
 
 using Triangle = std::array<glm::dvec3, 3>;
 

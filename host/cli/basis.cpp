@@ -21,7 +21,7 @@ struct Options {
   std::string name, centres_file, axis = "0,0,1", figures;
   double lambda = kDefaultLambda;
   LobeOptions lobes;
-  bool json = false;
+  std::string format;
 };
 
 glm::dvec3 unit_axis(const std::string& text) {
@@ -113,7 +113,7 @@ void run(const Options& options) {
   const BasisView view{options.lobes, unit_axis(options.axis)};
   nlohmann::json bases = nlohmann::json::array();
   for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, view));
-  if (options.json) {
+  if (options.format == "json") {
     fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"bases", bases}}.dump(2));
   } else {
     fmt::print("{}", table_of(bases));
@@ -145,10 +145,10 @@ void add_basis(CLI::App& app, Shared&) {
       ->add_option("--table-size", options->lobes.table_size,
                    "number of entries in the table of rotated lobes")
       ->capture_default_str();
-  CLI::Option* json = command->add_flag("--json", options->json, "JSON on stdout");
+  CLI::Option* format = add_format(*command, options->format);
   add(*command, "--figures", "DIR", options->figures,
       "output folder for the paper's figures 2, 3 and 6, in place of the report")
-      ->excludes(json);
+      ->excludes(format);
   command->callback([options] { run(*options); });
 }
 

@@ -25,7 +25,7 @@ namespace bench_command {
 
 struct Options {
   double fail_above = 0;  ///< 0: not given
-  std::string suite, scene, model, filter, format = "table", out, compare, plot, log;
+  std::string suite, scene, model, filter, format, output, compare, plot, log;
   SceneChanges changes;
   bench::BenchOptions bench;
 };
@@ -57,11 +57,11 @@ nlohmann::json report_of(const Options& options, const Session& session, const b
   return bench::report_json(context, results.ceilings, results.rows);
 }
 
-std::string as_text(const Options& options, const bench::Suite& suite, const Session& session,
-                    const bench::Results& results) {
-  if (options.format == "json") return report_of(options, session, results).dump(2) + "\n";
-  if (options.format == "github-action") return bench::report_github_action(results.rows);
-  if (options.format == "csv") return bench::report_csv(results.rows);
+std::string as_text(const Options& options, std::string_view format, const bench::Suite& suite,
+                    const Session& session, const bench::Results& results) {
+  if (format == "json") return report_of(options, session, results).dump(2) + "\n";
+  if (format == "github-action") return bench::report_github_action(results.rows);
+  if (format == "csv") return bench::report_csv(results.rows);
   return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
          (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
 }
@@ -71,11 +71,10 @@ nlohmann::json earlier_run(const Options& options) {
   if (options.compare.empty() && options.fail_above > 0)
     throw Error(ExitCode::usage, "--fail-above {}: needs --compare", options.fail_above);
   if (options.compare.empty()) return nullptr;
-  if (options.format != "table" && options.out.empty()) {
+  if (options.format != "table")
     throw Error(ExitCode::usage,
-                "--compare with --format {}: both would be on stdout; allowed: --format table, or --out",
+                "--compare with --format {}: both would be on stdout; allowed: --format table",
                 options.format);
-  }
   nlohmann::json report = read_json(options.compare);
   bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
   return report;
@@ -117,17 +116,12 @@ void require_right_results(const std::vector<bench::Row>& rows) {
               rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
 }
 
-void write(const Options& options, const std::string& text) {
-  if (!options.out.empty()) return write_file(options.out, text);
-  fmt::print("{}", text);
-  std::fflush(stdout);
-}
-
 void run(Options options, const Shared& shared) {
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
-  for (const std::string& file : {options.out, options.log}) {
+  if (!options.output.empty()) require_extension("--output", options.output, {".json", ".csv"});
+  for (const std::string& file : {options.output, options.log}) {
     if (!file.empty()) check_writable(file);
   }
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
@@ -140,11 +134,17 @@ void run(Options options, const Shared& shared) {
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);
-  write(options, as_text(options, suite, session, results));
+  const auto text = [&](std::string_view format) {
+    return as_text(options, format, suite, session, results);
+  };
+  if (!options.output.empty())
+    write_file(options.output, text(options.output.ends_with(".csv") ? "csv" : "json"));
+  fmt::print("{}", text(options.format));
+  std::fflush(stdout);
   bench::Comparison comparison;
   if (!before.is_null()) {
     comparison = bench::compare_runs(before, report_of(options, session, results), options.compare);
-    fmt::print("{}{}", options.out.empty() ? "\n" : "", bench::comparison_table(comparison));
+    fmt::print("\n{}", bench::comparison_table(comparison));
   }
   if (plot) {
     plot->add("bench.json", report_of(options, session, results));
@@ -179,21 +179,13 @@ void add_bench(CLI::App& app, Shared& shared) {
   command->add_option("--repetitions", options->bench.repetitions, "timed runs per row")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMaxRepetitions));
-  command
-      ->add_option(
-          "--format", options->format,
-          "format of the output: table|json|csv, or github-action: name, unit and value of each row, smaller "
-          "is better")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"table", "json", "csv", "github-action"}));
+  add_format(*command, options->format, {"table", "json", "csv", "github-action"});
   add(*command, "--log", "FILE.jsonl", options->log,
       "log of row starts and ends, one JSON line each; after a crash its last line names the row");
-  add(*command, "-o,--out", "FILE", options->out, "output file (default: stdout)");
+  add(*command, "-o,--output", "FILE", options->output, "output file for the results, .json or .csv");
   add(*command, "--compare", "OLD.json", options->compare,
       "JSON of an earlier run, for a table of changes and their spread");
-  add(*command, "--fail-above", "RATIO", options->fail_above,
-      "with --compare: exit with 5 if a row takes more than RATIO times as long, beyond the spread")
-      ->check(CLI::Range(1.0, 1e6));
+  add_fail_above(*command, options->fail_above);
   add(*command, "--plot", "DIR", options->plot, "output folder for SVG and PNG charts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }

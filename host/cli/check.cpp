@@ -47,8 +47,8 @@ namespace check_command {
 struct Options {
   std::vector<Stage> only;
   std::vector<std::string> match;
-  std::string junit, claims;
-  bool json = false, thorough = false, list = false;
+  std::string junit, claims, format;
+  bool thorough = false, list = false;
 };
 
 auto failures(const reference::CheckResults& results) {
@@ -243,7 +243,8 @@ void run(const Options& options, const Shared& shared) {
   }
   spdlog::info("checking {} ({}), driver {}: {} comparisons", session.device().name,
                session.device().platform, session.device().driver, jobs.size());
-  Results results(jobs, !options.json);
+  const bool json = options.format == "json";
+  Results results(jobs, !json);
   const bool alone = helper_count() == 0 || jobs.size() < 2 || launcher_rank();
   if (alone)
     check_here(session, options, results);
@@ -251,7 +252,7 @@ void run(const Options& options, const Shared& shared) {
     check_with_helpers(options, shared, results);
   const reference::CheckResults& all = results.all();
   const auto failed = failures(all);
-  if (options.json) {
+  if (json) {
     fmt::print("{}\n", nlohmann::json{{"schema", 1},
                                       {"device", to_json(session.device())},
                                       {"passed", failed == 0},
@@ -274,14 +275,15 @@ void add_check(CLI::App& app, Shared& shared) {
   add_choices(*command, "--stage", options->only, "stages to check (default: all)");
   command->add_flag(
       "--thorough", options->thorough,
-      "all combinations of bases, formats, lobes, tables, transports and states; takes minutes");
+      "all combinations of bases, formats, lobes, tables, transports, states and directions; takes minutes. "
+      "Without it, each path of a kernel once: one basis of each kind, each layout and number format");
   command
       ->add_option("--match", options->match,
                    "only comparisons with this text in their name, such as a basis or layout; repeatable")
       ->type_name("TEXT");
   command->add_flag("--list", options->list, "print the names of the comparisons and end");
   add(*command, "--claims", "DIR", options->claims, "folder shared with other helpers")->group("");
-  command->add_flag("--json", options->json, "JSON on stdout");
+  add_format(*command, options->format);
   add(*command, "--junit", "FILE.xml", options->junit,
       "output file in JUnit format, one test case per comparison");
   command->callback([options, &shared] { run(*options, shared); });

@@ -118,7 +118,8 @@ class ShortHelp : public CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     short_ = mode == CLI::AppFormatMode::Normal;
     std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
-    for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);  // left by empty groups
+    for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;)
+      text.erase(at, 1);  // left by empty groups
     return text;
   }
 

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// clpv compare: error metrics of an image against a ground truth.
+// clpv compare: error metrics of an image against a ground truth, or changes between two reports.
 #include "image/compare.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "support/error.hpp"
+#include "support/json_schema.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -19,6 +21,7 @@ namespace {
 struct CompareOptions {
   std::string a, b, layer, output;
   float amplify = 15, exposure = 0;
+  double fail_above = 0;  ///< 0: not given
 };
 
 bool is_png(const std::filesystem::path& path) {
@@ -50,7 +53,23 @@ Image read_layer(const std::string& text, const std::string& usual) {
   return extract_layer(read_image(file), text.substr(colon + 1), file);
 }
 
+bool is_report(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".json";
+}
+
+/// Compares reports of bench, quality or --stats.
+void compare_reports(const CompareOptions& options) {
+  const bench::Comparison comparison =
+      bench::compare_runs(read_json(options.b), read_json(options.a), options.b, options.a);
+  fmt::print("{}", bench::comparison_table(comparison));
+  if (options.fail_above > 0) bench::require_ratios(comparison, options.fail_above);
+}
+
 void run(const CompareOptions& options) {
+  if (is_report(options.a) && is_report(options.b)) return compare_reports(options);
+  if (options.fail_above > 0)
+    throw Error(ExitCode::usage, "--fail-above {}: found {} and {}, allowed with two reports (.json)",
+                options.fail_above, options.a, options.b);
   check_output(options.output);
   const Image a = read_layer(options.a, options.layer);
   const Image b = read_layer(options.b, options.layer);
@@ -62,11 +81,19 @@ void run(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Shared&) {
-  CLI::App* command =
-      app.add_subcommand("compare", "Errors of image A against ground truth B, as JSON on stdout");
+  CLI::App* command = app.add_subcommand(
+      "compare", "Errors of image A against ground truth B, or changes of report A against B");
   auto options = std::make_shared<CompareOptions>();
-  command->add_option("A", options->a, "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer")->required();
-  command->add_option("B", options->b, "ground truth of the same size, with a layer likewise")->required();
+  command
+      ->add_option("A", options->a,
+                   "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. Or a report: JSON of bench, "
+                   "quality or --stats")
+      ->required();
+  command
+      ->add_option(
+          "B", options->b,
+          "ground truth of the same size, with a layer likewise. Or the earlier report of the same command")
+      ->required();
   add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
@@ -76,6 +103,7 @@ void add_compare(CLI::App& app, Shared&) {
       ->check(CLI::Range(-30.0, 30.0));
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
+  add_fail_above(*command, options->fail_above)->excludes("--output");
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
       "linear in EXR\n"

@@ -45,14 +45,14 @@ void print(const DeviceList& list) {
 void add_devices(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
       "devices", "List all OpenCL devices and their capabilities; with --device, the selected one");
-  auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "JSON on stdout");
-  command->callback([json, &shared] {
+  auto format = std::make_shared<std::string>();
+  add_format(*command, *format);
+  command->callback([format, &shared] {
     DeviceList list = list_devices();
     if (!shared.device.empty()) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }
-    if (*json) {
+    if (*format == "json") {
       fmt::print("{}\n", to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
       print(list);

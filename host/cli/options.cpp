@@ -84,9 +84,9 @@ CLI::Option* add_text(CLI::App& command, const OptionDescription& info,
 /// Group of a frame option in the help: those that most people need, or a stage.
 std::string group_of(const std::string& name) {
   static const std::map<std::string_view, std::vector<std::string_view>> kStages{
-      {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size", "table"}},
+      {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size"}},
       {"shadow maps", {"rsm-format", "shadow-size"}},
-      {"blockers", {"blockers", "blocking", "blocker-stride"}},
+      {"blockers", {"blocking", "blocker-stride"}},
       {"propagation", {"iterations", "directions", "coarser-directions", "state", "layout", "storage"}},
       {"gathering", {"gather", "gather-offset", "near-size"}},
   };
@@ -103,7 +103,12 @@ std::string reject_old_name(const std::string& name) {
                                                            {"block", "blockers"},
                                                            {"reflect", "reflectors"},
                                                            {"see", "visibility"},
-                                                           {"--search", "python3 -m clpv.search"}};
+                                                           {"--search", "python3 -m clpv.search"},
+                                                           {"--occlusion", "--blockers none|scene|seen"},
+                                                           {"--table", "--evaluate buffer|image"},
+                                                           {"--out", "--output"},
+                                                           {"--json", "--format json, or --output FILE.json"},
+                                                           {"--csv", "--output FILE.csv"}};
   const auto found = kRenamed.find(name);
   return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
 }
@@ -182,6 +187,20 @@ void add_some_frame_options(CLI::App& command, RenderOptions& options,
 
 nlohmann::json to_json(const Device& device) {
   return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
+}
+
+CLI::Option* add_format(CLI::App& command, std::string& format, const std::vector<std::string>& formats) {
+  format = formats.front();
+  return command.add_option("--format", format, "format of the results on stdout")
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str();
+}
+
+CLI::Option* add_fail_above(CLI::App& command, double& ratio) {
+  return add(command, "--fail-above", "RATIO", ratio,
+             "exit with 5 if a value of the new report is more than RATIO times the earlier one, beyond the "
+             "spread")
+      ->check(CLI::Range(1.0, 1e6));
 }
 
 void require_extension(const std::string& option, const std::filesystem::path& file,

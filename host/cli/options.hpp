@@ -97,6 +97,13 @@ void set_given(RenderOptions& options, const std::string& name, const std::strin
 /// Returns the keys "platform", "name" and "driver".
 nlohmann::json to_json(const Device& device);
 
+/// Adds --format, for the results on stdout; the first of `formats` is the default.
+CLI::Option* add_format(CLI::App& command, std::string& format,
+                        const std::vector<std::string>& formats = {"table", "json"});
+
+/// Adds --fail-above, for comparisons of two reports.
+CLI::Option* add_fail_above(CLI::App& command, double& ratio);
+
 /// Throws Error(usage) unless the file has one of these extensions (".exr").
 void require_extension(const std::string& option, const std::filesystem::path& file,
                        const std::vector<std::string>& allowed);

@@ -38,9 +38,9 @@ RenderOptions plain_options() {
 
 /// Frame options that affect a propagation.
 const std::vector<std::string>& taken_options() {
-  static const std::vector<std::string> names{
-      "basis", "centres",   "lambda", "lobe",   "lobe-time", "evaluate",   "table-size",
-      "table", "transport", "state",  "layout", "storage",   "iterations", "grid"};
+  static const std::vector<std::string> names{"basis",    "centres",    "lambda",    "lobe",  "lobe-time",
+                                              "evaluate", "table-size", "transport", "state", "layout",
+                                              "storage",  "iterations", "grid"};
   return names;
 }
 
@@ -261,7 +261,7 @@ void add_propagate(CLI::App& app, Shared& shared) {
           "included; repeatable")
       ->take_all()
       ->type_name("i0,j0,k0:i1,j1,k1");
-  add(*command, "-o,--out", "FILE.npy", options->npy,
+  add(*command, "-o,--output", "FILE.npy", options->npy,
       "output file for accumulated light: .npy, float32, shape 3,N,z,y,x [W/sr]");
   add(*command, "--vti", "FILE.vti", options->vti,
       "output file for accumulated light: VTK ImageData, for ParaView [W/sr]");

@@ -35,7 +35,8 @@ namespace quality_command {
 struct Options {
   QualitySubjects subjects;
   std::vector<std::string> varied;
-  std::string cache, json, csv, format = "table";
+  std::vector<std::string> outputs;
+  std::string cache, format;
   Show view = Show::indirect;
   int frames = 3;
   bool fresh = false;
@@ -191,8 +192,9 @@ void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   const std::vector<Variant> variants = variants_of(options);
   const reference::PathTracerOptions tracing = options.tracing.resolved();
-  for (const std::string& output : {options.json, options.csv}) {
-    if (!output.empty()) check_writable(output);
+  for (const std::string& output : options.outputs) {
+    require_extension("--output", output, {".json", ".csv"});
+    check_writable(output);
   }
   const std::filesystem::path folder = quality_cache(options.cache);
   const QualityStore store(folder / "cells");
@@ -206,8 +208,8 @@ void run(const Options& options, Shared& shared) {
   const std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
   if (!ranks.is_root()) return;
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
-  if (!options.json.empty()) write_file(options.json, json);
-  if (!options.csv.empty()) write_file(options.csv, quality_csv(cells));
+  for (const std::string& output : options.outputs)
+    write_file(output, output.ends_with(".csv") ? quality_csv(cells) : json);
   fmt::print("{}", options.format == "json"  ? json
                    : options.format == "csv" ? quality_csv(cells)
                                              : quality_table(cells));
@@ -230,11 +232,9 @@ void add_options(CLI::App& command, Options& options) {
   add(command, "--cache", "DIR", options.cache,
       "folder for cached ground truths and cells (default: $XDG_CACHE_HOME/clpv/quality)");
   command.add_flag("--fresh", options.fresh, "new measurement of all cells, against cached ground truths");
-  command.add_option("--format", options.format, "format of the results on stdout")
-      ->check(CLI::IsMember({"table", "json", "csv"}))
-      ->capture_default_str();
-  add(command, "--json", "FILE", options.json, "output file for the results as JSON");
-  add(command, "--csv", "FILE", options.csv, "output file for the results as CSV");
+  add_format(command, options.format, {"table", "json", "csv"});
+  add(command, "-o,--output", "FILE", options.outputs,
+      "output file for the results, .json or .csv; repeatable");
   add_frame_options(command, options.given);
   for (const auto& [name, size] : {std::pair{"width", "240"}, {"height", "135"}}) {
     options.given[name] = size;  // ground truths of a frame's default size take hours

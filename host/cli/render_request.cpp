@@ -73,7 +73,7 @@ std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& o
   };
   const bool sweeps = options.transport == TransportKind::sweep;
   const bool centred = !make_basis(options)->centres().empty();
-  const bool tables = options.lobe == LobeKind::rotate || options.evaluate == Evaluation::table;
+  const bool tables = options.lobe == LobeKind::rotate || options.evaluate != Evaluation::exact;
   const std::string transport = found("transport", name_of(options.transport)),
                     basis = found("basis", options.basis);
   return {
@@ -86,12 +86,15 @@ std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& o
       {centred, {"lambda", "lobe", "evaluate"}, basis, "a basis with centres (srbf...)"},
       {!sweeps, {"evaluate"}, transport, "--transport sampled or exact"},
       {tables,
-       {"table-size", "table"},
+       {"table-size"},
        found("lobe", name_of(options.lobe)),
-       "--lobe rotate or --evaluate table"},
+       "--lobe rotate or --evaluate buffer or image"},
       {options.near != Near::off, {"near-size"}, found("near", name_of(options.near)), "--near traced"},
-      {options.occlusion, {"blockers", "blocking"}, found("occlusion", "off"), "--occlusion on"},
-      {options.occlusion && options.blockers == Blockers::seen,
+      {options.blocked(),
+       {"blocking"},
+       found("blockers", name_of(options.blockers)),
+       "--blockers scene or seen"},
+      {options.blockers == Blockers::seen,
        {"blocker-stride"},
        found("blockers", name_of(options.blockers)),
        "--blockers seen"},

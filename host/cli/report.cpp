@@ -17,6 +17,7 @@
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/frame.hpp"
+#include "quality/unreached.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
@@ -101,6 +102,7 @@ Image render_indirect(Session& session, const Subject& subject, const SceneCamer
                       const Options& options, const PageVariant& variant) {
   Frame frame(session, subject.scene, resolve_options(sized(options, variant.given), subject.scene));
   frame.render(camera);
+  warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
   return view_image(frame, Show::indirect);
 }
 
@@ -174,9 +176,10 @@ void add_report(CLI::App& app, Shared& shared) {
   command->add_option("DIR", options->folder, "output folder for index.html")->required();
   command->add_option("SCENE", options->subjects.scenes, "scene files to compare with path tracing");
   add_subject_options(*command, options->subjects);
-  add(*command, "--quality", "FILE.json", options->quality, "results of clpv quality --json, repeatable");
+  add(*command, "--quality", "FILE.json", options->quality,
+      "results of clpv quality -o FILE.json, repeatable");
   add(*command, "--bench", "FILE.json", options->benchmarks,
-      "results of clpv bench table1 or layouts --format json, repeatable");
+      "results of clpv bench table1 or layouts -o FILE.json, repeatable");
   command->add_option("--width", options->width, "width of the images [pixels]")->capture_default_str();
   command->add_option("--height", options->height, "height of the images [pixels]")->capture_default_str();
   add_tracing_options(*command, options->tracing);

@@ -16,7 +16,9 @@ using nlohmann::json;
 constexpr int kSchema = 1;
 constexpr const char* kSpans[] = {"pose", "frame", "write"};
 
+/// Null without samples.
 json summary_of(std::vector<double> samples) {
+  if (samples.empty()) return nullptr;
   const bench::Statistics figures = bench::statistics_of(std::move(samples));
   return {{"median_ms", figures.median}, {"p95_ms", figures.p95}, {"worst_ms", figures.max}};
 }
@@ -101,6 +103,11 @@ json stability_json(const json& about, std::span<const StabilityStep> steps) {
   }
   all.update({{"schema", kSchema}, {"frames", std::move(frames)}});
   for (const auto& [name, samples] : {std::pair("inside_cells", inside), std::pair("across_cells", across)}) {
+    if (samples.empty()) {
+      all["summary"][name] = nullptr;
+      all["note"] = "null: no two successive frames of an unchanged scene show light under that condition";
+      continue;
+    }
     const bench::Statistics figures = bench::statistics_of(samples);
     all["summary"][name] = {
         {"frames", samples.size()}, {"median", figures.median}, {"p95", figures.p95}, {"worst", figures.max}};

@@ -220,12 +220,17 @@ std::size_t Session::largest_buffer() const {
 
 void Session::require_room(std::size_t bytes, const std::string& what) const {
   if (bytes <= largest_buffer()) return;
-  throw Error(ExitCode::run_time,
-              "{} needs {:.1f} MiB, but a buffer on {} can have at most {:.1f} MiB "
-              "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): try a smaller "
-              "grid, rsm-size or image",
-              what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
-              mib(device_.memory_bytes), mib(use_->now));
+  const auto share = [](std::uint64_t allowed, std::size_t needed) {
+    return static_cast<double>(allowed) / static_cast<double>(needed);
+  };
+  throw TooLarge(
+      Error(ExitCode::run_time,
+            "{} needs {:.1f} MiB, but a buffer on {} can have at most {:.1f} MiB "
+            "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): try a smaller "
+            "grid, rsm-size or image",
+            what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
+            mib(device_.memory_bytes), mib(use_->now)),
+      std::min(share(device_.max_alloc_bytes, bytes), share(device_.memory_bytes, use_->now + bytes)));
 }
 
 Buffer Session::buffer(std::size_t bytes, const std::string& what) {

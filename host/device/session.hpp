@@ -18,6 +18,7 @@
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
 #include "device/timeline.hpp"
+#include "support/error.hpp"
 #include "support/helpers.hpp"
 
 namespace clpv {
@@ -41,6 +42,13 @@ struct Compilation {
   /// In such a helper: claims of programs. The session builds and launches only the kernels of programs that it claims,
   /// and all its buffers start with zeros.
   std::optional<Claims> claims;
+};
+
+/// More memory or numbers than the device allows.
+class TooLarge : public Error {
+ public:
+  TooLarge(Error error, double share) : Error(std::move(error)), share(share) {}
+  double share;  ///< what the device allows over what the session has and needs; less than 1
 };
 
 /// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Image files through OpenImageIO, with checks of format and size before decoding.
+// Image files, with checks of format and size before decoding.
 #include "image/image_io.hpp"
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <optional>
 
+#include "image/codec.hpp"
 #include "image/image_header.hpp"
-#include "image/memory_reader.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/output_file.hpp"
@@ -20,10 +16,6 @@ namespace clpv {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kMetadataPrefix = "clpv:";
-// Date of all EXR files in place of the time of writing, so that equal images give equal bytes.
-constexpr const char* kFixedDate = "1970:01:01 00:00:00";
 
 // Maximum edge of a tile in a smaller image. Tiles are decoded whole: 65535 x 65535 pixels would take 20 s.
 constexpr std::int64_t kMaxTile = 1024;
@@ -92,30 +84,15 @@ void check_size(const fs::path& path, const DeclaredImage& image, const ImageLim
   check_bytes(image.tiled ? "tiles of " : "chunks of ", image.chunk_width, image.chunk_height);
 }
 
-DeclaredImage declared_by(const OIIO::ImageSpec& spec) {
-  const bool tiled = spec.tile_width > 0;
-  return {.width = spec.width,
-          .height = spec.height,
-          .chunk_width = tiled ? spec.tile_width : spec.width,
-          .chunk_height = tiled ? spec.tile_height : 1,
-          .channels = spec.nchannels,
+DeclaredImage declared_by(const CodedImage& image) {
+  const bool tiled = image.tile_width > 0;
+  return {.width = image.width,
+          .height = image.height,
+          .chunk_width = tiled ? image.tile_width : image.width,
+          .chunk_height = tiled ? image.tile_height : 1,
+          .channels = static_cast<int>(image.channels.size()),
           .tiled = tiled,
-          .deep = spec.deep || spec.depth > 1};
-}
-
-std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
-  std::map<std::string, std::string> metadata;
-  for (const OIIO::ParamValue& value : spec.extra_attribs) {
-    const std::string name = value.name().string();
-    if (!name.starts_with(kMetadataPrefix) || value.type() != OIIO::TypeString) continue;
-    metadata[name.substr(kMetadataPrefix.size())] = value.get_string();
-  }
-  return metadata;
-}
-
-/// First line of an OpenImageIO message, which may repeat itself over several lines.
-std::string first_line(const std::string& message) {
-  return message.substr(0, message.find('\n'));
+          .deep = image.deep};
 }
 
 /// Checks sizes that decoders allocate by, and strips unneeded chunks from a PNG.
@@ -133,71 +110,48 @@ void prepare_for_decoding(const fs::path& path, const std::string& format, std::
 struct OpenImage {
   std::vector<unsigned char> bytes;
   std::string format;
-  std::optional<MemoryReader> memory;
-  std::unique_ptr<OIIO::ImageInput> input;
-  OIIO::ImageSpec spec;
+  std::unique_ptr<ImageDecoder> decoder;
 
   OpenImage(const fs::path& path, const ImageLimits& limits)
-      : bytes(read_file(path, limits.file_bytes, path.string())),
-        format(checked_format(path, bytes)),
-        input(OIIO::ImageInput::create(format)) {
-    if (!input)
-      reject(path, fmt::format("OpenImageIO cannot read {}: {}", format, first_line(OIIO::geterror())));
+      : bytes(read_file(path, limits.file_bytes, path.string())), format(checked_format(path, bytes)) {
     prepare_for_decoding(path, format, bytes, limits);
-    memory.emplace(bytes);
-    input->set_ioproxy(&*memory);
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    if (!input->open(path.string(), spec, config))
-      reject(path, "cannot be read: " + first_line(input->geterror()));
-    check_size(path, declared_by(spec), limits);
+    std::string error;
+    decoder = image_codec().open(format, path.string(), bytes, error);
+    if (!decoder) reject(path, "cannot be read: " + error);
+    check_size(path, declared_by(decoder->described()), limits);
   }
 };
 
-void add_metadata(OIIO::ImageSpec& spec, const Image& image) {
-  for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
+CodedImage coded(const Image& image) {
+  return {
+      .width = image.width, .height = image.height, .channels = image.channels, .metadata = image.metadata};
 }
 
-/// Encodes pixels; messages contain `name`.
-std::vector<unsigned char> encoded(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
-                                   OIIO::TypeDesc type, const void* pixels) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create(format);
-  if (!output) throw Error(ExitCode::run_time, "{}: OpenImageIO cannot write {}", name, format);
-  output->set_ioproxy(&memory);
-  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
-    throw Error(ExitCode::run_time, "{}: cannot be encoded: {}", name, first_line(output->geterror()));
-  }
-  return bytes;
+/// Throws Error(run_time) if there is an error of encoding `name`.
+void require_encoded(const std::string& name, const std::string& error) {
+  if (!error.empty()) throw Error(ExitCode::run_time, "{}: cannot be encoded: {}", name, error);
 }
 
 }  // namespace
 
 Image read_image(const fs::path& path, const ImageLimits& limits) {
-  OpenImage opened(path, limits);
-  const OIIO::ImageSpec& spec = opened.spec;
-  Image image = make_image(spec.width, spec.height, spec.channelnames);
-  image.metadata = metadata_of(spec);
+  const OpenImage opened(path, limits);
+  const CodedImage& described = opened.decoder->described();
+  Image image = make_image(described.width, described.height, described.channels);
+  image.metadata = described.metadata;
   image.encoding = opened.format == "png" ? Encoding::srgb : Encoding::linear;
-  if (!opened.input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data())) {
-    reject(path, "damaged or truncated: " + first_line(opened.input->geterror()));
-  }
+  if (const std::string error = opened.decoder->read(image.pixels.data()); !error.empty())
+    reject(path, "damaged or truncated: " + error);
   return image;
 }
 
 std::map<std::string, std::string> read_metadata(const fs::path& path, const ImageLimits& limits) {
-  return metadata_of(OpenImage(path, limits).spec);
+  return OpenImage(path, limits).decoder->described().metadata;
 }
 
 void write_exr(const fs::path& path, const Image& image) {
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeFloat);
-  spec.channelnames = image.channels;
-  spec.attribute("compression", "zip");
-  spec.attribute("oiio:ColorSpace", "Linear");
-  spec.attribute("DateTime", kFixedDate);
-  add_metadata(spec, image);
-  const auto bytes = encoded(path.string(), "openexr", spec, OIIO::TypeFloat, image.pixels.data());
+  std::vector<unsigned char> bytes;
+  require_encoded(path.string(), image_codec().encode_exr(coded(image), image.pixels.data(), bytes));
   write_file(path, std::as_bytes(std::span(bytes)));
 }
 
@@ -211,13 +165,9 @@ std::vector<unsigned char> png_bytes(const Image& image) {
     const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
     return static_cast<std::uint8_t>(std::lround(clamped * 255.0f));
   });
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels), OIIO::TypeUInt8);
-  spec.channelnames = image.channels;
-  if (channels == 4) spec.alpha_channel = 3;
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  add_metadata(spec, image);
-  return encoded("image.png", "png", spec, OIIO::TypeUInt8, pixels.data());
+  std::vector<unsigned char> bytes;
+  require_encoded("image.png", image_codec().encode_png(coded(image), pixels.data(), bytes));
+  return bytes;
 }
 
 void write_png(const fs::path& path, const Image& image) {

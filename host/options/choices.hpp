@@ -47,11 +47,11 @@ enum class LobeTime {
 template <>
 inline constexpr auto kNames<LobeTime> = name_list("host", "kernel");
 
-/// Evaluation of SRBF functions.
-enum class Evaluation { exact, table };
+/// Evaluation of SRBF functions: exact, or from tables in a buffer or an image.
+enum class Evaluation { exact, buffer, image };
 
 template <>
-inline constexpr auto kNames<Evaluation> = name_list("exact", "table");
+inline constexpr auto kNames<Evaluation> = name_list("exact", "buffer", "image");
 
 /// Storage of look-up tables.
 enum class TableStorage { buffer, image };
@@ -59,14 +59,15 @@ enum class TableStorage { buffer, image };
 template <>
 inline constexpr auto kNames<TableStorage> = name_list("buffer", "image");
 
-/// Source of blockers.
+/// Source of blockers, which cause indirect shadows.
 enum class Blockers {
   scene,  ///< all triangles of the scene
   seen,   ///< surfels of RSMs and G-buffer, as published
+  none,
 };
 
 template <>
-inline constexpr auto kNames<Blockers> = name_list("scene", "seen");
+inline constexpr auto kNames<Blockers> = name_list("scene", "seen", "none");
 
 /// Which of the eight nearest cells light a surface.
 enum class Gathering {

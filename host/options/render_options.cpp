@@ -35,7 +35,6 @@ struct OneOf {
 };
 
 struct Named {};  ///< names of the member's enumeration
-struct OnOff {};
 
 /// One line per preset.
 std::string preset_help() {
@@ -62,9 +61,9 @@ void for_each_option(Options& o, Visit&& visit) {
         Named{});
   visit("lobe-time", o.lobe_time,
         "lobes of propagation: host constants, or computed in the kernel as in the paper", Named{});
-  visit("evaluate", o.evaluate, "SRBF evaluation: computed, or read from a table", Named{});
+  visit("evaluate", o.evaluate, "SRBF evaluation: exact, or from tables in a buffer or a 1-D image buffer",
+        Named{});
   visit("table-size", o.table_size, "entries of lobe and SRBF tables", Range{2, kMaxEntries});
-  visit("table", o.table, "storage of these tables: buffer or 1-D image buffer", Named{});
   visit("transport", o.transport,
         "propagation: steps with sampled or exact face fluxes, or one sweep along directions", Named{});
   visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
@@ -89,9 +88,9 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("rsm-format", o.rsm_format, "RSM format; paper: 32-bit depth, 8-bit normal and flux", Named{});
   visit("shadow-size", o.shadow_size, "texels along each side of a shadow map for direct light",
         Range{1, kMaxTexels});
-  visit("occlusion", o.occlusion, "indirect shadows from the geometry volume", OnOff{});
   visit("blockers", o.blockers,
-        "source of blockers: all triangles of the scene, or surfels of RSM and G-buffer", Named{});
+        "source of indirect shadows: all triangles of the scene, surfels of RSM and G-buffer, or none",
+        Named{});
   visit("blocking", o.blocking,
         "blocking model: projected area per axis, or a cosine lobe that blocks light on the lit side (the "
         "paper)",
@@ -116,8 +115,6 @@ template <typename T>
 std::string text_of(const T& value) {
   if constexpr (NamedEnum<T>)
     return std::string(name_of(value));
-  else if constexpr (std::is_same_v<T, bool>)
-    return value ? "on" : "off";
   else
     return fmt::format("{}", value);
 }
@@ -128,9 +125,6 @@ std::string allowed_text(const E&, Named) {
 }
 std::string allowed_text(const std::string&, const OneOf& choices) {
   return fmt::format("{}", fmt::join(choices.names, "|"));
-}
-std::string allowed_text(bool, OnOff) {
-  return "on|off";
 }
 std::string allowed_text(const std::string&, const Path& path) {
   return fmt::format("a file of {}", path.content);
@@ -153,12 +147,6 @@ bool parse(std::string_view text, Named, E& out) {
 bool parse(std::string_view text, const OneOf& choices, std::string& out) {
   if (std::ranges::find(choices.names, text) == choices.names.end()) return false;
   out = text;
-  return true;
-}
-
-bool parse(std::string_view text, OnOff, bool& out) {
-  if (text != "on" && text != "off") return false;
-  out = text == "on";
   return true;
 }
 
@@ -224,12 +212,12 @@ nlohmann::json to_json(const RenderOptions& options) {
 
 const PresetOptions& paper_options() {
   static const PresetOptions options{
-      {"basis", "srbf8v2"},      {"lambda", "0.25"},      {"lobe", "rotate"},       {"lobe-time", "kernel"},
-      {"evaluate", "table"},     {"table-size", "256"},   {"table", "image"},       {"transport", "sampled"},
-      {"state", "coefficients"}, {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"},
-      {"blocker-stride", "1"},   {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},
-      {"storage", "half"},       {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},
-      {"rsm-size", "256"},       {"iterations", "8"},     {"width", "960"},         {"height", "540"},
+      {"basis", "srbf8v2"},    {"lambda", "0.25"},       {"lobe", "rotate"},        {"lobe-time", "kernel"},
+      {"evaluate", "image"},   {"table-size", "256"},    {"transport", "sampled"},  {"state", "coefficients"},
+      {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},
+      {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},
+      {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},
+      {"iterations", "8"},     {"width", "960"},         {"height", "540"},
   };
   return options;
 }

@@ -28,7 +28,6 @@ struct RenderOptions {
   LobeKind lobe = LobeKind::exact;
   LobeTime lobe_time = LobeTime::host;
   int table_size = 256;
-  TableStorage table = TableStorage::buffer;
   Evaluation evaluate = Evaluation::exact;
   TransportKind transport = TransportKind::sweep;
   Directions directions = Directions::of96;
@@ -44,7 +43,6 @@ struct RenderOptions {
   int rsm_size = 256;
   RsmFormat rsm_format = RsmFormat::float32;
   int shadow_size = 1024;
-  bool occlusion = true;
   Blockers blockers = Blockers::scene;
   Blocking blocking = Blocking::areas;
   int blocker_stride = 3;
@@ -55,7 +53,11 @@ struct RenderOptions {
   int width = 960, height = 540;
 
   VolumeFormat format() const { return {layout, storage}; }
-  LobeOptions lobes() const { return {lobe, table_size, evaluate == Evaluation::table}; }
+  LobeOptions lobes() const { return {lobe, table_size, evaluate != Evaluation::exact}; }
+  bool blocked() const { return blockers != Blockers::none; }
+  TableStorage table() const {
+    return evaluate == Evaluation::image ? TableStorage::image : TableStorage::buffer;
+  }
 };
 
 /// Creates the basis and transport of the options. Throws as make_basis and load_basis do.

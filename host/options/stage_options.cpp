@@ -10,7 +10,7 @@ InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes)
           .blocking = options.blocking,
           .unit_flux_lobes = unit_flux_lobes,
           .lobes = options.lobes(),
-          .table = options.table,
+          .table = options.table(),
           .format = options.format()};
 }
 
@@ -18,7 +18,7 @@ PropagateOptions propagate_options(const RenderOptions& options) {
   return {.grid = options.grid,
           .state = options.state,
           .lobe_time = options.lobe_time,
-          .table = options.table,
+          .table = options.table(),
           .format = options.format()};
 }
 
@@ -27,7 +27,7 @@ SweepOptions sweep_options(const RenderOptions& options, const std::optional<Clp
   parts.front() = parts_of(options.directions);
   return {.grid = options.grid,
           .parts = parts,
-          .blocking = options.occlusion,
+          .blocking = options.blocked(),
           .bounces = options.bounces,
           .format = options.format(),
           .medium = medium};
@@ -38,7 +38,7 @@ GatherOptions gather_options(const RenderOptions& options, bool medium) {
           .gather = options.gather,
           .gather_offset = options.gather_offset,
           .lobes = options.lobes(),
-          .table = options.table,
+          .table = options.table(),
           .format = options.format(),
           .packed = options.near != Near::off || medium};
 }

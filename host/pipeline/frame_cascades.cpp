@@ -2,6 +2,7 @@
 #include "pipeline/frame_cascades.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/frame_volumes.hpp"
 #include "support/fingerprint.hpp"
@@ -10,7 +11,7 @@ namespace clpv {
 
 FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
                              const RenderOptions& options, const Basis& basis, const Basis* swept,
-                             const Transport& transport, FrameLights& lights)
+                             const Transport& transport, FrameLights& lights) try
     : session_(session),
       scene_(scene),
       buffers_(buffers),
@@ -37,6 +38,10 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
     reflector_.emplace(session, buffers, options.grid, options.cascades, options.format());
   if (options.gather == Gathering::visible)
     visibility_.emplace(session, buffers, options.grid, options.cascades);
+} catch (const TooLarge& error) {
+  throw Error(
+      error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), options.grid,
+      static_cast<int>(options.grid * std::cbrt(error.share)));  // all that cascades have grows with its cube
 }
 
 std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,

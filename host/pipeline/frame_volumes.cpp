@@ -27,7 +27,7 @@ void require_faces(const RenderOptions& options) {
 
 /// Rejects options that the transport or scene blockers do not support.
 void require_compatible(const RenderOptions& options) {
-  if (options.occlusion && options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
+  if (options.blockers == Blockers::scene && options.blocking != Blocking::areas) {
     throw Error(ExitCode::usage,
                 "blocking: found '{}'{} with blockers 'scene', allowed: areas (or blockers 'seen')",
                 name_of(options.blocking), preset_note(options, "blocking"));
@@ -59,7 +59,7 @@ std::unique_ptr<Basis> swept_basis(const RenderOptions& options) {
 }
 
 bool blocked_by_view(const RenderOptions& options) {
-  return options.occlusion && options.blockers == Blockers::seen;
+  return options.blockers == Blockers::seen;
 }
 
 int injected_volumes(const RenderOptions& options) {
@@ -67,7 +67,7 @@ int injected_volumes(const RenderOptions& options) {
 }
 
 int geometry_volumes(const RenderOptions& options) {
-  if (!options.occlusion) return 0;
+  if (!options.blocked()) return 0;
   return options.blockers == Blockers::scene ? options.cascades : 1;
 }
 

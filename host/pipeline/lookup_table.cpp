@@ -18,10 +18,10 @@ std::optional<std::vector<float>> table_of(const Basis& basis, const LobeOptions
 
 void require_image(const Device& device, std::size_t entries) {
   if (!device.images)
-    throw Error(ExitCode::device, "table image: {} has no images; allowed: buffer", device.name);
+    throw Error(ExitCode::device, "evaluate image: {} has no images; allowed: exact, buffer", device.name);
   const std::size_t most = device.handle.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
   if (entries > most) {
-    throw Error(ExitCode::device, "table image: {} entries; an image of a buffer on {} holds {}", entries,
+    throw Error(ExitCode::device, "evaluate image: {} entries; an image of a buffer on {} holds {}", entries,
                 device.name, most);
   }
 }

@@ -32,7 +32,8 @@ void warn_of_unreached(Session& session, const Frame& frame, const std::string& 
   const double share = unreached_share(session, frame);
   if (share <= kFewUnreached) return;
   spdlog::warn(
-      "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect light; a larger "
+      "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect light; a "
+      "larger "
       "--cascade-size or more --cascades reach farther",
       camera, 100 * share);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Reads and decodes the images of a glTF document.
-#include <OpenImageIO/imageio.h>
 #include <fmt/ranges.h>
 
 #include <atomic>
@@ -10,8 +9,8 @@
 #include <optional>
 #include <thread>
 
+#include "image/codec.hpp"
 #include "image/image_header.hpp"
-#include "image/memory_reader.hpp"
 #include "scene/bounds.hpp"
 #include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
@@ -88,26 +87,20 @@ std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImag
   const bool png = encoded.header.format == ImageFormat::png;
   const Bytes stripped = png ? strip_png(encoded.bytes) : Bytes();
   const std::span<const std::uint8_t> bytes = png ? stripped : encoded.bytes;
-  MemoryReader memory(bytes);
-  const char* name = png ? "memory.png" : "memory.jpg";
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // colours are not multiplied by alpha
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(name, &config, proxy);
-  if (!input) fail(OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width != static_cast<int>(encoded.header.width) ||
-      spec.height != static_cast<int>(encoded.header.height)) {
+  std::string error;
+  const auto decoder =
+      image_codec().open(png ? "png" : "jpeg", png ? "memory.png" : "memory.jpg", bytes, error);
+  if (!decoder) fail(error);
+  const CodedImage& image = decoder->described();
+  if (image.width != static_cast<int>(encoded.header.width) ||
+      image.height != static_cast<int>(encoded.header.height)) {
     fail(fmt::format("{} x {} pixels in its header, {} x {} in its decoder", encoded.header.width,
-                     encoded.header.height, spec.width, spec.height));
+                     encoded.header.height, image.width, image.height));
   }
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(spec.width) *
-                                   static_cast<std::size_t>(spec.height) *
-                                   static_cast<std::size_t>(spec.nchannels));
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, pixels.data()))
-    fail(input->geterror());
-  return spec.nchannels == 4 ? pixels : to_rgba(pixels, spec.nchannels);
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(image.width) *
+                                   static_cast<std::size_t>(image.height) * image.channels.size());
+  if (const std::string failure = decoder->read(pixels.data()); !failure.empty()) fail(failure);
+  return image.channels.size() == 4 ? pixels : to_rgba(pixels, static_cast<int>(image.channels.size()));
 }
 
 /// Runs `work(i)` for i in 0..count-1 on all cores. Rethrows the exception of the lowest i.

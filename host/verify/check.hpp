@@ -41,10 +41,12 @@ using CheckResults = std::vector<CheckResult>;
 std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
                                         const std::vector<VolumeFormat>& formats);
 
-/// Scope of a check. By default each kernel in the bases and formats that differ in code: spherical harmonics of two
-/// sizes, radial functions with and without opposite centres, bins; each layout, and each number format.
+/// Scope of a check. The default covers each path of a kernel once: one basis of each kind of code (harmonics, radial
+/// functions with and without opposite centres, bins), each volume layout and each number format. It gives up what
+/// differs in constants alone (exact face fluxes of all bases, further directions and grid sizes) and combinations of
+/// basis, format and option; `thorough` has them. Building kernels is nearly all of the time.
 struct CheckScope {
-  bool thorough = false;  ///< every combination of basis and options; takes minutes to build kernels
+  bool thorough = false;  ///< every combination of basis and options
   std::vector<std::string> bases = {"sh2", "sh3", "srbf4", "srbf8v2", "bins24"};
   /// Formats beside the default; those that the device does not support are skipped.
   std::vector<VolumeFormat> formats = {{Layout::soa, Storage::float16},

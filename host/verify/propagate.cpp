@@ -8,8 +8,8 @@
 #include <functional>
 #include <memory>
 #include <random>
-#include <set>
 #include <string>
+#include <string_view>
 
 #include "reference/propagate.hpp"
 #include "support/named_enum.hpp"
@@ -68,20 +68,39 @@ CheckResult check_one(Session& session, const Basis& basis, const PropagateCase&
 /// Runs the comparison if the scope selects it.
 using Add = std::function<void(const Basis&, const PropagateCase&)>;
 
-/// `full`: tests every transport in both states, with and without blockers.
-void check_constants(const Basis& basis, const LobeOptions& lobes, bool full, const Add& compare) {
+/// A basis and its kernels, with lobes as constants.
+struct ConstantsCase {
+  std::string_view basis;
+  TransportKind kind;
+  State state;
+  bool blockers = true;
+};
+
+/// Each path of the generated code once. The first step never blocks, so a run with blockers tests both of its kernels.
+/// Fluxes differ: their first step is a separate kernel.
+constexpr ConstantsCase kConstants[] = {
+    {"sh2", TransportKind::sampled, State::coefficients},
+    {"sh2", TransportKind::exact, State::fluxes},
+    {"sh2", TransportKind::exact, State::fluxes, false},
+    {"srbf4", TransportKind::sampled, State::coefficients},  // few mirrors
+    {"srbf4", TransportKind::exact, State::fluxes},
+    {"srbf8v2", TransportKind::sampled, State::coefficients},  // pairs of opposite centres
+    {"bins24", TransportKind::sampled, State::fluxes},
+};
+
+void check_constants(const Basis& basis, const LobeOptions& lobes, bool thorough, const Add& compare) {
+  const auto add = [&](TransportKind kind, State state, bool blockers) {
+    compare(basis,
+            {.kind = kind, .lobes = lobes, .options = {.grid = kGrid, .state = state}, .blockers = blockers});
+  };
+  for (const ConstantsCase& c : kConstants) {
+    if (!thorough && c.basis == basis.name()) add(c.kind, c.state, c.blockers);
+  }
+  if (!thorough) return;
   for (const TransportKind kind : stepped_transports()) {
-    if (!full && kind != TransportKind::sampled) continue;
-    const auto add = [&](State state, bool blockers) {
-      compare(
-          basis,
-          {.kind = kind, .lobes = lobes, .options = {.grid = kGrid, .state = state}, .blockers = blockers});
-    };
-    // The first step never blocks, so a run with blockers tests both of its kernels. Fluxes differ: their first step is
-    // a separate kernel.
-    if (full) add(State::coefficients, true);
-    add(State::fluxes, true);
-    if (full) add(State::fluxes, false);
+    add(kind, State::coefficients, true);
+    add(kind, State::fluxes, true);
+    add(kind, State::fluxes, false);
   }
 }
 
@@ -122,9 +141,6 @@ void check_formats(const Device& device, const CheckScope& scope, const Add& com
 }  // namespace
 
 CheckResults check_propagate(Session& session, const CheckScope& scope) {
-  // Tests one orthogonal basis, one of antipodal centres and one of neither kind in full. Other bases and transports
-  // are tested singly, not in pairs, since building kernels dominates the time.
-  const std::set<std::string> in_full = {"sh2", "srbf8v2", "srbf4"};
   CheckResults results;
   const Add compare = [&](const Basis& basis, const PropagateCase& c) {
     compare_selected(scope, "propagate", c.name(basis), results,
@@ -132,13 +148,12 @@ CheckResults check_propagate(Session& session, const CheckScope& scope) {
   };
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
-    const bool full = scope.thorough || in_full.count(name) > 0;
-    check_constants(*basis, {}, full, compare);
-    // In full for the cheapest basis with a table; otherwise without and with a table, and where errors are largest.
-    const std::set<std::string> lobes = {"sh2", "srbf4", "srbf8v2", "srbf14"};
-    if (scope.thorough || lobes.count(name) > 0)
-      check_run_time_lobes(session.device(), *basis, scope.thorough || name == "srbf4", compare);
-    if (!basis->centres().empty() && scope.thorough) {
+    const bool centred = !basis->centres().empty();
+    check_constants(*basis, {}, scope.thorough, compare);
+    // Only the small bases, without and with a table.
+    if (scope.thorough || basis->size() == 4)
+      check_run_time_lobes(session.device(), *basis, scope.thorough || centred, compare);
+    if (centred && scope.thorough) {
       check_constants(*basis, {.kind = LobeKind::rotate, .table_functions = true}, true, compare);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "support/error.hpp"
@@ -80,7 +81,9 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
   }
   const std::size_t limit = std::numeric_limits<std::int32_t>::max(), numbers = stored_numbers(format, shape);
   if (numbers > limit) {
-    return fmt::format("a volume of {} numbers; kernels address at most {}", numbers, limit);
+    const double share = static_cast<double>(limit) / static_cast<double>(numbers);
+    return fmt::format("a volume of {} numbers at grid {}; kernels address at most {}: grid {}", numbers,
+                       shape.n, limit, static_cast<int>(shape.n * std::cbrt(share)));
   }
   return std::nullopt;
 }

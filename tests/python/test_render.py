@@ -225,7 +225,7 @@ def test_threads_share_a_renderer(renderer):
 
 
 def test_200_renderers_do_not_leak(scene):
-    tiny = {"basis": "sh2", "transport": "sampled", "occlusion": False, "gather": "all", "width": 16, "height": 9,
+    tiny = {"basis": "sh2", "transport": "sampled", "blockers": "none", "gather": "all", "width": 16, "height": 9,
             "grid": 4, "cascades": 1, "rsm_size": 8, "shadow_size": 8}
 
     def resident():

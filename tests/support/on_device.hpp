@@ -27,14 +27,4 @@ inline void expect_passed(const reference::CheckResults& results, std::size_t le
   }
 }
 
-/// A check's variants that differ in code, not in numbers alone. Bases: harmonics, centres, direction bins. Formats: each
-/// layout, and halves.
-inline reference::CheckScope few_variants() {
-  return {.bases = {"sh2", "srbf4", "bins24"},
-          .formats = {{Layout::soa, Storage::float16},
-                      {Layout::aos, Storage::float32},
-                      {Layout::tiled, Storage::float16},
-                      {Layout::image, Storage::float16}}};
-}
-
 }  // namespace clpv::test

@@ -3,7 +3,7 @@
 
 report.json: "subtitle"; "views", each with "scene", "camera", the "truth", and "shots" with "title", "options" and the numbers of
 `clpv compare`. Truth and shots name an "image" (.png, as shown) and "values" (.npy: rows, columns, R G B A, linear).
-"quality" and "benchmarks": {"file", "document"} of `clpv quality --json` and `clpv bench --format json`. "marked": options of
+"quality" and "benchmarks": {"file", "document"} of `clpv quality` and `clpv bench` with --output. "marked": options of
 variants to highlight.
 """
 import base64

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Image codecs of OpenImageIO. Uses nothing else of clpv, since it is a module of the program.
+#include "image/codec.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+namespace clpv {
+namespace {
+
+constexpr std::string_view kMetadataPrefix = "clpv:";
+// Date of all EXR files in place of the time of writing, so that equal images give equal bytes.
+constexpr const char* kFixedDate = "1970:01:01 00:00:00";
+
+/// First line of an OpenImageIO message, which may repeat itself over several lines.
+std::string first_line(const std::string& message) {
+  const std::string line = message.substr(0, message.find('\n'));
+  return line.empty() ? "no reason given" : line;
+}
+
+/// Rejects offsets outside the bytes. OpenImageIO 2.4's reader copies from before the bytes for negative offsets, which the
+/// chunk tables of an EXR may contain.
+class MemoryReader : public OIIO::Filesystem::IOMemReader {
+ public:
+  /// Borrows the bytes.
+  explicit MemoryReader(std::span<const std::uint8_t> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
+
+  bool seek(std::int64_t offset) override { return holds(offset) && IOMemReader::seek(offset); }
+
+  std::size_t pread(void* to, std::size_t count, std::int64_t offset) override {
+    if (!holds(offset)) return 0;
+    return IOMemReader::pread(to, std::min(count, size() - static_cast<std::size_t>(offset)), offset);
+  }
+
+ private:
+  bool holds(std::int64_t offset) const { return offset >= 0 && static_cast<std::size_t>(offset) <= size(); }
+};
+
+CodedImage description_of(const OIIO::ImageSpec& spec) {
+  CodedImage image{.width = spec.width,
+                   .height = spec.height,
+                   .channels = spec.channelnames,
+                   .metadata = {},
+                   .tile_width = spec.tile_width,
+                   .tile_height = spec.tile_height,
+                   .deep = spec.deep || spec.depth > 1};
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (!name.starts_with(kMetadataPrefix) || value.type() != OIIO::TypeString) continue;
+    image.metadata[name.substr(kMetadataPrefix.size())] = value.get_string();
+  }
+  return image;
+}
+
+class Decoder : public ImageDecoder {
+ public:
+  explicit Decoder(std::span<const std::uint8_t> bytes) : memory_(bytes) {}
+
+  std::string open(const std::string& format, const std::string& name) {
+    input_ = OIIO::ImageInput::create(format);
+    if (!input_) return "OpenImageIO has no " + format + ": " + first_line(OIIO::geterror());
+    input_->set_ioproxy(&memory_);
+    OIIO::ImageSpec spec, config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    if (!input_->open(name, spec, config)) return first_line(input_->geterror());
+    described_ = description_of(spec);
+    described_.channels.resize(static_cast<std::size_t>(spec.nchannels));
+    return {};
+  }
+
+  const CodedImage& described() const override { return described_; }
+  std::string read(float* pixels) override { return read(OIIO::TypeFloat, pixels); }
+  std::string read(std::uint8_t* pixels) override { return read(OIIO::TypeUInt8, pixels); }
+
+ private:
+  std::string read(OIIO::TypeDesc type, void* pixels) {
+    const int channels = static_cast<int>(described_.channels.size());
+    return input_->read_image(0, 0, 0, channels, type, pixels) ? "" : first_line(input_->geterror());
+  }
+
+  MemoryReader memory_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  CodedImage described_;
+};
+
+OIIO::ImageSpec spec_of(const CodedImage& image, OIIO::TypeDesc type) {
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), type);
+  spec.channelnames = image.channels;
+  for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
+  return spec;
+}
+
+std::string encode(const char* format, const OIIO::ImageSpec& spec, const void* pixels,
+                   std::vector<unsigned char>& bytes) {
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output) return std::string("OpenImageIO cannot write ") + format;
+  output->set_ioproxy(&memory);
+  const bool written = output->open(std::string("image.") + format, spec) &&
+                       output->write_image(spec.format, pixels) && output->close();
+  return written ? "" : first_line(output->geterror());
+}
+
+class Codec : public ImageCodec {
+ public:
+  std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string& name,
+                                     std::span<const std::uint8_t> bytes, std::string& error) const override {
+    auto decoder = std::make_unique<Decoder>(bytes);
+    error = decoder->open(format, name);
+    if (!error.empty()) return nullptr;
+    return decoder;
+  }
+
+  std::string encode_exr(const CodedImage& image, const float* pixels,
+                         std::vector<unsigned char>& bytes) const override {
+    OIIO::ImageSpec spec = spec_of(image, OIIO::TypeFloat);
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("DateTime", kFixedDate);
+    return encode("openexr", spec, pixels, bytes);
+  }
+
+  std::string encode_png(const CodedImage& image, const std::uint8_t* pixels,
+                         std::vector<unsigned char>& bytes) const override {
+    OIIO::ImageSpec spec = spec_of(image, OIIO::TypeUInt8);
+    if (image.channels.size() == 4) spec.alpha_channel = 3;
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return encode("png", spec, pixels, bytes);
+  }
+};
+
+}  // namespace
+}  // namespace clpv
+
+extern "C" __attribute__((visibility("default"))) const clpv::ImageCodec* clpv_image_codec() {
+  static const clpv::Codec codec;
+  return &codec;
+}
