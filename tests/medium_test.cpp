@@ -178,7 +178,7 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
 }
 
 TEST(Medium, KernelsEqualCpuReference) {
-  expect_passed(reference::check(Stage::medium, test_session(), few_variants()), 2);
+  expect_passed(reference::check(Stage::medium, test_session()), 2);
 }
 
 /// A black floor below a sun, half of it in the shadow of a screen at 3 m, in a medium that absorbs more than it scatters.
