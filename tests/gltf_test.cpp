@@ -256,8 +256,8 @@ TEST_F(GltfTest, PointsAndLinesGetANote) {
 TEST_F(GltfTest, NotesAreBounded) {
   for (int i = 0; i < 100; ++i) model.triangle({{"mode", 0}});
   const Scene scene = load();
-  EXPECT_LE(scene.notes.size(), 33u);
-  EXPECT_THAT(scene.notes.back(), HasSubstr("more notes"));
+  EXPECT_LE(scene.notes.size(), 36u);  // with those on missing triangles, camera and light
+  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("more notes")));
 }
 
 TEST_F(GltfTest, CamerasLookAlongMinusZ) {

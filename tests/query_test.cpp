@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light at points: irradiance equal to the frame's where the camera sees them, radiance to the CPU reference; valid and invalid files of points; `clpv query`.
+// Light at points: irradiance equal to the frame's where the camera sees them, radiance to the CPU reference; valid and invalid
+// files of points; `clpv query`.
 #include <fmt/format.h>
 
 #include <cstdlib>

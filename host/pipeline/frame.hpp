@@ -56,8 +56,8 @@ class Frame {
   std::vector<float> irradiance_on(const SurfaceImage& surfaces);
   /// The same at points: position [m] and unit normal of each; one value per point. Throws Error(usage) before the first render.
   std::vector<glm::vec4> irradiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> normals);
-  /// Radiance [W/m^2/sr] at positions [m], of light that travels along the unit vector of each; may be negative. Throws Error(usage)
-  /// before the first render, without a sweep, and if gathering reads images.
+  /// Radiance [W/m^2/sr] at positions [m], of light that travels along the unit vector of each; may be negative. Throws
+  /// Error(usage) before the first render, without a sweep, and if gathering reads images.
   std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> directions);
 
   /// One view of the last render as RGBA float, top row first.

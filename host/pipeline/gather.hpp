@@ -53,7 +53,8 @@ class Gatherer {
   /// needs packed volumes.
   bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
 
-  /// Adds the arguments CLPV_RADIANCE (kernels/radiance.h): the packed volumes of the last gather(). `scale`, `occluded`: as there.
+  /// Adds the arguments CLPV_RADIANCE (kernels/radiance.h): the packed volumes of the last gather(). `scale`, `occluded`: as
+  /// for gather().
   void add_radiance(Kernel& kernel, float scale, const Buffer* occluded) const;
 
  private:

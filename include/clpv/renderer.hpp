@@ -84,11 +84,11 @@ class Renderer {
   std::vector<std::array<float, 3>> irradiance(std::span<const std::array<float, 3>> positions,
                                                std::span<const std::array<float, 3>> normals);
 
-  /// Returns the radiance of indirect light [W/m^2/sr], red, green and blue, at each of `positions` [m], of light that travels along
-  /// the direction (of any length) of the same index: what an eye there sees that looks the other way. Interpolates the volumes of
-  /// the last frame, without option near; 0 outside of its cascades. Negative where nine harmonics undershoot. Computed on the
-  /// device. Throws Error(usage) before the first frame, without transport sweep, for layout image with gather all, and for
-  /// vectors as irradiance() does.
+  /// Returns the radiance of indirect light [W/m^2/sr], red, green and blue, at each of `positions` [m], of light that travels
+  /// along the direction (of any length) of the same index: what an eye there sees that looks the other way. Interpolates the
+  /// volumes of the last frame, without option near; 0 outside of its cascades. Negative where nine harmonics undershoot.
+  /// Computed on the device. Throws Error(usage) before the first frame, without transport sweep, for layout image with gather
+  /// all, and for vectors as irradiance() does.
   std::vector<std::array<float, 3>> radiance(std::span<const std::array<float, 3>> positions,
                                              std::span<const std::array<float, 3>> directions);
 

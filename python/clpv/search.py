@@ -56,8 +56,8 @@ def zonal(t, mu, power):
 class Objective:
     """Square error of a set and its bound of ln(condition), with gradients by centres (unit) and lambdas.
 
-    With alpha_i(d) = Int b_i(w) max(0, w . d) dw, M = <alpha alpha^T> over the directions and Gram matrix A, the square error is
-    1 - tr(A^-1 M) / (2 pi/3), and the bound ln(tr A tr A^-1).
+    With alpha_i(d) = Int b_i(w) max(0, w . d) dw, M = <alpha alpha^T> over the directions and Gram matrix A, the square error
+    is 1 - tr(A^-1 M) / (2 pi/3), and the bound ln(tr A tr A^-1).
     """
 
     def __init__(self, directions, weights):
@@ -141,12 +141,12 @@ class Unknowns:
 
 
 def search(count, over="all", lambdas="one", start_lambda=0.25, max_condition=2e4, starts=64, seed=1):
-    """Returns the best set of all starts: unit centres, their lambdas, error, condition number, and the number of starts that ended
-    within the bounds.
+    """Returns the best set of all starts: unit centres, their lambdas, error, condition number, and the number of starts that
+    ended within the bounds.
 
     over: "all" (directions alike), "axes", or weights() of a file; lambdas: how many are optimised: "none", "one", "each".
-    max_condition: rounding errors grow with its root; half precision tolerates srbf14's 1.8e4. Raises ValueError for values out of
-    range, and if no start ends within the bounds.
+    max_condition: rounding errors grow with its root; half precision tolerates srbf14's 1.8e4. Raises ValueError for values out
+    of range, and if no start ends within the bounds.
     """
     from scipy.optimize import minimize
     require("count", count, 1, MAX_CENTRES)
@@ -170,9 +170,10 @@ def search(count, over="all", lambdas="one", start_lambda=0.25, max_condition=2e
             ends.append((condition(v)[0] - np.log(max_condition), error(v)[0], v))
     valid = [end for end in ends if end[0] <= 2 * SLACK and end[1] < 1]
     if not valid:
+        smallest = max_condition * np.exp(min(end[0] for end in ends))
         raise ValueError(f"{count} centres: none of {starts} starts found a set with a condition number of at most "
-                         f"{max_condition:g}; smallest bound found: {max_condition * np.exp(min(end[0] for end in ends)):.3g}; use "
-                         "a larger lambda, fewer centres or a larger bound")
+                         f"{max_condition:g}; smallest bound found: {smallest:.3g}; use a larger lambda, fewer centres or a "
+                         "larger bound")
     _, square, v = min(valid, key=lambda end: end[1])
     centres, bandwidths = unknowns.set_of(v)
     condition = float(np.linalg.cond(objective.gram(centres, bandwidths)[0][0]))
@@ -182,8 +183,8 @@ def search(count, over="all", lambdas="one", start_lambda=0.25, max_condition=2e
 def minimum_error(count):
     """Returns the minimum over all bases of `count` functions, for all directions alike.
 
-    Clamped cosines of all directions form a zonal operator whose eigenfunctions are spherical harmonics: the optimal basis spans
-    those of the largest eigenvalues.
+    Clamped cosines of all directions form a zonal operator whose eigenfunctions are spherical harmonics: the optimal basis
+    spans those of the largest eigenvalues.
     """
     each = np.repeat(BANDS ** 2, 2 * np.arange(len(BANDS)) + 1) / (4 * np.pi)
     each = np.sort(each[each > 0])[::-1]
@@ -215,7 +216,8 @@ def document_of(name, found):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="clpv.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="clpv.search", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", metavar="N", type=int, help=f"number of centres (1 to {MAX_CENTRES})")
     over = parser.add_mutually_exclusive_group()
     over.add_argument("--over", choices=("all", "axes"), default="all", help="directions of the cosines (default: all alike)")

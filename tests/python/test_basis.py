@@ -42,7 +42,8 @@ def test_lobes():
 def test_lobes_of_the_paper_are_those_of_the_program():
     for name, size in (("srbf4", 256), ("srbf14", 257), ("sh2", 256)):
         basis = clpv.Basis(name)
-        expected = json.loads(program("basis", name, "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--json"))["bases"][0]
+        words = "basis", name, "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--json"
+        expected = json.loads(program(*words))["bases"][0]
         c = basis.clamped_cosine((-2, 1, -3), size)
         assert np.allclose(c, expected["coefficients"], rtol=1e-12, atol=1e-12)
         assert basis.lobe((-2, 1, -3), c)["minimum"] == pytest.approx(expected["minimum"])
@@ -65,7 +66,8 @@ def test_own_centres():
     (lambda: clpv.Basis("mine", centres=[[0, 0, 0]]), clpv.UsageError),
     (lambda: clpv.Basis("mine", centres=[[1, 0]]), ValueError),
     (lambda: clpv.Basis().energy(8, "sweep"), clpv.UsageError), (lambda: clpv.Basis().energy(-1), clpv.UsageError),
-    (lambda: clpv.Basis().energy(10 ** 9), clpv.UsageError), (lambda: clpv.Basis("srbf4").energy(8, table_size=1), clpv.UsageError),
+    (lambda: clpv.Basis().energy(10 ** 9), clpv.UsageError),
+    (lambda: clpv.Basis("srbf4").energy(8, table_size=1), clpv.UsageError),
     (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], 2 ** 21), clpv.UsageError),
     (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], "many"), TypeError),
     (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError), (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),

@@ -154,8 +154,11 @@ def test_threads_ask_one_renderer_for_light(renderer):
     renderer.render()
     points = np.random.default_rng(1).uniform(0.1, 0.4, (3000, 3))
     expected, found = renderer.radiance(points, points), []
-    threads = [threading.Thread(target=lambda: found.append((renderer.radiance(points, points), renderer.irradiance(points, points))))
-               for _ in range(4)]
+
+    def ask():
+        found.append((renderer.radiance(points, points), renderer.irradiance(points, points)))
+
+    threads = [threading.Thread(target=ask) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -28,7 +28,8 @@ def error_over(basis, directions, weights):
     return math.sqrt(sum(w * basis.lobe(d)["relative_l2"] ** 2 for d, w in zip(directions, weights)))
 
 
-@pytest.mark.parametrize("over, directions", [((None, None), (even_directions(300), np.full(300, 1 / 300))), (SLANTED, SLANTED)])
+@pytest.mark.parametrize("over, directions", [
+    ((None, None), (even_directions(300), np.full(300, 1 / 300))), (SLANTED, SLANTED)])
 def test_the_objective_is_the_error_of_the_basis(over, directions):
     centres = even_directions(6)
     basis = clpv.Basis("set", LAMBDAS, centres)
@@ -75,7 +76,8 @@ def test_the_same_seed_gives_the_same_set():
 
 
 @pytest.mark.parametrize("given, text", [
-    ({"count": 0}, "count: found 0, allowed: 1 to 64"), ({"count": 65}, "65"), ({"start_lambda": math.nan}, "lambda: found nan"),
+    ({"count": 0}, "count: found 0, allowed: 1 to 64"), ({"count": 65}, "65"),
+    ({"start_lambda": math.nan}, "lambda: found nan"),
     ({"max_condition": 1e8}, "1e+07"), ({"starts": 0}, "starts"), ({"lambdas": "two"}, "none, one, each"),
     ({"over": "poles"}, "all, axes"),
     ({"count": 20, "lambdas": "none", "start_lambda": 0.05, "starts": 2}, "none of 2 starts")])
