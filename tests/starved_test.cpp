@@ -130,7 +130,8 @@ TEST_F(Starved, OfASmallDisk) {
 
 /// The driver's cache on a full or read-only disk, where one may be mounted.
 TEST_F(Starved, OfASmallDiskForTheDriversCache) {
-  const std::string disk = folder_.path().string();
+  const TemporaryFolder mounted;
+  const std::string disk = mounted.path().string();
   const auto render = [&](const std::string& kind) {
     const std::string mount = "mount -t tmpfs -o " + kind + " none " + disk;
     return run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + disk +

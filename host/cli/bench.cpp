@@ -76,7 +76,9 @@ nlohmann::json earlier_run(const Options& options) {
                 "--compare with --format {}: both would be on stdout; allowed: --format table",
                 options.format);
   nlohmann::json report = read_json(options.compare);
-  bench::compare_runs(report, nlohmann::json{{"benchmarks", nlohmann::json::array()}}, options.compare);
+  bench::compare_runs(report,
+                      nlohmann::json{{"context", {{"schema", 1}}}, {"benchmarks", nlohmann::json::array()}},
+                      options.compare);
   return report;
 }
 

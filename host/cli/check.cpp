@@ -144,12 +144,13 @@ std::vector<Job> list_jobs(Session& session, const Options& options) {
 }
 
 /// Takes whole stages, since their comparisons share kernels, and then single comparisons of stages that others took,
-/// until none is left. The last stages take longest and come first.
+/// until none is left. The last stages take longest and come first, but for the sweep, whose kernels `bounce` uses too.
 void help(Session& session, const Options& options) {
   become_helper();
   const Claims claims(options.claims);
   std::vector<Stage> stages = stages_of(options);
   std::ranges::reverse(stages);
+  std::ranges::stable_partition(stages, [](Stage stage) { return stage == Stage::sweep; });
   const auto take_from = [&](Stage stage) {
     check_stage(
         session, options, stage, [&](const Job& job) { return claims.take(job.name()); },
