@@ -138,8 +138,9 @@ TEST(BenchCompare, ReportsOfQualityAndStats) {
                              {"frame_ms", ms}}}}};
   };
   const auto stats = [](double ms) {
-    return nlohmann::json{{"frame_ms", 2 * ms},
-                          {"stages", {{{"stage", "gather"}, {"cascade", 1}, {"light", -1}, {"ms", ms}}}}};
+    return nlohmann::json{
+        {"frame_ms", 2 * ms},
+        {"stages", {{{"stage", "gather"}, {"cascade", 1}, {"light", nullptr}, {"ms", ms}}}}};
   };
   EXPECT_EQ(compare_files(quality(0.2, 10), quality(0.21, 11)).exit_code, 0);
   const test::Outcome worse = compare_files(quality(0.2, 10), quality(0.3, 10));
