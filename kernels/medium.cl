@@ -18,7 +18,7 @@
 //   Out:     ends                  where each ray leaves the medium or meets a surface [m]; 0 if it is never in the medium
 //            scattered
 // medium_blur
-//   In:      ends, scattered;   Out: blurred: mean over five by five pixels with ends alike
+//   In:      ends, scattered;   Out: blurred: mean over five by five pixels of similar ends
 // medium_add
 //   In:      depths, medium, ends, blurred
 //            alone   1: the scattered light; 0: T L_surface + scattered light
@@ -31,8 +31,8 @@
 #include "shadow.h"
 #include "surface_row.h"
 
-#define CLPV_SAME_END 0.1f    // relative difference of ends from which pixels do not count
-#define CLPV_UNLIKE 1e-3f     // weight of a pixel's own ray where no end is alike
+#define CLPV_SAME_END 0.1f   // relative difference of ends from which pixels do not count
+#define CLPV_UNLIKE 1e-3f     // weight of a pixel's own ray where no end is similar
 #define CLPV_THIN 1e-3f       // optical depth below which points are spread evenly
 
 // Parts of the rays of eight pixels in the medium.

@@ -26,8 +26,8 @@ using std::numbers::pi;
 using ::testing::HasSubstr;
 using namespace test;
 
-ClpvMedium medium_of(const glm::vec3& scattering, const glm::vec3& absorption, float anisotropy, const glm::vec3& lower,
-                     const glm::vec3& upper) {
+ClpvMedium medium_of(const glm::vec3& scattering, const glm::vec3& absorption, float anisotropy,
+                     const glm::vec3& lower, const glm::vec3& upper) {
   ClpvMedium medium{};
   for (int i = 0; i < 3; ++i) {
     medium.lower[i] = lower[i], medium.upper[i] = upper[i];
@@ -57,7 +57,8 @@ TEST(Medium, PhaseFunctionIntegratesToOneAndHasTheMeanCosineOfItsAnisotropy) {
     double integral = 0, mean_cosine = 0;
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
-      const double cosine = -1 + 2 * (i + 0.5) / kSteps, weight = 4 * pi / kSteps * reference::phase(g, cosine);
+      const double cosine = -1 + 2 * (i + 0.5) / kSteps,
+                   weight = 4 * pi / kSteps * reference::phase(g, cosine);
       integral += weight;
       mean_cosine += cosine * weight;
     }
@@ -165,7 +166,9 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
     constexpr std::uint32_t kDirections = 1u << 14;
     for (std::uint32_t i = 0; i < kDirections; ++i) {
       const glm::dvec3 w = phase_direction({0, 0, 1}, 0, sobol_point(i, 3));
-      expected += 4 * pi / kDirections * reference::transmittance(medium, reference::medium_part(medium, glm::dvec3(middle), w, 100))[c];
+      expected +=
+          4 * pi / kDirections *
+          reference::transmittance(medium, reference::medium_part(medium, glm::dvec3(middle), w, 100))[c];
     }
     double found = 0;  // mean of the eight cells about the middle
     for (int i = 0; i < 8; ++i) {
@@ -206,8 +209,9 @@ TEST(Medium, LightOfASunStopsAtItsShadows) {
   const std::vector<float> found = frame.read(Show::medium);
   PathTracerOptions tracing;
   tracing.samples = 64;
-  const TracedImage truth = reference::trace_paths(scene, scene.lights_for(scene.cameras.front()),
-                                                   camera_view(scene.cameras.front(), options.width, options.height), tracing);
+  const TracedImage truth =
+      reference::trace_paths(scene, scene.lights_for(scene.cameras.front()),
+                             camera_view(scene.cameras.front(), options.width, options.height), tracing);
   const Image expected = reference::traced_view(truth, Show::medium);
   double error = 0, signal = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -59,7 +59,8 @@ ClpvMedium parse_medium(const std::string& text) {
   if (!numbers || !coefficient(numbers->x) || !coefficient(numbers->y) ||
       !(std::abs(numbers->z) <= bounds::kAnisotropy)) {
     throw Error(ExitCode::usage,
-                "--medium: found '{}', allowed: scattering and absorption, 0..{:.0f} /m, and anisotropy, -{}..{}, like "
+                "--medium: found '{}', allowed: scattering and absorption, 0..{:.0f} /m, and anisotropy, "
+                "-{}..{}, like "
                 "0.05,0.01,0.6",
                 text, bounds::kExtinction, bounds::kAnisotropy, bounds::kAnisotropy);
   }
@@ -231,8 +232,8 @@ void SceneChanges::apply(MovingScene& scene) const {
 void SceneChanges::describe(nlohmann::json& inputs) const {
   if (sun) inputs["sun"] = fmt::format("{},{}", fmt::join(sun->direction, ","), sun->intensity[0]);
   if (medium) {
-    inputs["medium"] = fmt::format("{},{},{}", medium->scattering[0], medium->extinction[0] - medium->scattering[0],
-                                   medium->anisotropy);
+    inputs["medium"] = fmt::format("{},{},{}", medium->scattering[0],
+                                   medium->extinction[0] - medium->scattering[0], medium->anisotropy);
   }
 }
 
@@ -274,10 +275,10 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
       ->group(kGroup);
   const auto take_medium = [&changes](const std::string& text) { changes.medium = parse_medium(text); };
   command
-      .add_option_function<std::string>(
-          "--medium", take_medium,
-          "scattering and absorption of a medium in the scene's bounding box [1/m], and the anisotropy of its phase "
-          "function (default: 0), in place of the scene's")
+      .add_option_function<std::string>("--medium", take_medium,
+                                        "scattering and absorption of a medium in the scene's bounding box "
+                                        "[1/m], and the anisotropy of its phase "
+                                        "function (default: 0), in place of the scene's")
       ->type_name("S[,A[,G]]")
       ->group(kGroup);
 }

@@ -23,10 +23,12 @@ namespace clpv::reference {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3;  // of a bounce, besides its direction
-constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1;  // of a path, besides its bounces
-constexpr int kCertainBounces = 3;                           // Russian roulette starts at this bounce
-constexpr double kMaxSurvival = 0.95;                        // so that paths end between white walls
+constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2,
+                        kFlightStream = 3;  // of a bounce, besides its direction
+constexpr std::uint64_t kAirStream = 1ull << 32,
+                        kChannelStream = kAirStream + 1;  // of a path, besides its bounces
+constexpr int kCertainBounces = 3;                        // Russian roulette starts at this bounce
+constexpr double kMaxSurvival = 0.95;                     // so that paths end between white walls
 
 /// Russian roulette. Returns false to end the path; else divides the throughput by the probability of survival.
 bool survives(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
@@ -71,12 +73,14 @@ glm::vec3 PathSampler::origin_of(const Vertex& at) const {
 
 /// The cosine, or pi times the phase function; 0 below the surface.
 double PathSampler::factor(const Vertex& at, const glm::dvec3& direction) const {
-  if (at.in_medium) return std::numbers::pi * phase(double{medium_->anisotropy}, glm::dot(direction, at.arrived));
+  if (at.in_medium)
+    return std::numbers::pi * phase(double{medium_->anisotropy}, glm::dot(direction, at.arrived));
   if (glm::dot(glm::dvec3(at.hit.geometric), direction) <= 0) return 0;
   return std::max(0.0, glm::dot(glm::dvec3(at.hit.normal), direction));
 }
 
-glm::dvec3 PathSampler::transmitted(const glm::vec3& origin, const glm::dvec3& direction, double distance) const {
+glm::dvec3 PathSampler::transmitted(const glm::vec3& origin, const glm::dvec3& direction,
+                                    double distance) const {
   if (medium_ == nullptr) return glm::dvec3(1);
   return transmittance(*medium_, medium_part(*medium_, glm::dvec3(origin), direction, distance));
 }
@@ -123,7 +127,8 @@ glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& directio
   if (radiance == glm::dvec3(0)) return radiance;
   const double distance = double{next.distance},
                light_cosine = std::abs(glm::dot(glm::dvec3(next.geometric), direction));
-  const double cosine_density = factor(at, direction) * light_cosine / (distance * distance) / std::numbers::pi;
+  const double cosine_density =
+      factor(at, direction) * light_cosine / (distance * distance) / std::numbers::pi;
   return radiance * std::numbers::pi * cosine_density /
          (emitters_.density(next.point.triangle) + cosine_density);
 }
@@ -178,7 +183,8 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
   return indirect(start, path, stream, {channel_of(path, stream), glm::dvec3(1)});
 }
 
-glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream, Flights flights) {
+glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream,
+                                 Flights flights) {
   const Materials& materials = rays_.materials();
   glm::dvec3 sum(0), throughput(1);
   Vertex at = start;
@@ -199,8 +205,8 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
       if (!sky_.empty()) sum += throughput * sky_along(at, glm::dvec3(*direction));
       break;
     }
-    const Vertex next =
-        scattered ? in_medium(glm::dvec3(origin), glm::dvec3(*direction), *scattered) : Vertex{*hit, false, {}};
+    const Vertex next = scattered ? in_medium(glm::dvec3(origin), glm::dvec3(*direction), *scattered)
+                                  : Vertex{*hit, false, {}};
     if (!scattered && !emitters_.empty()) sum += throughput * emission_of(at, glm::dvec3(*direction), *hit);
     const glm::dvec3 irradiance = direct(next);
     const bool last = bounce == options_.bounces;
@@ -213,8 +219,8 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
   return sum;
 }
 
-glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                                          std::uint32_t path, std::uint64_t stream) {
+glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction,
+                                          double distance, std::uint32_t path, std::uint64_t stream) {
   const MediumPart part = medium_part(*medium_, origin, direction, distance);
   const glm::dvec3 extinction = vector(medium_->extinction);
   if (part.length() == 0) return glm::dvec3(0);
@@ -222,12 +228,14 @@ glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::d
   const std::uint64_t own = mix(stream, kAirStream);
   Flights flights{channel_of(path, own), glm::dvec3(1)};
   const double chosen = extinction[flights.channel], random = sobol_point(path, own).x;
-  const double t = chosen > 0 ? std::min(-std::log1p(random * std::expm1(-chosen * part.length())) / chosen, part.length())
-                              : random * part.length();
+  const double t =
+      chosen > 0 ? std::min(-std::log1p(random * std::expm1(-chosen * part.length())) / chosen, part.length())
+                 : random * part.length();
   const glm::dvec3 left = glm::exp(-t * extinction);
   glm::dvec3 density, throughput = left * vector(medium_->scattering);
   for (int c = 0; c < 3; ++c)
-    density[c] = extinction[c] > 0 ? extinction[c] * left[c] / -std::expm1(-extinction[c] * part.length()) : 1 / part.length();
+    density[c] = extinction[c] > 0 ? extinction[c] * left[c] / -std::expm1(-extinction[c] * part.length())
+                                   : 1 / part.length();
   flights.take(density, throughput);
   const Vertex at = in_medium(origin, direction, part.start + t);
   return throughput * (direct(at) + indirect(at, path, own, flights)) / std::numbers::pi;
@@ -237,7 +245,8 @@ int PathSampler::channel_of(std::uint32_t path, std::uint64_t stream) {
   return static_cast<int>(3 * sobol_point(path, mix(stream, kChannelStream)).x);
 }
 
-PathSampler::Vertex PathSampler::in_medium(const glm::dvec3& origin, const glm::dvec3& direction, double distance) {
+PathSampler::Vertex PathSampler::in_medium(const glm::dvec3& origin, const glm::dvec3& direction,
+                                           double distance) {
   Vertex vertex{{}, true, direction};
   vertex.hit.position = glm::vec3(origin + distance * direction);
   return vertex;

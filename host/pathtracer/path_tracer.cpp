@@ -41,7 +41,8 @@ struct PrimaryRay {
 
 /// `depth`: of the pixel's surface, 0 without one.
 PrimaryRay primary_ray(const ClpvView& view, std::size_t pixel, float depth) {
-  const auto x = static_cast<std::uint32_t>(pixel % view.width), y = static_cast<std::uint32_t>(pixel / view.width);
+  const auto x = static_cast<std::uint32_t>(pixel % view.width),
+             y = static_cast<std::uint32_t>(pixel / view.width);
   const glm::dvec3 origin = surface_position(view, x, y, 0), at_unit_depth = surface_position(view, x, y, 1);
   const double length = glm::length(at_unit_depth - origin);
   return {origin, (at_unit_depth - origin) / length,
@@ -52,7 +53,8 @@ PrimaryRay primary_ray(const ClpvView& view, std::size_t pixel, float depth) {
 glm::vec3 seen_through(const TracedImage& traced, std::size_t pixel) {
   if (!traced.medium) return glm::vec3(1);
   const PrimaryRay ray = primary_ray(traced.view, pixel, traced.depth[pixel]);
-  return glm::vec3(transmittance(*traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
+  return glm::vec3(
+      transmittance(*traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
 }
 
 using Clock = std::chrono::steady_clock;
@@ -83,8 +85,8 @@ class ImageTracer {
   /// Traces primary rays and computes direct light, one pixel at a time. Every rank does so for the whole image.
   void trace_primary_rays() {
     image_.depth.assign(hits_.size(), 0);
-    for (auto* layer :
-         {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance, &image_.scattered}) {
+    for (auto* layer : {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance,
+                        &image_.scattered}) {
       layer->assign(hits_.size(), glm::vec3(0));
     }
     parallel_for({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
@@ -109,7 +111,8 @@ class ImageTracer {
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
         const auto add = [&](std::size_t pixel, const auto& path_of) {
           glm::dvec3 sum = rank_sums_[2 * pixel + half];
-          for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted(); ++s)
+          for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted();
+               ++s)
             sum += path_of(s);
           sums.emplace_back(2 * pixel + half, sum);
         };
@@ -212,7 +215,8 @@ class ImageTracer {
   void parallel_for(const Items& items, const Action& action) {
     std::atomic<std::size_t> next{items.first};
     const auto run = [&] {
-      PathSampler sampler(rays_, lights_, emitters_, sky_, image_.medium ? &*image_.medium : nullptr, options_);
+      PathSampler sampler(rays_, lights_, emitters_, sky_, image_.medium ? &*image_.medium : nullptr,
+                          options_);
       for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
         action(sampler, item);
       const std::lock_guard lock(mutex_);
@@ -319,7 +323,8 @@ glm::vec3 shown(const TracedImage& t, std::size_t i, Show show) {
   const glm::vec3 reflectance = t.albedo[i] * std::numbers::inv_pi_v<float>;
   switch (show) {
     case Show::full:
-      return seen_through(t, i) * (reflectance * (t.direct[i] + t.irradiance[i]) + t.emissive[i]) + t.scattered[i];
+      return seen_through(t, i) * (reflectance * (t.direct[i] + t.irradiance[i]) + t.emissive[i]) +
+             t.scattered[i];
     case Show::direct:
       return reflectance * t.direct[i] + t.emissive[i];
     case Show::indirect:

@@ -24,7 +24,8 @@ void require_support(const RenderOptions& options, const Scene& scene) {
                 name_of(options.transport), what, what);
   }
   if (scene.medium && options.near != Near::off) {
-    throw Error(ExitCode::usage, "near: found '{}'{} with a medium, allowed: off (or a scene without a medium)",
+    throw Error(ExitCode::usage,
+                "near: found '{}'{} with a medium, allowed: off (or a scene without a medium)",
                 name_of(options.near), preset_note(options, "near"));
   }
 }
@@ -78,7 +79,8 @@ void paint_sky(const Sky& sky, const std::optional<ClpvMedium>& medium, const Cl
       glm::dvec3 seen(sky.interpolated(along));
       if (medium) {
         const double far = std::numeric_limits<double>::infinity();
-        seen *= reference::transmittance(*medium, reference::medium_part(*medium, vector(view.eye), along, far));
+        seen *=
+            reference::transmittance(*medium, reference::medium_part(*medium, vector(view.eye), along, far));
       }
       for (int channel = 0; channel < 3; ++channel) pixel[channel] += static_cast<float>(seen[channel]);
       pixel[3] = 1;

@@ -84,7 +84,7 @@ class Frame {
   Rasterizer rasterizer_;
   Gatherer gatherer_;
   Shader shader_;
-  std::optional<NearField> near_;  ///< none: Near::off
+  std::optional<NearField> near_;      ///< none: Near::off
   std::optional<MediumLight> medium_;  ///< none: no medium
   FrameLights lights_;
   FrameCascades cascades_;

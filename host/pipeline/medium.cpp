@@ -26,7 +26,8 @@ ProgramSource medium_source(const Basis& basis, const MediumOptions& options) {
 
 }  // namespace
 
-MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium, const MediumOptions& options)
+MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium,
+                         const MediumOptions& options)
     : session_(session),
       medium_(medium),
       options_(options),
@@ -36,7 +37,8 @@ MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium&
       add_(session, medium_source(basis, options), "medium_add") {}
 
 void MediumLight::reserve(const ClpvView& view) {
-  const std::size_t plane = CLPV_NEAR_PLANE_OF(std::size_t{medium_pixels(view.width)}, medium_pixels(view.height));
+  const std::size_t plane =
+      CLPV_NEAR_PLANE_OF(std::size_t{medium_pixels(view.width)}, medium_pixels(view.height));
   if (plane == plane_) return;
   plane_ = plane;
   session_.reserve(ends_, plane * sizeof(cl_float), "ends of rays in the medium");
@@ -47,8 +49,8 @@ void MediumLight::reserve(const ClpvView& view) {
   session_.fill_zero(blurred_, 3 * plane * sizeof(cl_float));
 }
 
-void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                          float scale, const Buffer* occluded) {
+void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer,
+                          const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
   const ClpvView& view = camera.view;
   reserve(view);
   const cl::NDRange rows(tiles_along(medium_pixels(view.width)), medium_pixels(view.height));
@@ -57,7 +59,8 @@ void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer, const
   volumes_.launch(rows, kTileRow);
   for (const ShadowedLight& shadowed : lights) {
     const cl_uint count = shadowed.views.size();
-    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView), "views of a light in the medium");
+    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView),
+                     "views of a light in the medium");
     session_.write(views_, shadowed.views);
     for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
       light_

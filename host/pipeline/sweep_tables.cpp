@@ -67,8 +67,10 @@ std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& gri
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = -1; i <= n; ++i) {
       const double low = grid.origin[axis] + double{grid.cell} * i, high = low + grid.cell;
-      const double part = std::min(high, double{medium.upper[axis]}) - std::max(low, double{medium.lower[axis]});
-      inside[axis * pitch + CLPV_SWEEP_FIRST + i] = static_cast<float>(std::clamp(part / grid.cell, 0.0, 1.0));
+      const double part =
+          std::min(high, double{medium.upper[axis]}) - std::max(low, double{medium.lower[axis]});
+      inside[axis * pitch + CLPV_SWEEP_FIRST + i] =
+          static_cast<float>(std::clamp(part / grid.cell, 0.0, 1.0));
     }
   }
   return inside;

@@ -43,7 +43,8 @@ Incident light_at(const ClpvLight& light, const glm::dvec3& position) {
   const double distance = kind_of(light) == LightKind::directional
                               ? std::numeric_limits<double>::infinity()
                               : glm::length(vector(light.position) - position);
-  incident.irradiance *= transmittance(light.medium, medium_part(light.medium, position, incident.towards, distance));
+  incident.irradiance *=
+      transmittance(light.medium, medium_part(light.medium, position, incident.towards, distance));
   return incident;
 }
 

@@ -19,7 +19,8 @@ namespace {
 // kernels/medium.cl
 constexpr int kStep = 2, kWindow = 2;
 constexpr double kSameEnd = 0.1, kUnlike = 1e-3, kThin = 1e-3;
-constexpr int kBayer[CLPV_NEAR_TILE][CLPV_NEAR_TILE] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+constexpr int kBayer[CLPV_NEAR_TILE][CLPV_NEAR_TILE] = {
+    {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
 
 /// The part of a pixel's ray in the medium.
 struct AirRay {
@@ -28,7 +29,8 @@ struct AirRay {
 };
 
 AirRay air_ray(const ClpvMedium& medium, const SurfaceImage& camera, unsigned x, unsigned y) {
-  const glm::dvec3 origin = surface_position(camera.view, x, y, 0), along = surface_position(camera.view, x, y, 1) - origin;
+  const glm::dvec3 origin = surface_position(camera.view, x, y, 0),
+                   along = surface_position(camera.view, x, y, 1) - origin;
   const double depth = camera.depth[std::size_t{y} * camera.view.width + x], length = glm::length(along);
   const double end = depth > 0 ? depth * length : std::numeric_limits<double>::infinity();
   const MediumPart part = medium_part(medium, origin, along / length, end);
@@ -57,7 +59,8 @@ bool reaches(const MappedLight& light, const glm::dvec3& position) {
   const ProjectedPoint at = project(map.view, position);
   const double x = std::floor(at.pixel.x + 0.5), y = std::floor(at.pixel.y + 0.5);
   if (!(at.depth > 0 && x >= 0 && y >= 0 && x < map.view.width && y < map.view.height)) return true;
-  const double nearest = map.depth[static_cast<std::size_t>(y) * map.view.width + static_cast<std::size_t>(x)];
+  const double nearest =
+      map.depth[static_cast<std::size_t>(y) * map.view.width + static_cast<std::size_t>(x)];
   return !(nearest > 0 && nearest < at.depth);
 }
 
@@ -67,7 +70,8 @@ glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options, con
   glm::dvec3 sum(0);
   const double g = double{scene.medium.anisotropy};
   for (int k = 0; k < options.volume_steps; ++k) {
-    const AirPoint point = air_point(scene.medium, ray, (k + place) / options.volume_steps, options.volume_steps);
+    const AirPoint point =
+        air_point(scene.medium, ray, (k + place) / options.volume_steps, options.volume_steps);
     RadianceField field = radiance_field(options.gather, scene.cascades, basis.size(), point.position);
     for (std::vector<double>& channel : field) {
       for (std::size_t i = 1; i < channel.size(); ++i) channel[i] *= i < 4 ? g : g * g;
@@ -76,7 +80,8 @@ glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options, con
   }
   for (const MappedLight& light : scene.lights) {
     for (int k = 0; k < options.light_steps; ++k) {
-      const AirPoint point = air_point(scene.medium, ray, (k + place) / options.light_steps, options.light_steps);
+      const AirPoint point =
+          air_point(scene.medium, ray, (k + place) / options.light_steps, options.light_steps);
       const Incident incident = light_at(light.light, point.position);
       if (reaches(light, point.position))
         sum += point.share * incident.irradiance * phase(g, glm::dot(incident.towards, ray.direction));
@@ -96,7 +101,9 @@ struct AirImage {
   std::vector<double> ends;
   std::vector<glm::dvec3> light;
 
-  double end(int x, int y) const { return x < 0 || y < 0 || x >= width || y >= height ? 0 : ends[y * width + x]; }
+  double end(int x, int y) const {
+    return x < 0 || y < 0 || x >= width || y >= height ? 0 : ends[y * width + x];
+  }
 };
 
 /// Sum of light and weights.
@@ -131,11 +138,13 @@ AirImage blurred(const AirImage& image) {
 
 }  // namespace
 
-MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction, double end) {
+MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction,
+                       double end) {
   if (!attenuates(medium)) return {};
   MediumPart part{0, end};
   for (int axis = 0; axis < 3; ++axis) {
-    const double lower = double{medium.lower[axis]} - origin[axis], upper = double{medium.upper[axis]} - origin[axis];
+    const double lower = double{medium.lower[axis]} - origin[axis],
+                 upper = double{medium.upper[axis]} - origin[axis];
     if (direction[axis] == 0) {
       if (lower > 0 || upper < 0) return {};
       continue;
@@ -160,8 +169,8 @@ bool attenuates(const ClpvMedium& medium) {
   return vector(medium.extinction) != glm::dvec3(0);
 }
 
-std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options, const MediumScene& scene,
-                                        const SurfaceImage& camera) {
+std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options,
+                                        const MediumScene& scene, const SurfaceImage& camera) {
   const ClpvView& view = camera.view;
   AirImage traced{int(view.width + kStep - 1) / kStep, int(view.height + kStep - 1) / kStep, {}, {}};
   for (int y = 0; y < traced.height; ++y) {

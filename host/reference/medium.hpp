@@ -23,7 +23,8 @@ struct MediumPart {
 };
 
 /// Returns the part of origin + t direction, t in (0, end), in the medium. `end` may be infinite.
-MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction, double end);
+MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction,
+                       double end);
 
 /// exp(-sigma_t l) for each channel. `part`: of a ray with a unit direction [m].
 glm::dvec3 transmittance(const ClpvMedium& medium, const MediumPart& part);
@@ -42,7 +43,7 @@ struct MediumScene {
 
 /// Returns the radiance [W/m^2/sr] that the medium scatters towards the camera in each pixel. `basis`: of the cascades' volumes,
 /// swept_basis().
-std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options, const MediumScene& scene,
-                                        const SurfaceImage& camera);
+std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options,
+                                        const MediumScene& scene, const SurfaceImage& camera);
 
 }  // namespace clpv::reference

@@ -26,7 +26,6 @@ double tap_weight(double distance) {
   return std::clamp(CLPV_SHADOW_TAPS / 2 - std::abs(distance), 0.0, 1.0);
 }
 
-
 }  // namespace
 
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset) {

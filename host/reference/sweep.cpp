@@ -58,8 +58,8 @@ class Sweep {
                                                               : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
-        field.at(channel, 0, p.x, p.y, p.z) =
-            dot(means, cascade_.injected->cell(channel, p)) + attenuation(channel, sweep_bin, d, p) * arriving;
+        field.at(channel, 0, p.x, p.y, p.z) = dot(means, cascade_.injected->cell(channel, p)) +
+                                              attenuation(channel, sweep_bin, d, p) * arriving;
       }
     });
     return field;
@@ -71,7 +71,8 @@ class Sweep {
     const ClpvMedium& medium = *cascade_.medium;
     const double cell = double{cascade_.grid.cell};
     const auto part_of = [&](int axis, int i) {
-      const double low = cascade_.grid.origin[axis] + cell * i, upper = medium.upper[axis], lower = medium.lower[axis];
+      const double low = cascade_.grid.origin[axis] + cell * i, upper = medium.upper[axis],
+                   lower = medium.lower[axis];
       return std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
     };
     double inside = 1;

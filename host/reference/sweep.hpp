@@ -16,9 +16,9 @@ namespace clpv::reference {
 /// Input of one cascade's sweep.
 struct SweptCascade {
   ClpvGrid grid{};
-  const Volume* injected = nullptr;  ///< n^3 cells, coefficients in the basis [W/sr]
-  const Volume* geometry = nullptr;  ///< blockers at the cells' corners; null: no blockers
-  int parts = 1;                     ///< subdivision of its bins (sweep_bins)
+  const Volume* injected = nullptr;    ///< n^3 cells, coefficients in the basis [W/sr]
+  const Volume* geometry = nullptr;    ///< blockers at the cells' corners; null: no blockers
+  int parts = 1;                       ///< subdivision of its bins (sweep_bins)
   const ClpvMedium* medium = nullptr;  ///< null: none
 };
 

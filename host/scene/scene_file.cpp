@@ -257,7 +257,8 @@ Sky read_sky_member(const json& given, const std::filesystem::path& path, const 
 ClpvMedium read_medium(const json& given, double scale, const std::string& file) {
   if (!given.contains("scattering") && !given.contains("absorption"))
     reject(file, "/medium", "neither scattering nor absorption", "at least one of them");
-  const Vec3 scattering = numbers_in(given, "scattering", {}), absorption = numbers_in(given, "absorption", {});
+  const Vec3 scattering = numbers_in(given, "scattering", {}),
+             absorption = numbers_in(given, "absorption", {});
   ClpvMedium medium{};
   for (std::size_t i = 0; i < 3; ++i) {
     medium.scattering[i] = static_cast<float>(scattering[i]);
@@ -268,7 +269,8 @@ ClpvMedium read_medium(const json& given, double scale, const std::string& file)
   const json& box = given["box"];
   for (std::size_t i = 0; i < 3; ++i) {
     const double lower = box["lower"][i], upper = box["upper"][i];
-    if (!(upper > lower)) reject(file, "/medium/box/upper", fmt::format("{} m", upper), fmt::format("more than {} m", lower));
+    if (!(upper > lower))
+      reject(file, "/medium/box/upper", fmt::format("{} m", upper), fmt::format("more than {} m", lower));
     medium.lower[i] = static_cast<float>(lower * scale);
     medium.upper[i] = static_cast<float>(upper * scale);
   }

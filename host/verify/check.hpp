@@ -86,7 +86,7 @@ CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 // One function per stage, in host/verify/.
 using StageCheck = CheckResults(Session& session, const CheckScope& scope);
 StageCheck check_sizes, check_rasterize, check_emit, check_inject, check_blockers, check_reflectors,
-    check_propagate, check_sweep, check_bounce, check_visibility, check_gather, check_near,
-    check_medium, check_shade;
+    check_propagate, check_sweep, check_bounce, check_visibility, check_gather, check_near, check_medium,
+    check_shade;
 
 }  // namespace clpv::reference

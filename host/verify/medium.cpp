@@ -39,7 +39,8 @@ MappedLight mapped(ClpvLight light, const ClpvMedium& medium, float depth) {
 }
 
 std::vector<MappedLight> medium_lights(const ClpvMedium& medium) {
-  const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
+  const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {},
+                      {}};
   const ClpvLight point{{1, 1.5f, -2.3f}, CLPV_LIGHT_POINT, {}, 0, {6, 5, 4}, 0, 0, {}, {}};
   const ClpvLight spot{{-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, {}, {}};
   MappedLight unshadowed{spot, {}};
@@ -98,7 +99,8 @@ CheckResult check_one_medium(Session& session, const MediumVariant& variant) {
 CheckResults check_medium(Session& session, const CheckScope& scope) {
   CheckResults results;
   for (const MediumVariant& variant : {MediumVariant{"fog", kFog}, MediumVariant{"dust", kDust}})
-    compare_selected(scope, "medium", variant.name, results, [&] { return check_one_medium(session, variant); });
+    compare_selected(scope, "medium", variant.name, results,
+                     [&] { return check_one_medium(session, variant); });
   return results;
 }
 

@@ -24,7 +24,8 @@ constexpr double kEdge = 4;  // edge of the finest grid [m]
 constexpr float kSkyScale = 0.5f;
 
 /// Its box cuts cells of every cascade.
-const ClpvMedium kSweptMedium{{-1.1f, -0.7f, -3.3f}, {1.3f, 4, 0.9f}, {0.1f, 0.2f, 0.3f}, {0.2f, 0.5f, 2}, 0, {}};
+const ClpvMedium kSweptMedium{
+    {-1.1f, -0.7f, -3.3f}, {1.3f, 4, 0.9f}, {0.1f, 0.2f, 0.3f}, {0.2f, 0.5f, 2}, 0, {}};
 
 struct SweepCase {
   std::string basis;
@@ -45,7 +46,8 @@ struct SweepCase {
     return fmt::format("{}/{}^3/{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
-                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", medium ? "/medium" : "", format_name(format));
+                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", medium ? "/medium" : "",
+                       format_name(format));
   }
 };
 

@@ -24,8 +24,9 @@
 namespace clpv {
 
 /// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of indirect light [W/m^2], albedo, unit
-/// normal, or depth [m]. medium: radiance that the scene's medium scatters towards the camera, which full includes. Lux and candela of a scene count 1:1 as W/m^2 and W/sr. cells: irradiance, with the cells of the finest
-/// cascade as small spheres that show the irradiance on surfaces of every direction there; pathtrace() has no such view.
+/// normal, or depth [m]. Lux and candela of a scene count 1:1 as W/m^2 and W/sr. medium: radiance that the scene's medium
+/// scatters towards the camera, which full includes. cells: irradiance, with the cells of the finest cascade as small spheres that
+/// show the irradiance on surfaces of every direction there; pathtrace() has no such view.
 enum class View { full, direct, indirect, irradiance, albedo, normal, depth, medium, cells };
 
 /// Cost of the last frame.
