@@ -105,7 +105,8 @@ CLPV_INLINE float8 reached_by_light(const ShadowMap shadow, const Vec position) 
   const int8 in_map = (x >= none) & (y >= none) & (x < (float8)(width)) & (y < (float8)(height)) & (depth > none);
   const uint8 texel = in_map ? convert_uint8(y) * view.width + convert_uint8(x) : (uint8)(0u);
   const float8 nearest = (float8)CLPV_GATHER(shadow.map, texel);
-  const float8 lit = in_map & (nearest > none) & (nearest < depth) ? none : all;
+  const int8 blocked = in_map & (nearest > none) & (nearest < depth);
+  const float8 lit = blocked ? none : all;
   return shadow.count > 1 ? (sees(shadow.views, shadow.count, shadow.which, offset) ? lit : none) : lit;
 }
 

@@ -14,9 +14,11 @@
 #include "pipeline/frame.hpp"
 #include "pipeline/view.hpp"
 #include "reference/sweep.hpp"
+#include "scene/load.hpp"
 #include "scene/sky.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::medium_test {
@@ -94,6 +96,34 @@ TEST(Medium, PartOfARayIsThatInTheBox) {
   EXPECT_DOUBLE_EQ(length({0, 0, 0}, {0, 0, -1}, 0.5), 0.5);
   EXPECT_DOUBLE_EQ(length({-5, 0, 0}, {-1, 0, 0}, far), 0);
   EXPECT_DOUBLE_EQ(length({-5, 2.5, 0}, {1, 0, 0}, far), 0);
+}
+
+TEST(Medium, SceneFilesHaveOneInABoxOrInTheirBounds) {
+  const TemporaryFolder folder;
+  const auto loaded = [&](const std::string& medium) {
+    const std::string model = CLPV_SOURCE_DIR "/scenes/cornell.glb";
+    return load_scene(
+        folder.write("scene.json", R"({"model": ")" + model + R"(", "medium": )" + medium + "}"));
+  };
+  const Scene boxed = loaded(
+      R"({"scattering": [1, 2, 3], "absorption": [1, 0, 2], "anisotropy": 0.5,
+          "box": {"lower": [0, 0, 0], "upper": [1, 2, 3]}})");
+  EXPECT_EQ(vector(boxed.medium->extinction), glm::dvec3(2, 2, 5));
+  EXPECT_EQ(vector(boxed.medium->upper), glm::dvec3(1, 2, 3));
+  const Scene bounded = loaded(R"({"scattering": [1, 1, 1]})");
+  EXPECT_EQ(vector(bounded.medium->lower), glm::dvec3(bounded.lower));
+  EXPECT_EQ(vector(bounded.medium->upper), glm::dvec3(bounded.upper));
+  const std::pair<const char*, const char*> bad[] = {
+      {"{}", "/medium: found neither scattering nor absorption"},
+      {R"({"scattering": [-1, 0, 0]})", "/medium/scattering"},
+      {R"({"scattering": [1e7, 0, 0]})", "/medium/scattering"},
+      {R"({"scattering": [1, 1]})", "/medium/scattering"},
+      {R"({"absorption": [1, 1, 1], "anisotropy": 1})", "/medium/anisotropy"},
+      {R"({"absorption": [1, 1, 1], "box": {"lower": [0, 0, 0]}})", "/medium/box/upper"},
+      {R"({"absorption": [1, 1, 1], "box": {"lower": [0, 0, 0], "upper": [1, 0, 1]}})", "more than 0 m"},
+      {R"({"absorption": [1, 1, 1], "colour": [1, 1, 1]})", "colour"}};
+  for (const auto& [medium, message] : bad)
+    EXPECT_THAT(error_of(ExitCode::bad_input, [&] { loaded(medium); }), HasSubstr(message)) << medium;
 }
 
 /// A room of 2 m, faces inwards, whose walls emit and do not reflect.

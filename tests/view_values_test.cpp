@@ -103,6 +103,13 @@ TEST_F(CameraByNumbers, BadNumbersAreRejected) {
       {" --sun 0,1,0,-1", "--sun"},
       {" --sun 0,1,0,10,3", "--sun"},
       {" --sun 0,1,nan", "--sun"},
+      {" --medium ''", "--medium"},
+      {" --medium -1", "--medium"},
+      {" --medium 1,nan", "--medium"},
+      {" --medium 1,1e7", "--medium"},
+      {" --medium 1,0,1", "--medium"},
+      {" --medium 1,0,0,0", "--medium"},
+      {" --medium 1 --near traced", "near: found 'traced' with a medium"},
   };
   for (const auto& [words, mentioned] : bad) {
     const Outcome outcome = run(render + words);

@@ -16,7 +16,7 @@ import clpv
 
 VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
 STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers", "visibility", "propagate",
-          "gather", "near", "shade")
+          "gather", "near", "medium", "shade")
 MOVING_HEIGHT, RESTING_HEIGHT = 288, 720  # [pixels]
 REST = 0.3            # [s] without a change before the sharp frame
 MAX_RENDERERS = 4     # kept, by size and options

@@ -42,7 +42,7 @@ def test_lobes():
 def test_lobes_of_the_paper_are_those_of_the_program():
     for name, size in (("srbf4", 256), ("srbf14", 257), ("sh2", 256)):
         basis = clpv.Basis(name)
-        words = "basis", name, "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--json"
+        words = "basis", name, "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--format=json"
         expected = json.loads(program(*words))["bases"][0]
         c = basis.clamped_cosine((-2, 1, -3), size)
         assert np.allclose(c, expected["coefficients"], rtol=1e-12, atol=1e-12)
@@ -50,7 +50,7 @@ def test_lobes_of_the_paper_are_those_of_the_program():
         for steps in (8, 24):
             assert basis.energy(steps, table_size=size) == pytest.approx(expected[f"energy_sampled_{steps}"])
             assert basis.energy(steps, "exact", size) == pytest.approx(expected[f"energy_exact_{steps}"])
-    exact = json.loads(program("basis", "srbf4", "--json"))["bases"][0]
+    exact = json.loads(program("basis", "srbf4", "--format=json"))["bases"][0]
     assert clpv.Basis("srbf4").mean_error == pytest.approx(exact["mean_relative_l2"])
     assert clpv.Basis("srbf4").energy(0) == pytest.approx(1)
 

@@ -117,7 +117,7 @@ def test_from_a_scenes_normals_to_a_set(tmp_path):
     found = run(4, "--starts", 2, "--lambdas", "each", "--weights", normals, "-o", file)
     assert found.returncode == 0 and "of 2 starts" in found.stdout, found.stderr
     made = json.loads(file.read_text())
-    basis = json.loads(program("basis", "--json", "--centres", file))["bases"][0]
+    basis = json.loads(program("basis", "--format=json", "--centres", file))["bases"][0]
     assert basis["name"] == "mine" and basis["lambdas"] == made["lambda"] and len(made["centres"]) == 4
 
 
