@@ -91,25 +91,6 @@ CLPV_INLINE Vec air_point(const AirRays* a, const ClpvMedium medium, const float
   return vec_times(clpv_transmittance(medium, t), step);
 }
 
-// 1 where the light reaches points in the air, else 0: the nearest texel of its map.
-CLPV_INLINE float8 reached_by_light(const ShadowMap shadow, const Vec position) {
-  const float8 none = (float8)(0.0f), all = (float8)(1.0f);
-  if (shadow.count == 0) return all;
-  const ClpvView view = shadow.views[shadow.which];
-  const Vec offset = vec_minus(position, vec_of(view.eye));
-  const float8 depth = vec_dot_unfused(offset, vec_of(view.forward));
-  const float8 scale = view.orthographic != 0.0f ? all : depth;
-  const float width = (float)view.width, height = (float)view.height;
-  const float8 x = (vec_dot_unfused(offset, vec_of(view.right)) / (scale * view.half_width) + 1.0f) * (0.5f * width);
-  const float8 y = (1.0f - vec_dot_unfused(offset, vec_of(view.up)) / (scale * view.half_height)) * (0.5f * height);
-  const int8 in_map = (x >= none) & (y >= none) & (x < (float8)(width)) & (y < (float8)(height)) & (depth > none);
-  const uint8 texel = in_map ? convert_uint8(y) * view.width + convert_uint8(x) : (uint8)(0u);
-  const float8 nearest = (float8)CLPV_GATHER(shadow.map, texel);
-  const int8 blocked = in_map & (nearest > none) & (nearest < depth);
-  const float8 lit = blocked ? none : all;
-  return shadow.count > 1 ? (sees(shadow.views, shadow.count, shadow.which, offset) ? lit : none) : lit;
-}
-
 __kernel void medium_light(const ClpvView view, __global const float* depths, const ClpvLight light,
                            __global const ClpvView* views, const uint count, const uint which,
                            __global const float* map, __global float* scattered) {
@@ -128,7 +109,7 @@ __kernel void medium_light(const ClpvView view, __global const float* depths, co
     Vec towards;
     const Vec irradiance = clpv_light_irradiance(light, position, &towards);
     const float8 phase = clpv_phase(light.medium.anisotropy, vec_dot(towards, a.direction));
-    const float8 seen = phase * reached_by_light(shadow, position);
+    const float8 seen = phase * clpv_light_reaches(shadow, position);
     sum = vec_add_scaled(sum, seen, vec_product(share, irradiance));
   }
   const Vec before = near_vectors(scattered, r.plane, r.at), added = vec_masked(a.inside, vec_product(sigma, sum));

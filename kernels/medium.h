@@ -32,6 +32,11 @@ CLPV_INLINE Vec clpv_transmittance(const ClpvMedium medium, const float8 length)
   return vec(exp(-medium.extinction[0] * l), exp(-medium.extinction[1] * l), exp(-medium.extinction[2] * l));
 }
 
+// sigma_s / sigma_t of a channel, the part of attenuated light that is scattered; 0 where nothing is attenuated.
+CLPV_INLINE float clpv_albedo(const ClpvMedium medium, const int channel) {
+  return medium.extinction[channel] > 0.0f ? medium.scattering[channel] / medium.extinction[channel] : 0.0f;
+}
+
 // p for the cosine of the angle between both directions [1/sr].
 CLPV_INLINE float8 clpv_phase(const float g, const float8 cosine) {
   const float8 d = 1.0f + g * g - 2.0f * g * cosine;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of a light with shadow maps on eight surfaces, for shade.cl and near_light.cl.
+// Irradiance of a light with shadow maps on eight surfaces, for shade.cl and near_light.cl, and whether it reaches
+// points in the air, for media.
 //
 // The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the weight clamp(2 -
 // |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the depth of the receiver's tangent plane
@@ -164,6 +165,25 @@ CLPV_INLINE Vec clpv_shadowed_irradiance(const ClpvLight light, const ShadowMap 
   Receivers r;
   receivers(view, offset, normal, cosine, &r);
   return vec_times(irradiance, visibilities(view, shadow.map, r, *lit));
+}
+
+// 1 where the light reaches points in the air, else 0: the nearest texel of its map.
+CLPV_INLINE float8 clpv_light_reaches(const ShadowMap shadow, const Vec position) {
+  const float8 none = (float8)(0.0f), all = (float8)(1.0f);
+  if (shadow.count == 0) return all;
+  const ClpvView view = shadow.views[shadow.which];
+  const Vec offset = vec_minus(position, vec_of(view.eye));
+  const float8 depth = vec_dot_unfused(offset, vec_of(view.forward));
+  const float8 scale = view.orthographic != 0.0f ? all : depth;
+  const float width = (float)view.width, height = (float)view.height;
+  const float8 x = (vec_dot_unfused(offset, vec_of(view.right)) / (scale * view.half_width) + 1.0f) * (0.5f * width);
+  const float8 y = (1.0f - vec_dot_unfused(offset, vec_of(view.up)) / (scale * view.half_height)) * (0.5f * height);
+  const int8 in_map = (x >= none) & (y >= none) & (x < (float8)(width)) & (y < (float8)(height)) & (depth > none);
+  const uint8 texel = in_map ? convert_uint8(y) * view.width + convert_uint8(x) : (uint8)(0u);
+  const float8 nearest = (float8)CLPV_GATHER(shadow.map, texel);
+  const int8 blocked = in_map & (nearest > none) & (nearest < depth);
+  const float8 lit = blocked ? none : all;
+  return shadow.count > 1 ? (sees(shadow.views, shadow.count, shadow.which, offset) ? lit : none) : lit;
 }
 
 #endif

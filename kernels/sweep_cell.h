@@ -9,9 +9,12 @@
 // [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k in [0, 1] the transmittance of the link from cell k; t_k and share_d are in
 // ClpvSweepDirection.
 //
-// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel: D = I + a sum_k t_k T_k D_k,
-// a = 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part in the medium of the way from the previous plane: the mean of both
-// cells along m.
+// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium scatters light into it:
+//
+//   D = I + (1 - a) sum_k t_k T_k D_k + a |w_m| J s^2,   a = f (1 - exp(-sigma_t s / |w_m|))
+//
+// f is the part in the medium of the way from the previous plane, the mean of both cells along m; J s^2 [W/sr] is the
+// source function of the bin (sweep_medium.cl).
 #ifndef CLPV_SWEEP_CELL_H
 #define CLPV_SWEEP_CELL_H
 
@@ -34,12 +37,13 @@ typedef struct {
   CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
 #if CLPV_MEDIUM
   __global const float* inside;                     // part in the medium of each cell along x, y and z, rows with border
+  CLPV_BUFFER_IN scattered;                         // J s^2, a volume for each channel and bin
 #endif
 } BinSweep;
 
 #if CLPV_MEDIUM
-#define CLPV_MEDIUM_PARAMETER , __global const float* inside
-#define CLPV_MEDIUM_MEMBER , inside
+#define CLPV_MEDIUM_PARAMETER , __global const float *inside, CLPV_BUFFER_IN scattered
+#define CLPV_MEDIUM_MEMBER , inside, scattered
 #else
 #define CLPV_MEDIUM_PARAMETER
 #define CLPV_MEDIUM_MEMBER
@@ -113,6 +117,11 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
                       s->inside[CLPV_INSIDE(bin.plane_axis, plane - bin.plane_sign)];
   const CLPV_REAL in_medium = 0.5f * along * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
                               CLPV_PLANE_LOAD(s->inside, CLPV_INSIDE(bin.column_axis, column));
+  CLPV_REAL scattered[3];
+#pragma unroll
+  for (int channel = 0; channel < 3; ++channel)
+    scattered[channel] =
+        CLPV_SWEEP_LOAD(s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at);
 #endif
   CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
@@ -126,7 +135,8 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
       d = fma(w2, CLPV_PLANE_LOAD(from2, ordinate), d);
       d = fma(w3, CLPV_PLANE_LOAD(from3, ordinate), d);
 #if CLPV_MEDIUM
-      d *= fma(in_medium, (CLPV_REAL)(s->directions[part].attenuation[channel] - 1.0f), (CLPV_REAL)(1.0f));
+      const CLPV_REAL lost = in_medium * (1.0f - s->directions[part].attenuation[channel]);
+      d = fma(lost, fma((CLPV_REAL)(s->directions[part].flux), scattered[channel], -d), d);
 #endif
       CLPV_PLANE_STORE(to + here, ordinate, d);
       sum[channel] = fma((CLPV_REAL)(s->directions[part].share), d, sum[channel]);

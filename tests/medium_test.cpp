@@ -60,7 +60,7 @@ TEST(Medium, PhaseFunctionIntegratesToOneAndHasTheMeanCosineOfItsAnisotropy) {
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
       const double cosine = -1 + 2 * (i + 0.5) / kSteps,
-                   weight = 4 * pi / kSteps * reference::phase(g, cosine);
+                   weight = 4 * pi / kSteps * phase(g, cosine);
       integral += weight;
       mean_cosine += cosine * weight;
     }
@@ -170,7 +170,7 @@ TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
   scene.medium = medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {1, 0.5, -2}, {4, 2, 2});
   const ClpvView view = view_of({0, 1.2, 0}, {1, 0, 0}, {0, 1, 0}, 1e-3f, 1, 1);
   const double extinction = scattering + absorption;
-  const double expected = scattering * reference::phase(0.4, 0) * 5 * std::exp(-extinction * 0.8) *
+  const double expected = scattering * phase(0.4, 0) * 5 * std::exp(-extinction * 0.8) *
                           -std::expm1(-extinction * 3) / extinction;
   const glm::dvec3 seen = mean_of(reference::traced_view(traced(scene, view, 1, 1024), Show::medium));
   EXPECT_NEAR(seen.x, expected, 2e-3 * expected);

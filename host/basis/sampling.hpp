@@ -92,6 +92,12 @@ inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& p
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + up * normal;
 }
 
+/// Phase function of Henyey and Greenstein (1941) [1/sr]. `cosine`: between the directions of travel before and after.
+inline double phase(double g, double cosine) {
+  const double d = 1 + g * g - 2 * g * cosine;
+  return (1 - g * g) / (4 * std::numbers::pi * d * std::sqrt(d));
+}
+
 /// Unit direction with the density of Henyey and Greenstein's phase function about `along`, by inversion of its cumulative
 /// distribution over the cosine.
 inline glm::dvec3 phase_direction(const glm::dvec3& along, double g, const glm::dvec2& point) {

@@ -8,6 +8,7 @@
 
 #include "basis/direction_bins.hpp"
 #include "basis/quadrature.hpp"
+#include "basis/sampling.hpp"
 #include "basis/spherical_harmonics.hpp"
 
 namespace clpv {
@@ -127,6 +128,25 @@ Matrix swept_projection() {
     }
   }
   return projection;
+}
+
+Matrix scattering_matrix(double anisotropy) {
+  const std::vector<SweepBin> bins = sweep_bins(kMaxSweepParts);
+  Matrix matrix(kSweepBins, kSweepBins);
+  for (int to = 0; to < kSweepBins; ++to) {
+    double sum = 0;
+    for (int from = 0; from < kSweepBins; ++from) {
+      for (const SweepDirection& after : bins[to].directions) {
+        for (const SweepDirection& before : bins[from].directions) {
+          const double cosine = std::clamp(glm::dot(after.w, before.w), -1.0, 1.0);
+          matrix(to, from) += after.solid_angle * before.solid_angle * phase(anisotropy, cosine);
+        }
+      }
+      sum += matrix(to, from);
+    }
+    for (double& entry : matrix.row(to)) entry /= sum;
+  }
+  return matrix;
 }
 
 void close_diagonals(std::vector<SweepLink>& links, double power) {

@@ -62,6 +62,11 @@ std::unique_ptr<Basis> swept_basis();
 /// 9 x 24: projection of light that is constant in each bin on swept_basis().
 Matrix swept_projection();
 
+/// 24 x 24: radiance in each bin, by radiance in each bin, of light that a medium scatters once: means of the phase function
+/// of Henyey and Greenstein (1941). Rows and columns sum to 1: uniform light stays uniform, and no energy is lost.
+/// `anisotropy`: g in (-1, 1).
+Matrix scattering_matrix(double anisotropy);
+
 /// Multiplies the blocking weights of each link by the length of its offset to the power `power`. With power 1 a full wall is
 /// opaque along diagonals too.
 void close_diagonals(std::vector<SweepLink>& links, double power);

@@ -69,4 +69,11 @@ std::string bounce_source_text(const Basis& basis) {
                                reflected_intensity(basis));
 }
 
+std::string scatter_source_text(double anisotropy) {
+  return coefficient_macros(swept_basis()->size()) + sweep_bin_macros() +
+         cell_macros("Bins", "BIN", kSweepBins) +
+         LinearCode().function("Bins", "clpv_scatter", "Bins", scattering_matrix(anisotropy),
+                               mirrors_of(*make_basis("bins24")).list());
+}
+
 }  // namespace clpv

@@ -30,4 +30,7 @@ std::string incident_flux_text();
 /// Coefficients clpv_reflected_intensity(FaceFluxes).
 std::string bounce_source_text(const Basis& basis);
 
+/// For sweep_medium.cl: struct Bins, and Bins clpv_scatter(Bins), the product with scattering_matrix(anisotropy).
+std::string scatter_source_text(double anisotropy);
+
 }  // namespace clpv

@@ -142,12 +142,18 @@ void FrameCascades::update_visibility(int cascade) {
   });
 }
 
+void FrameCascades::scatter(int cascade) {
+  if (!scene_.medium) return;
+  const StageScope scope(session_, {Pass::medium, cascade});
+  sweeper_->set_medium(cascade, grids_[cascade], lights_.shadowed(), lights_.scale());
+}
+
 void FrameCascades::propagate(int cascade) {
   Volume& accumulated = *accumulated_[cascade].volume;
   accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
     inject(cascade);
     update_blockers(cascade);
-    if (sweeper_) sweeper_->place_in_medium(cascade, grids_[cascade]);
+    scatter(cascade);
     update_reflectors(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});

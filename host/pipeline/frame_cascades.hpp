@@ -80,6 +80,7 @@ class FrameCascades {
   void update_blockers(int cascade);
   void update_links(int cascade);
   void update_reflectors(int cascade);
+  void scatter(int cascade);
   void propagate(int cascade);
   void update_visibility(int cascade);
   void inject_geometry(int cascade, Volume& geometry);

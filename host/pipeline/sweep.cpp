@@ -90,16 +90,15 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     links_.push_back(volumes_.make(links, "transmittance of the sweep's links"));
   passes_ = make_passes(basis, options.parts);
-  for (std::size_t c = 0; c < options.parts.size() && options.medium; ++c)
-    inside_.push_back(zeroed_buffer(
-        session, (3 * CLPV_SWEEP_PITCH_OF(std::size_t(options.grid)) + CLPV_SWEEP_FIRST) * sizeof(float),
-        "cells in the medium"));
+  if (options.medium)
+    medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
   if (options.bounces == Bounces::one) return;
   bouncer_.emplace(session, basis, options);
   bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},
                                       "injected and reflected light", options.format);
   const bool all = options.bounces == Bounces::all;
-  bounce_passes_ = make_passes(basis, std::vector<int>(all ? 1 : options.parts.size(), kBounceParts));
+  bounce_passes_ =
+      make_passes(basis, std::vector<int>(all && !scatters() ? 1 : options.parts.size(), kBounceParts));
   if (!all) return;
   first_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
   ProgramSource collecting =
@@ -120,6 +119,10 @@ ProgramSource Sweeper::sweep_program(int coefficients, int emitting, int parts) 
       .flag("CLPV_MEDIUM", options_.medium.has_value());
   add_format_literals(source.literals, options_.format, whole_bins() ? 8 : 1);
   return source;
+}
+
+bool Sweeper::scatters() const {
+  return medium_ && medium_->scatters();
 }
 
 bool Sweeper::whole_bins() const {
@@ -153,18 +156,21 @@ Sweeper::Passes Sweeper::make_passes(const Basis& basis, const std::vector<int>&
   return passes;
 }
 
-void Sweeper::place_in_medium(std::size_t cascade, const ClpvGrid& grid) {
-  if (!options_.medium) return;
+void Sweeper::set_medium(std::size_t cascade, const ClpvGrid& grid, const std::vector<ShadowedLight>& lights,
+                         float scale) {
+  if (!medium_) return;
   const auto attenuate_in = [&](const Pass& pass) {
     std::vector<ClpvSweepDirection> table = sweep_direction_table(pass.parts, pass.coarser);
-    attenuate(table, pass.parts, *options_.medium, double{grid.cell});
+    attenuate(table, pass.parts, medium_->medium(), double{grid.cell});
     session_.write(pass.directions, table);
   };
   attenuate_in(passes_[cascade]);
-  // With all bounces the coarsest cascade alone has a pass for them.
+  // The coarsest cascade alone may have a pass for bounces.
   const std::size_t first = options_.parts.size() - bounce_passes_.size();
   if (cascade >= first) attenuate_in(bounce_passes_[cascade - first]);
-  session_.write(inside_[cascade], cells_in_medium(*options_.medium, grid));
+  medium_->place(cascade, grid);
+  medium_->scatter_lights(grid, lights, scale);
+  scattered_swept_ = false;
 }
 
 void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry) {
@@ -174,7 +180,7 @@ void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry) {
 
 void Sweeper::set_reflectors(std::size_t cascade, const Volume& reflectors) {
   bouncer_.value().set_reflectors(cascade, reflectors);
-  if (options_.bounces != Bounces::all || cascade + 1 < options_.parts.size()) return;
+  if (options_.bounces != Bounces::all || scatters() || cascade + 1 < options_.parts.size()) return;
   for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
     bouncer_->inject_unit(*bounced_);
     set_sources(*bounced_);
@@ -242,7 +248,7 @@ void Sweeper::launch(Pass& pass, std::size_t cascade, const Buffer& sums, const 
   const auto set = [&](cl_int last) {
     pass.sweep.set(bins_, pass.directions, pass.coefficients, pass.means, sources_, lit_, links_[cascade],
                    border_, halo, plane_buffer_, sums, pass.halo_light, last);
-    if (options_.medium) pass.sweep.add(inside_[cascade]);
+    if (medium_) medium_->add_to(pass.sweep, cascade, scattered_swept_);
   };
   if (whole_bins()) {
     set(lit ? 0 : 1);
@@ -276,7 +282,9 @@ void Sweeper::sweep_cascade(Passes& passes, std::size_t cascade, const std::vect
 
 /// Sets bounced_ to `injected` and reflected light, for bounces beyond the first.
 void Sweeper::add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected) {
-  if (options_.bounces == Bounces::two) {
+  if (scatters()) {
+    add_bounces_in_medium(cascade, grids, injected);
+  } else if (options_.bounces == Bounces::two) {
     set_sources(injected);
     sweep_cascade(bounce_passes_, cascade, grids);
     bouncer_->inject_reflected(cascade, sums_, 1, injected, *bounced_);
@@ -300,6 +308,27 @@ void Sweeper::add_series(float cell, const Volume& injected) {
   set_sources(*bounced_);
   launch(pass, coarsest, sums_, {}, false);
   bouncer_->inject_series(first_swept_, sums_, injected, *bounced_);
+}
+
+/// The same where light is also scattered by a medium, whose source function then includes swept light. All bounces: the
+/// coarsest cascade repeats sweep, reflection and scattering; finer ones scatter once more what a sweep of their own finds.
+void Sweeper::add_bounces_in_medium(std::size_t cascade, const std::vector<ClpvGrid>& grids,
+                                    const Volume& injected) {
+  const bool all = options_.bounces == Bounces::all, coarsest = cascade + 1 == options_.parts.size();
+  if (all && !coarsest) {
+    bouncer_->inject_interpolated(cascade, offset_in_coarser(grids[cascade + 1], grids[cascade]), injected,
+                                  *bounced_);
+  }
+  const Volume* light = all && !coarsest ? bounced_.get() : &injected;
+  for (int sweeps = all && coarsest ? kFurtherBounces + 2 : 1; sweeps > 0; --sweeps) {
+    set_sources(*light);
+    sweep_cascade(bounce_passes_, cascade, grids);
+    medium_->scatter_swept(sums_);
+    scattered_swept_ = true;
+    if (all && !coarsest) break;
+    bouncer_->inject_reflected(cascade, sums_, 1, injected, *bounced_);
+    light = bounced_.get();
+  }
 }
 
 /// Projects swept light on harmonics; with all bounces also stores the incident flux that the next finer cascade

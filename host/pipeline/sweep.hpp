@@ -15,6 +15,7 @@
 #include "kernels/shared/sweep.h"
 #include "options/stage_options.hpp"
 #include "pipeline/bounce.hpp"
+#include "pipeline/sweep_medium.hpp"
 #include "pipeline/sweep_volumes.hpp"
 #include "scene/sky.hpp"
 #include "volume/volume.hpp"
@@ -32,8 +33,10 @@ class Sweeper {
   /// the blocking mode.
   Sweeper(Session& session, const Basis& basis, const Transport& transport, const SweepOptions& options);
 
-  /// Sets where a cascade lies in SweepOptions::medium. Call first, and when the cascade moves; without a medium does nothing.
-  void place_in_medium(std::size_t cascade, const ClpvGrid& grid);
+  /// Sets where a cascade lies in SweepOptions::medium, and the light of `lights` that the medium scatters there, multiplied by
+  /// `scale`. Call before each sweep() in a medium.
+  void set_medium(std::size_t cascade, const ClpvGrid& grid, const std::vector<ShadowedLight>& lights,
+                  float scale);
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3 samples.
   void set_blockers(std::size_t cascade, const Volume& geometry);
@@ -83,7 +86,9 @@ class Sweeper {
   void launch(Pass& pass, std::size_t cascade, const Buffer& sums, const ClpvSweepHalo& halo, bool lit);
   void add_bounces(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected);
   void add_series(float cell, const Volume& injected);
+  void add_bounces_in_medium(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& injected);
   void collect(std::size_t cascade, Volume& accumulated);
+  bool scatters() const;  ///< there is a medium that scatters light
   cl_int upstream_plane(const Pass& pass) const;
 
   Session& session_;
@@ -99,7 +104,8 @@ class Sweeper {
   /// Along 24 directions, for incident flux: of each cascade, or with all bounces of the coarsest one.
   Passes bounce_passes_;
   std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce
-  std::vector<Buffer> inside_;       ///< cells_in_medium() of each cascade
+  std::optional<SweepMedium> medium_;
+  bool scattered_swept_ = false;  ///< the next sweep has the medium's light of swept light too
   Buffer first_swept_;               ///< D_1 of docs/method.md; only with all bounces
   float sky_scale_ = 1;
 };

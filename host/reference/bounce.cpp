@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . a) L_b s^2, emitted by the cosine about a.
-// All bounces: light = I + R D_1 + R (1 + E) D_2, a truncated Neumann series in the coarsest cascade.
+// All bounces without a medium: light = I + R D_1 + R (1 + E) D_2, a truncated Neumann series in the coarsest cascade.
 #include "reference/bounce.hpp"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
+#include "reference/medium.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -85,6 +86,53 @@ void add_all_bounces(const Basis& basis, const Transport& transport,
   }
 }
 
+/// Light that sweeps start from, by cascade.
+struct Sources {
+  std::vector<Volume> light, scattered;
+
+  /// Cascades from `first` on with these sources.
+  std::vector<SweptCascade> of(std::vector<SweptCascade> cascades, std::size_t first) const {
+    for (std::size_t c = 0; c < cascades.size(); ++c)
+      cascades[c].injected = &light[c], cascades[c].scattered = &scattered[c];
+    return {cascades.begin() + static_cast<std::ptrdiff_t>(first), cascades.end()};
+  }
+};
+
+/// Bounces off surfaces and in a medium. In the coarsest cascade sweeps repeat; finer ones scatter once more the light of a
+/// sweep of their own, and with all bounces reflect interpolated flux.
+Sources bounce_in_medium(const Basis& basis, const Transport& transport,
+                         const std::vector<SweptCascade>& cascades,
+                         const std::vector<const Volume*>& reflectors, bool all) {
+  Sources swept;  // sources of the last sweep along 24 directions
+  for (const SweptCascade& cascade : cascades) {
+    swept.light.push_back(*cascade.injected);
+    swept.scattered.push_back(*cascade.scattered);
+  }
+  Sources result = swept;
+  std::vector<SweptCascade> coarse = cascades;
+  for (SweptCascade& cascade : coarse) cascade.parts = 1;
+  for (std::size_t c = cascades.size(); c-- > 0;) {
+    const bool interpolates = all && c + 1 < cascades.size();
+    if (interpolates) {
+      const Volume coarser = sweep(basis, transport, result.of(cascades, c + 1))[0];
+      inject_reflected(basis, *reflectors[c],
+                       interpolated_flux(cascades[c + 1].grid, coarser, cascades[c].grid), result.light[c]);
+      swept.light[c] = result.light[c];
+    }
+    const int sweeps = all && !interpolates ? kFurtherBounces + 2 : 1;
+    for (int i = 0; i < sweeps; ++i) {
+      if (i > 0) swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
+      const Volume found = sweep(basis, transport, swept.of(coarse, c))[0];
+      result.scattered[c] = *cascades[c].scattered;
+      add_scattered(*cascades[c].medium, found, result.scattered[c]);
+      if (interpolates) continue;
+      result.light[c] = *cascades[c].injected;
+      inject_reflected(basis, *reflectors[c], incident_flux_of(found), result.light[c]);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
@@ -123,6 +171,11 @@ std::vector<Volume> bounce(const Basis& basis, const Transport& transport, std::
 std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport,
                                   std::vector<SweptCascade> cascades,
                                   const std::vector<const Volume*>& reflectors, Bounces bounces) {
+  if (cascades.front().scattered != nullptr) {
+    const Sources sources =
+        bounce_in_medium(basis, transport, cascades, reflectors, bounces == Bounces::all);
+    return sweep(basis, transport, sources.of(cascades, 0));
+  }
   const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces);
   for (std::size_t c = 0; c < cascades.size(); ++c) cascades[c].injected = &light[c];
   return sweep(basis, transport, cascades);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "basis/sampling.hpp"
+#include "basis/sweep.hpp"
 #include "kernels/shared/near.h"
 #include "reference/lighting.hpp"
 #include "reference/radiance.hpp"
@@ -90,6 +92,12 @@ glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options, con
   return vector(scene.medium.scattering) * sum;
 }
 
+/// The part of attenuated light that is scattered.
+double albedo(const ClpvMedium& medium, int channel) {
+  const double extinction = double{medium.extinction[channel]};
+  return extinction > 0 ? double{medium.scattering[channel]} / extinction : 0;
+}
+
 /// Weight of a ray's neighbour, whose end is `other` [m]; 0 outside the medium.
 double alike(double end, double other) {
   return other > 0 ? std::max(0.0, 1 - std::abs(end - other) / (kSameEnd * std::max(end, other))) : 0;
@@ -160,11 +168,6 @@ glm::dvec3 transmittance(const ClpvMedium& medium, const MediumPart& part) {
   return glm::exp(-part.length() * vector(medium.extinction));
 }
 
-double phase(double g, double cosine) {
-  const double d = 1 + g * g - 2 * g * cosine;
-  return (1 - g * g) / (4 * std::numbers::pi * d * std::sqrt(d));
-}
-
 bool attenuates(const ClpvMedium& medium) {
   return vector(medium.extinction) != glm::dvec3(0);
 }
@@ -195,6 +198,59 @@ std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions&
     light.push_back(ray.part.length() > 0 ? interpolated.sum / interpolated.weights : glm::dvec3(0));
   }
   return light;
+}
+
+Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLight>& lights,
+                          const ClpvGrid& grid) {
+  Volume scattered(static_cast<int>(grid.n), kSweepBins, 3);
+  const std::vector<SweepBin> bins = sweep_bins(1);
+  const glm::dvec3 lower = vector(medium.lower), upper = vector(medium.upper);
+  const double cell = double{grid.cell};
+  for_each_cell(scattered.n, [&](const glm::ivec3& p) {
+    const glm::dvec3 corner = vector(grid.origin) + cell * glm::dvec3(p);
+    if (glm::any(glm::greaterThanEqual(corner, upper)) ||
+        glm::any(glm::lessThanEqual(corner + cell, lower)))
+      return;
+    for (const MappedLight& light : lights) {
+      const bool directional = light.light.kind == CLPV_LIGHT_DIRECTIONAL;
+      glm::dvec3 irradiance(0);
+      for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 offset = 0.25 + 0.5 * glm::dvec3(i & 1, i >> 1 & 1, i >> 2),
+                         point = glm::clamp(corner + cell * offset, lower, upper);
+        if (!reaches(light, point)) continue;
+        const double near = directional ? 1 : 4 / cell * glm::distance(point, vector(light.light.position));
+        irradiance += light_at(light.light, point).irradiance / 8.0 * std::min(1.0, near * near);
+      }
+      glm::dvec3 along = vector(light.light.direction);
+      if (!directional) {
+        const glm::dvec3 offset = corner + 0.5 * cell - vector(light.light.position);
+        along = offset / std::max(glm::length(offset), 1e-6 * cell);
+      }
+      std::vector<double> phases;
+      double integral = 0;
+      for (const SweepBin& bin : bins) {
+        phases.push_back(phase(double{medium.anisotropy}, glm::dot(along, bin.directions.front().w)));
+        integral += phases.back() * 4 * std::numbers::pi / kSweepBins;
+      }
+      for (int c = 0; c < 3; ++c) {
+        for (int b = 0; b < kSweepBins; ++b)
+          scattered.at(c, b, p.x, p.y, p.z) +=
+              albedo(medium, c) * cell * cell * irradiance[c] * phases[b] / integral;
+      }
+    }
+  });
+  return scattered;
+}
+
+void add_scattered(const ClpvMedium& medium, const Volume& swept, Volume& scattered) {
+  const Matrix scattering = scattering_matrix(double{medium.anisotropy});
+  for_each_cell(swept.n, [&](const glm::ivec3& p) {
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<double> added = scattering * swept.cell(c, p);
+      for (int b = 0; b < kSweepBins; ++b)
+        scattered.at(c, b, p.x, p.y, p.z) += albedo(medium, c) * added[b];
+    }
+  });
 }
 
 }  // namespace clpv::reference

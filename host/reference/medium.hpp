@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Paths through a homogeneous medium in a box (kernels/shared/light.h, kernels/medium.h), and CPU reference of stage `medium`
-// (kernels/medium.cl), in double.
+// Paths through a homogeneous medium in a box (kernels/shared/light.h, kernels/medium.h), and CPU references of stage `medium`
+// (kernels/medium.cl) and of the light that it scatters in cells (kernels/sweep_medium.cl), in double.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,6 +12,7 @@
 #include "options/stage_options.hpp"
 #include "reference/gather.hpp"
 #include "reference/shade.hpp"
+#include "reference/volume.hpp"
 
 namespace clpv::reference {
 
@@ -29,9 +30,6 @@ MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const
 /// exp(-sigma_t l) for each channel. `part`: of a ray with a unit direction [m].
 glm::dvec3 transmittance(const ClpvMedium& medium, const MediumPart& part);
 
-/// Phase function of Henyey and Greenstein [1/sr]. `cosine`: between the directions of travel before and after.
-double phase(double anisotropy, double cosine);
-
 /// Returns true if light is scattered or absorbed at all.
 bool attenuates(const ClpvMedium& medium);
 
@@ -45,5 +43,11 @@ struct MediumScene {
 /// swept_basis().
 std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options,
                                         const MediumScene& scene, const SurfaceImage& camera);
+
+/// Returns the source function of `lights` in the cells of `grid`, times s^2 [W/sr], in bins24 (kernels/sweep_medium.cl).
+Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLight>& lights,
+                          const ClpvGrid& grid);
+/// Adds that of `swept` light, the result of sweep().
+void add_scattered(const ClpvMedium& medium, const Volume& swept, Volume& scattered);
 
 }  // namespace clpv::reference

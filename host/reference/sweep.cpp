@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// D = I + a sum_k t_k T_k D_k from upstream to downstream, for each direction; L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).
-// a: attenuation by a medium, 1 - f (1 - exp(-sigma_t s / |w_m|)), f the part in it of the way from the previous plane.
+// D = I + (1 - a) sum_k t_k T_k D_k + a |w_m| J s^2 from upstream to downstream, for each direction;
+// L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).   a: light that a medium attenuates, f (1 - exp(-sigma_t s / |w_m|)), f the
+// part in it of the way from the previous plane; J: its source function.
 #include "reference/sweep.hpp"
 
 #include <algorithm>
@@ -58,16 +59,21 @@ class Sweep {
                                                               : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
+        const double lost = attenuated(channel, sweep_bin, d, p),
+                     scattered = cascade_.scattered == nullptr
+                                     ? 0
+                                     : cascade_.scattered->value(channel, bin, p.x, p.y, p.z);
         field.at(channel, 0, p.x, p.y, p.z) = dot(means, cascade_.injected->cell(channel, p)) +
-                                              attenuation(channel, sweep_bin, d, p) * arriving;
+                                              (1 - lost) * arriving + lost * d.flux * scattered;
       }
     });
     return field;
   }
 
  private:
-  double attenuation(int channel, const SweepBin& bin, const SweepDirection& d, const glm::ivec3& p) const {
-    if (cascade_.medium == nullptr) return 1;
+  /// Part of the light that the medium attenuates on the way from the previous plane.
+  double attenuated(int channel, const SweepBin& bin, const SweepDirection& d, const glm::ivec3& p) const {
+    if (cascade_.medium == nullptr) return 0;
     const ClpvMedium& medium = *cascade_.medium;
     const double cell = double{cascade_.grid.cell};
     const auto part_of = [&](int axis, int i) {
@@ -80,7 +86,7 @@ class Sweep {
       const double here = part_of(axis, p[axis]);
       inside *= axis == bin.axis ? (here + part_of(axis, p[axis] - bin.sign[axis])) / 2 : here;
     }
-    return 1 + inside * std::expm1(-double{medium.extinction[channel]} * cell / d.flux);
+    return -inside * std::expm1(-double{medium.extinction[channel]} * cell / d.flux);
   }
 
   static std::size_t link_of(const glm::ivec3& offset) {

@@ -20,6 +20,7 @@ struct SweptCascade {
   const Volume* geometry = nullptr;    ///< blockers at the cells' corners; null: no blockers
   int parts = 1;                       ///< subdivision of its bins (sweep_bins)
   const ClpvMedium* medium = nullptr;  ///< null: none
+  const Volume* scattered = nullptr;   ///< the medium's source function, of scattered_in_cells(); null: 0
 };
 
 /// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of its first cell.

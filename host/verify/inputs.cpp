@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "pipeline/view.hpp"
 #include "verify/comparison.hpp"
 #include "verify/tolerances.hpp"
 
@@ -25,6 +26,16 @@ void add_materials(Scene& scene, std::mt19937& random) {
     Material material{{0.9f, 0.6f, 0.3f, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
     scene.materials.push_back(material);
   }
+}
+
+constexpr int kMapSize = 16;  // texels along each side of a shadow map
+
+MappedLight mapped(ClpvLight light, const ClpvMedium& medium, float depth) {
+  light.medium = medium;
+  MappedLight result{light, {}};
+  for (const ClpvView& view : shadow_views(light, {{-30, -30, -30}, {30, 30, 30}}, kMapSize))
+    result.maps.push_back({view, std::vector<float>(kMapSize * kMapSize, depth)});
+  return result;
 }
 
 }  // namespace
@@ -124,6 +135,28 @@ clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat&
   clpv::Volume volume(session, {from.n, from.coefficients, from.channels}, "check: volume", format);
   volume.write(session, {from.values.begin(), from.values.end()});
   return volume;
+}
+
+std::vector<MappedLight> lights_in(const ClpvMedium& medium) {
+  const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {},
+                      {}};
+  const ClpvLight point{{1, 1.5f, -2.3f}, CLPV_LIGHT_POINT, {}, 0, {6, 5, 4}, 0, 0, {}, {}};
+  const ClpvLight spot{{-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, {}, {}};
+  MappedLight unshadowed{spot, {}};
+  unshadowed.light.medium = medium;
+  return {mapped(sun, medium, 0), mapped(sun, medium, 1e-3f), mapped(point, medium, 0), unshadowed};
+}
+
+std::vector<ShadowedLight> on_device(Session& session, const std::vector<MappedLight>& lights) {
+  std::vector<ShadowedLight> shadowed;
+  for (const MappedLight& light : lights) {
+    ShadowedLight& there = shadowed.emplace_back(ShadowedLight{light.light, {}, {}});
+    for (const ShadowMap& map : light.maps) {
+      there.views.push_back(map.view);
+      there.depths.push_back(session.upload(map.depth, "check: shadow map"));
+    }
+  }
+  return shadowed;
 }
 
 }  // namespace clpv::reference

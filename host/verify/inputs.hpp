@@ -12,7 +12,9 @@
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "pipeline/shade.hpp"
 #include "pipeline/surface.hpp"
+#include "reference/shade.hpp"
 #include "reference/volume.hpp"
 #include "scene/scene.hpp"
 #include "verify/check.hpp"
@@ -43,6 +45,13 @@ Volume random_light(const Basis& basis, int n, std::mt19937& random);
 
 /// Returns `numbers` values in [0, 1] per corner.
 Volume random_blockers(int numbers, int n, std::mt19937& random);
+
+/// Returns a sun in the open and one that is blocked, a point light and a spot without maps, in a medium. Maps are empty or block
+/// everything, so that rounding decides no texel.
+std::vector<MappedLight> lights_in(const ClpvMedium& medium);
+
+/// Returns lights with their maps on the device.
+std::vector<ShadowedLight> on_device(Session& session, const std::vector<MappedLight>& lights);
 
 /// Returns a volume on the device with the same values.
 clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light scattered by a medium: kernels against CPU reference, under a sun, a spot and a point light and in random light of
-// two cascades. A map is empty or blocks everything, so that rounding decides no texel.
+// two cascades.
 #include "pipeline/medium.hpp"
 
 #include <memory>
@@ -9,7 +9,6 @@
 #include "basis/sweep.hpp"
 #include "pipeline/cascade.hpp"
 #include "pipeline/gather.hpp"
-#include "pipeline/view.hpp"
 #include "reference/medium.hpp"
 #include "verify/check.hpp"
 #include "verify/inputs.hpp"
@@ -20,7 +19,6 @@ namespace {
 
 constexpr int kMediumGrid = 9, kMediumCascades = 2;
 constexpr double kMediumFinestEdge = 6;  // [m]
-constexpr unsigned kMediumMap = 16;      // texels along each side of a shadow map
 
 struct MediumVariant {
   std::string name;
@@ -30,29 +28,11 @@ struct MediumVariant {
 const ClpvMedium kFog{{-2, -1.5f, -7}, {4, 3, 2}, {0.1f, 0.3f, 0.5f}, {0.15f, 0.3f, 0.9f}, 0.5f, {}};
 const ClpvMedium kDust{{-20, -20, -20}, {20, 20, 20}, {1e-5f, 2e-5f, 0}, {1e-5f, 2e-5f, 1e-5f}, -0.3f, {}};
 
-MappedLight mapped(ClpvLight light, const ClpvMedium& medium, float depth) {
-  light.medium = medium;
-  MappedLight result{light, {}};
-  for (const ClpvView& view : shadow_views(light, {{-30, -30, -30}, {30, 30, 30}}, kMediumMap))
-    result.maps.push_back({view, std::vector<float>(kMediumMap * kMediumMap, depth)});
-  return result;
-}
-
-std::vector<MappedLight> medium_lights(const ClpvMedium& medium) {
-  const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {},
-                      {}};
-  const ClpvLight point{{1, 1.5f, -2.3f}, CLPV_LIGHT_POINT, {}, 0, {6, 5, 4}, 0, 0, {}, {}};
-  const ClpvLight spot{{-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, {}, {}};
-  MappedLight unshadowed{spot, {}};
-  unshadowed.light.medium = medium;
-  return {mapped(sun, medium, 0), mapped(sun, medium, 1e-3f), mapped(point, medium, 0), unshadowed};
-}
-
 CheckResult check_one_medium(Session& session, const MediumVariant& variant) {
   std::mt19937 random(31);
   const std::unique_ptr<Basis> basis = swept_basis();
   const SurfaceImage image = random_surfaces(random);
-  const std::vector<MappedLight> lights = medium_lights(variant.medium);
+  const std::vector<MappedLight> lights = lights_in(variant.medium);
   const std::vector<ClpvGrid> grids =
       cascade_grids({0.1f, 0.2f, 0.3f}, kMediumCascades, kMediumFinestEdge, kMediumGrid);
   std::vector<Volume> light;
@@ -73,16 +53,8 @@ CheckResult check_one_medium(Session& session, const MediumVariant& variant) {
   Buffer pixels = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer gatherer(session, *basis, TransportKind::sweep, options.gather);
   gatherer.gather(camera, grids, volumes, pixels);
-  std::vector<ShadowedLight> shadowed;
-  for (const MappedLight& each : lights) {
-    ShadowedLight& there = shadowed.emplace_back(ShadowedLight{each.light, {}, {}});
-    for (const ShadowMap& map : each.maps) {
-      there.views.push_back(map.view);
-      there.depths.push_back(session.upload(map.depth, "check: shadow map"));
-    }
-  }
   MediumLight scattered(session, *basis, variant.medium, options);
-  scattered.scatter(camera, gatherer, shadowed, 1, nullptr);
+  scattered.scatter(camera, gatherer, on_device(session, lights), 1, nullptr);
   scattered.add(camera, true, pixels);
 
   std::vector<glm::dvec4> expected;

@@ -105,17 +105,9 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
   Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer gatherer(session, *basis, TransportKind::sweep, options.gather);
   gatherer.gather(camera, grids, volumes, irradiance, 1, hidden);
-  std::vector<ShadowedLight> shadowed;
-  for (const MappedLight& mapped : lights) {
-    ShadowedLight& there = shadowed.emplace_back(ShadowedLight{mapped.light, {}, {}});
-    for (const ShadowMap& map : mapped.maps) {
-      there.views.push_back(map.view);
-      there.depths.push_back(session.upload(map.depth, "check: shadow map"));
-    }
-  }
   const SceneBuffers buffers = upload_scene(session, scene);
   clpv::NearField(session, *basis, scene, buffers, options)
-      .add(camera, gatherer, shadowed, 1, hidden, irradiance);
+      .add(camera, gatherer, on_device(session, lights), 1, hidden, irradiance);
 
   const NearResult wanted = near(*basis, options, {scene, materials, lights, cascades}, image,
                                  gather(*basis, TransportKind::sweep, options.gather, cascades, image));

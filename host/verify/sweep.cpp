@@ -13,6 +13,7 @@
 #include "pipeline/cascade.hpp"
 #include "pipeline/sweep.hpp"
 #include "reference/bounce.hpp"
+#include "reference/medium.hpp"
 #include "verify/check.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
@@ -25,7 +26,8 @@ constexpr float kSkyScale = 0.5f;
 
 /// Its box cuts cells of every cascade.
 const ClpvMedium kSweptMedium{
-    {-1.1f, -0.7f, -3.3f}, {1.3f, 4, 0.9f}, {0.1f, 0.2f, 0.3f}, {0.2f, 0.5f, 2}, 0, {}};
+    {-1.1f, -0.7f, -3.3f}, {1.3f, 4, 0.9f}, {0.1f, 0.4f, 0.3f}, {0.2f, 0.4f, 2}, 0.4f, {}};
+constexpr float kMediumScale = 0.25f;
 
 struct SweepCase {
   std::string basis;
@@ -98,17 +100,22 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
     sweeper.set_sky(uneven_sky(1));
     sweeper.scale_sky(kSkyScale);
   }
-  std::vector<Volume> lights, blockers, reflectors;
+  const std::vector<MappedLight> in_medium = lights_in(kSweptMedium);
+  const std::vector<ShadowedLight> shadowed = on_device(session, in_medium);
+  std::vector<Volume> lights, blockers, reflectors, scattered(count);
   std::vector<SweptCascade> cascades;
   std::vector<const Volume*> reflecting;
   for (int i = 0; i < count; ++i) {
     lights.push_back(sparse_light(*basis, c.grid, random));
     blockers.push_back(random_blockers(blocking_size(c.blocked_by, *basis), c.grid, random));
     reflectors.push_back(random_reflectors(c.grid, random));
+    if (!c.medium) continue;
+    scattered[i] = scattered_in_cells(kSweptMedium, in_medium, grids[i]);
+    for (double& source : scattered[i].values) source *= double{kMediumScale};
   }
   for (int i = 0; i < count; ++i) {
     cascades.push_back({grids[i], &lights[i], c.blocking ? &blockers[i] : nullptr, c.parts[i],
-                        c.medium ? &kSweptMedium : nullptr});
+                        c.medium ? &kSweptMedium : nullptr, c.medium ? &scattered[i] : nullptr});
     reflecting.push_back(&reflectors[i]);
   }
   std::vector<std::vector<float>> found(count);
@@ -117,7 +124,7 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                        geometry = on_device(session, blockers[i], c.format),
                        sides = on_device(session, reflectors[i], c.format);
     clpv::Volume swept(session, {c.grid, swept_basis()->size(), 3}, "check: swept", c.format);
-    sweeper.place_in_medium(i, grids[i]);
+    sweeper.set_medium(i, grids[i], shadowed, kMediumScale);
     if (c.blocking) sweeper.set_blockers(i, geometry);
     if (c.bounces != Bounces::one) sweeper.set_reflectors(i, sides);
     sweeper.sweep(i, grids, light, swept);
@@ -174,6 +181,7 @@ CheckResults check_bounce(Session& session, const CheckScope& scope) {
   std::vector<SweepCase> cases = {
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all},
       {.basis = "sh3", .grid = 9, .parts = {1, 3}, .bounces = Bounces::two, .form = SweepForm::planes},
+      {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all, .medium = true},
   };
   // check_sweep compares the sweep in every format, so without `thorough` only one layout of buffers and images follow.
   for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats)) {
@@ -186,7 +194,7 @@ CheckResults check_bounce(Session& session, const CheckScope& scope) {
     cases.push_back(
         {.basis = "bins24", .grid = 8, .parts = {2, 2}, .bounces = Bounces::two, .form = SweepForm::planes});
     cases.push_back({.basis = "srbf8v2", .grid = 1, .parts = {1}, .bounces = all});
-    cases.push_back({.basis = "sh3", .grid = 7, .parts = {1, 2}, .bounces = all, .medium = true});
+    cases.push_back({.basis = "sh3", .grid = 7, .parts = {1, 2}, .bounces = Bounces::two, .medium = true});
     for (const std::string& name : basis_names())
       cases.push_back({.basis = name, .grid = 6, .parts = {2, 1}, .bounces = all});
   }
