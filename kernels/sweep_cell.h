@@ -11,10 +11,10 @@
 //
 // With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium scatters light into it:
 //
-//   D = I + (1 - a) sum_k t_k T_k D_k + a |w_m| J s^2,   a = f (1 - exp(-sigma_t s / |w_m|))
+//   D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2,   a = 1 - exp(-sigma_t s / |w_m|)
 //
-// f is the part in the medium of the way from the previous plane, the mean of both cells along m; J s^2 [W/sr] is the
-// source function of the bin (sweep_medium.cl).
+// f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin (sweep_medium.cl); f and f J are
+// means of the cell and its neighbour upstream along m.
 #ifndef CLPV_SWEEP_CELL_H
 #define CLPV_SWEEP_CELL_H
 
@@ -113,15 +113,19 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
 #endif
 #if CLPV_MEDIUM
 #define CLPV_INSIDE(axis, i) ((axis)*CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + (i))
-  const float along = s->inside[CLPV_INSIDE(bin.plane_axis, plane)] +
-                      s->inside[CLPV_INSIDE(bin.plane_axis, plane - bin.plane_sign)];
-  const CLPV_REAL in_medium = 0.5f * along * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
-                              CLPV_PLANE_LOAD(s->inside, CLPV_INSIDE(bin.column_axis, column));
+  const int upstream = plane - bin.plane_sign;
+  const int scattered_upstream = upstream < 0 || upstream >= CLPV_GRID ? at : clpv_sweep_at(upstream, row, column);
+  const CLPV_REAL across = 0.5f * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
+                           CLPV_PLANE_LOAD(s->inside, CLPV_INSIDE(bin.column_axis, column));
+  const CLPV_REAL inside = across * s->inside[CLPV_INSIDE(bin.plane_axis, plane)],
+                  inside_upstream = across * s->inside[CLPV_INSIDE(bin.plane_axis, upstream)];
   CLPV_REAL scattered[3];
 #pragma unroll
-  for (int channel = 0; channel < 3; ++channel)
+  for (int channel = 0; channel < 3; ++channel) {
+    CLPV_BUFFER_IN volume = s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME;
     scattered[channel] =
-        CLPV_SWEEP_LOAD(s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at);
+        inside * CLPV_SWEEP_LOAD(volume, at) + inside_upstream * CLPV_SWEEP_LOAD(volume, scattered_upstream);
+  }
 #endif
   CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
@@ -135,8 +139,8 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
       d = fma(w2, CLPV_PLANE_LOAD(from2, ordinate), d);
       d = fma(w3, CLPV_PLANE_LOAD(from3, ordinate), d);
 #if CLPV_MEDIUM
-      const CLPV_REAL lost = in_medium * (1.0f - s->directions[part].attenuation[channel]);
-      d = fma(lost, fma((CLPV_REAL)(s->directions[part].flux), scattered[channel], -d), d);
+      const CLPV_REAL lost = 1.0f - s->directions[part].attenuation[channel];
+      d = fma(lost, s->directions[part].flux * scattered[channel] - (inside + inside_upstream) * d, d);
 #endif
       CLPV_PLANE_STORE(to + here, ordinate, d);
       sum[channel] = fma((CLPV_REAL)(s->directions[part].share), d, sum[channel]);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -210,6 +211,64 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
   }
 }
 
+TEST(Medium, ScatteringBetweenBinsKeepsUniformLightEnergyAndMeanCosine) {
+  const std::vector<SweepBin> bins = sweep_bins(1);
+  for (const double g : {-0.9, 0.0, 0.3, 0.9}) {
+    const Matrix scattering = scattering_matrix(g);
+    double most_apart = 0;
+    for (int b = 0; b < kSweepBins; ++b) {
+      double to = 0, from = 0, cosine = 0;
+      for (int other = 0; other < kSweepBins; ++other) {
+        to += scattering(b, other), from += scattering(other, b);
+        cosine += scattering(other, b) *
+                  glm::dot(bins[b].directions.front().w, bins[other].directions.front().w);
+      }
+      EXPECT_NEAR(to, 1, 1e-12);
+      EXPECT_NEAR(from, 1, 1e-12);
+      most_apart = std::max(most_apart, std::abs(cosine - g));
+    }
+    EXPECT_LT(most_apart, 0.06) << "g " << g;  // bins are wide: 0 for g = 0
+  }
+}
+
+/// Uniform radiance of 1 in a medium that only scatters, from a sky of radiance 1, swept along 96 directions.
+struct Furnace {
+  static constexpr int kGrid = 8;
+  static constexpr float kCell = 0.25f;
+  ClpvGrid grid = cascade_grids(glm::vec3(0), 1, kGrid * kCell, kGrid).front();
+  Sky sky = constant_sky(glm::vec3(1));
+  std::unique_ptr<Basis> basis = swept_basis();
+  Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
+  reference::Volume dark{kGrid, basis->size(), 3}, scattered{kGrid, kSweepBins, 3};
+
+  reference::Volume swept(const ClpvMedium& medium) const {
+    return reference::sweep(*basis, transport, {{grid, &dark, nullptr, 2, &medium, &scattered}}, &sky)
+        .front();
+  }
+};
+
+TEST(Medium, UniformLightIsAFixedPointOfASweep) {
+  Furnace furnace;
+  const double area = double{Furnace::kCell} * Furnace::kCell;
+  for (double& source : furnace.scattered.values) source = area;
+  const ClpvMedium medium = medium_of({0.1, 1, 100}, {}, 0.5f, {-0.6, -0.9, -5}, {0.4, 5, 0.9});
+  for (const double value : furnace.swept(medium).values) EXPECT_NEAR(value, area, 1e-12);
+}
+
+// With an optical depth of 1 across the medium ten scatterings suffice.
+TEST(Medium, RepeatedSweepsFillTheFurnace) {
+  Furnace furnace;
+  const ClpvMedium medium = medium_of({0.1, 0.25, 0.5}, {}, 0.3f, glm::vec3(-1), glm::vec3(1));
+  reference::Volume swept = furnace.swept(medium);
+  for (int scattering = 0; scattering < 10; ++scattering) {
+    furnace.scattered = reference::Volume(Furnace::kGrid, kSweepBins, 3);
+    reference::add_scattered(medium, swept, furnace.scattered);
+    swept = furnace.swept(medium);
+  }
+  const double area = double{Furnace::kCell} * Furnace::kCell;
+  for (const double value : swept.values) EXPECT_NEAR(value, area, 2e-3 * area);
+}
+
 TEST(Medium, KernelsEqualCpuReference) {
   expect_passed(reference::check(Stage::medium, test_session()), 2);
 }
@@ -251,13 +310,50 @@ TEST(Medium, LightOfASunStopsAtItsShadows) {
   EXPECT_LT(std::sqrt(error / signal), 0.06);  // 0.05, and 0.15 with a fifth of the pixels along both axes
 }
 
-TEST(Medium, OptionsThatHaveNoMediumAreRefused) {
+/// NRMSE of the irradiance on a black floor below a sun, which all comes from a medium, and its energy over the truth's.
+std::array<double, 2> floor_error(const ClpvMedium& medium, Bounces bounces, int traced_bounces) {
+  Scene scene = floor_scene(0);
+  scene.lower = glm::vec3(-10, 0, -10), scene.upper = glm::vec3(10, 3, 10);
+  scene.lights = {sun({0.3f, -1, 0.1f}, 5)};
+  scene.medium = medium;
+  SceneCamera camera;
+  camera.eye = {0, 2.5f, 6}, camera.forward = glm::normalize(glm::vec3(0, -1, -2)), camera.vertical_fov = 1;
+  scene.cameras = {camera};
+  RenderOptions options;
+  options.width = 64, options.height = 36, options.bounces = bounces;
+  Frame frame(test_session(), scene, options);
+  frame.render(camera);
+  const std::vector<float> found = frame.read(Show::irradiance);
+  PathTracerOptions tracing;
+  tracing.samples = 256, tracing.bounces = traced_bounces;
+  const Image expected = reference::traced_view(
+      reference::trace_paths(scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing),
+      Show::irradiance);
+  double error = 0, signal = 0, sum = 0, expected_sum = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (i % 4 == 3 || expected.pixels[i - i % 4 + 3] == 0) continue;
+    error += (found[i] - expected.pixels[i]) * (found[i] - expected.pixels[i]);
+    signal += expected.pixels[i] * expected.pixels[i];
+    sum += found[i], expected_sum += expected.pixels[i];
+  }
+  return {std::sqrt(error / signal), sum / expected_sum};
+}
+
+TEST(Medium, ScatteredLightFallsOnSurfaces) {
+  const glm::vec3 lower(-4, 0.5f, -4), upper(4, 2.5f, 4);
+  const auto [thin, thin_energy] = floor_error(medium_of(glm::vec3(0.05f), glm::vec3(0.05f), 0.3f, lower, upper),
+                                               Bounces::one, 1);
+  EXPECT_LT(thin, 0.1);
+  EXPECT_NEAR(thin_energy, 1, 0.05);
+  const auto [fog, fog_energy] = floor_error(medium_of(glm::vec3(0.5f), {}, 0.3f, lower, upper), Bounces::all,
+                                             PathTracerOptions::kAllBounces);
+  EXPECT_LT(fog, 0.1);
+  EXPECT_NEAR(fog_energy, 1, 0.05);
+}
+
+TEST(Medium, StepPropagationIsRefused) {
   const Scene scene = shafts();
   RenderOptions options;
-  options.near = Near::traced;
-  EXPECT_THAT(error_of(ExitCode::usage, [&] { Frame(test_session(), scene, options); }),
-              HasSubstr("near: found 'traced' with a medium, allowed: off"));
-  options = {};
   apply_preset(options, PresetName::paper);
   EXPECT_THAT(error_of(ExitCode::usage, [&] { Frame(test_session(), scene, options); }),
               HasSubstr("with a medium, allowed: sweep (or a scene without a medium)"));

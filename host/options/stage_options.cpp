@@ -43,11 +43,12 @@ GatherOptions gather_options(const RenderOptions& options, bool medium) {
           .packed = options.near != Near::off || medium};
 }
 
-NearOptions near_options(const RenderOptions& options) {
+NearOptions near_options(const RenderOptions& options, bool medium) {
   return {.gather = gather_options(options),
           .step = options.near_size == NearSize::half ? 2 : 1,
           .rays = options.near_size == NearSize::half ? 4 : 2,
-          .reflects = options.bounces != Bounces::one};
+          .reflects = options.bounces != Bounces::one,
+          .medium = medium};
 }
 
 MediumOptions medium_options(const RenderOptions& options) {

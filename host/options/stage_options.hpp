@@ -77,6 +77,7 @@ struct NearOptions {
   int step = 1;               ///< traces one of step x step pixels: 1 or 2
   int rays = 4;               ///< per traced pixel, a power of two
   bool reflects = false;      ///< surfaces that rays hit also reflect the volumes' light
+  bool medium = false;        ///< lights have one
 };
 
 struct MediumOptions {
@@ -91,7 +92,7 @@ PropagateOptions propagate_options(const RenderOptions& options);
 SweepOptions sweep_options(const RenderOptions& options, const std::optional<ClpvMedium>& medium = {});
 /// `medium`: the scene has one.
 GatherOptions gather_options(const RenderOptions& options, bool medium = false);
-NearOptions near_options(const RenderOptions& options);
+NearOptions near_options(const RenderOptions& options, bool medium = false);
 MediumOptions medium_options(const RenderOptions& options);
 
 }  // namespace clpv

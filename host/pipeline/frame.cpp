@@ -15,18 +15,13 @@
 namespace clpv {
 namespace {
 
-/// Rejects what has no sky or medium: step propagation, which takes no light at the border of the cascades and attenuates
-/// none, and the near field.
+/// Rejects step propagation of a scene with a sky or medium: it takes no light at the border of the cascades, and attenuates
+/// none.
 void require_support(const RenderOptions& options, const Scene& scene) {
   const char* what = scene.sky ? "sky" : "medium";
   if ((scene.sky || scene.medium) && options.transport != TransportKind::sweep) {
     throw Error(ExitCode::usage, "transport: found '{}' with a {}, allowed: sweep (or a scene without a {})",
                 name_of(options.transport), what, what);
-  }
-  if (scene.medium && options.near != Near::off) {
-    throw Error(ExitCode::usage,
-                "near: found '{}'{} with a medium, allowed: off (or a scene without a medium)",
-                name_of(options.near), preset_note(options, "near"));
   }
 }
 
@@ -105,7 +100,9 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
       cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_),
       packed_(options.cascades) {
   require_support(options, scene);
-  if (options.near != Near::off) near_.emplace(session, gathered(), scene, buffers_, near_options(options));
+  const bool in_medium = scene.medium.has_value();
+  if (options.near != Near::off)
+    near_.emplace(session, gathered(), scene, buffers_, near_options(options, in_medium));
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options));
   const std::size_t pixels = std::size_t(options.width) * options.height;
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");

@@ -20,7 +20,8 @@ ProgramSource near_source(const char* file, const SceneBuffers& buffers, const N
       .real("CLPV_NEAR_CONE", near_cone(options.rays))
       .flag("CLPV_TEXTURED", buffers.textured)
       .flag("CLPV_COLOURED", buffers.coloured)
-      .flag("CLPV_EMISSIVE", buffers.emissive);
+      .flag("CLPV_EMISSIVE", buffers.emissive)
+      .flag("CLPV_MEDIUM", options.medium);
   return source;
 }
 

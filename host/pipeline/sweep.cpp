@@ -310,24 +310,17 @@ void Sweeper::add_series(float cell, const Volume& injected) {
   bouncer_->inject_series(first_swept_, sums_, injected, *bounced_);
 }
 
-/// The same where light is also scattered by a medium, whose source function then includes swept light. All bounces: the
-/// coarsest cascade repeats sweep, reflection and scattering; finer ones scatter once more what a sweep of their own finds.
+/// The same where light is also scattered by a medium, whose source function then includes swept light: repeats sweep,
+/// scattering and reflection.
 void Sweeper::add_bounces_in_medium(std::size_t cascade, const std::vector<ClpvGrid>& grids,
                                     const Volume& injected) {
-  const bool all = options_.bounces == Bounces::all, coarsest = cascade + 1 == options_.parts.size();
-  if (all && !coarsest) {
-    bouncer_->inject_interpolated(cascade, offset_in_coarser(grids[cascade + 1], grids[cascade]), injected,
-                                  *bounced_);
-  }
-  const Volume* light = all && !coarsest ? bounced_.get() : &injected;
-  for (int sweeps = all && coarsest ? kFurtherBounces + 2 : 1; sweeps > 0; --sweeps) {
-    set_sources(*light);
+  const int sweeps = options_.bounces == Bounces::all ? kFurtherBounces + 2 : 1;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    set_sources(sweep == 0 ? injected : *bounced_);
     sweep_cascade(bounce_passes_, cascade, grids);
     medium_->scatter_swept(sums_);
     scattered_swept_ = true;
-    if (all && !coarsest) break;
     bouncer_->inject_reflected(cascade, sums_, 1, injected, *bounced_);
-    light = bounced_.get();
   }
 }
 

@@ -98,36 +98,27 @@ struct Sources {
   }
 };
 
-/// Bounces off surfaces and in a medium. In the coarsest cascade sweeps repeat; finer ones scatter once more the light of a
-/// sweep of their own, and with all bounces reflect interpolated flux.
+/// Bounces off surfaces and in a medium: each of `sweeps` sweeps along 24 directions is reflected and scattered. A cascade's
+/// border has light of the coarser one's last sweep.
 Sources bounce_in_medium(const Basis& basis, const Transport& transport,
                          const std::vector<SweptCascade>& cascades,
-                         const std::vector<const Volume*>& reflectors, bool all) {
-  Sources swept;  // sources of the last sweep along 24 directions
+                         const std::vector<const Volume*>& reflectors, int sweeps) {
+  Sources swept;  // sources of the last sweep
   for (const SweptCascade& cascade : cascades) {
     swept.light.push_back(*cascade.injected);
     swept.scattered.push_back(*cascade.scattered);
   }
   Sources result = swept;
-  std::vector<SweptCascade> coarse = cascades;
-  for (SweptCascade& cascade : coarse) cascade.parts = 1;
+  std::vector<SweptCascade> along_24 = cascades;
+  for (SweptCascade& cascade : along_24) cascade.parts = 1;
   for (std::size_t c = cascades.size(); c-- > 0;) {
-    const bool interpolates = all && c + 1 < cascades.size();
-    if (interpolates) {
-      const Volume coarser = sweep(basis, transport, result.of(cascades, c + 1))[0];
-      inject_reflected(basis, *reflectors[c],
-                       interpolated_flux(cascades[c + 1].grid, coarser, cascades[c].grid), result.light[c]);
-      swept.light[c] = result.light[c];
-    }
-    const int sweeps = all && !interpolates ? kFurtherBounces + 2 : 1;
     for (int i = 0; i < sweeps; ++i) {
-      if (i > 0) swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
-      const Volume found = sweep(basis, transport, swept.of(coarse, c))[0];
-      result.scattered[c] = *cascades[c].scattered;
-      add_scattered(*cascades[c].medium, found, result.scattered[c]);
-      if (interpolates) continue;
+      swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
+      const Volume found = sweep(basis, transport, swept.of(along_24, c))[0];
       result.light[c] = *cascades[c].injected;
       inject_reflected(basis, *reflectors[c], incident_flux_of(found), result.light[c]);
+      result.scattered[c] = *cascades[c].scattered;
+      add_scattered(*cascades[c].medium, found, result.scattered[c]);
     }
   }
   return result;
@@ -173,7 +164,8 @@ std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport
                                   const std::vector<const Volume*>& reflectors, Bounces bounces) {
   if (cascades.front().scattered != nullptr) {
     const Sources sources =
-        bounce_in_medium(basis, transport, cascades, reflectors, bounces == Bounces::all);
+        bounce_in_medium(basis, transport, cascades, reflectors,
+                         bounces == Bounces::all ? kFurtherBounces + 2 : 1);
     return sweep(basis, transport, sources.of(cascades, 0));
   }
   const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// D = I + (1 - a) sum_k t_k T_k D_k + a |w_m| J s^2 from upstream to downstream, for each direction;
-// L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).   a: light that a medium attenuates, f (1 - exp(-sigma_t s / |w_m|)), f the
-// part in it of the way from the previous plane; J: its source function.
+// D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2 from upstream to downstream, for each direction;
+// L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).   In a medium: a = 1 - exp(-sigma_t s / |w_m|), J its source function, f the
+// part of a cell in it; f and f J are means of the cell and its neighbour upstream along m.
 #include "reference/sweep.hpp"
 
 #include <algorithm>
@@ -59,34 +59,43 @@ class Sweep {
                                                               : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
-        const double lost = attenuated(channel, sweep_bin, d, p),
-                     scattered = cascade_.scattered == nullptr
-                                     ? 0
-                                     : cascade_.scattered->value(channel, bin, p.x, p.y, p.z);
-        field.at(channel, 0, p.x, p.y, p.z) = dot(means, cascade_.injected->cell(channel, p)) +
-                                              (1 - lost) * arriving + lost * d.flux * scattered;
+        field.at(channel, 0, p.x, p.y, p.z) =
+            dot(means, cascade_.injected->cell(channel, p)) + in_medium(channel, bin, sweep_bin, d, p, arriving);
       }
     });
     return field;
   }
 
  private:
-  /// Part of the light that the medium attenuates on the way from the previous plane.
-  double attenuated(int channel, const SweepBin& bin, const SweepDirection& d, const glm::ivec3& p) const {
-    if (cascade_.medium == nullptr) return 0;
-    const ClpvMedium& medium = *cascade_.medium;
+  /// Part of a cell in the medium.
+  double inside(const glm::ivec3& p) const {
     const double cell = double{cascade_.grid.cell};
-    const auto part_of = [&](int axis, int i) {
-      const double low = cascade_.grid.origin[axis] + cell * i, upper = medium.upper[axis],
-                   lower = medium.lower[axis];
-      return std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
-    };
-    double inside = 1;
+    double part = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const double here = part_of(axis, p[axis]);
-      inside *= axis == bin.axis ? (here + part_of(axis, p[axis] - bin.sign[axis])) / 2 : here;
+      const double low = cascade_.grid.origin[axis] + cell * p[axis], upper = cascade_.medium->upper[axis],
+                   lower = cascade_.medium->lower[axis];
+      part *= std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
     }
-    return -inside * std::expm1(-double{medium.extinction[channel]} * cell / d.flux);
+    return part;
+  }
+
+  /// Light that has arrived from the previous plane after its way through the medium.
+  double in_medium(int channel, int bin, const SweepBin& sweep_bin, const SweepDirection& d,
+                   const glm::ivec3& p, double arriving) const {
+    if (cascade_.medium == nullptr) return arriving;
+    const double lost =
+        -std::expm1(-double{cascade_.medium->extinction[channel]} * double{cascade_.grid.cell} / d.flux);
+    glm::ivec3 upstream = p;
+    upstream[sweep_bin.axis] -= sweep_bin.sign[sweep_bin.axis];
+    const double here = inside(p) / 2, before = inside(upstream) / 2;
+    double scattered = 0;
+    if (cascade_.scattered != nullptr) {
+      const Volume& source = *cascade_.scattered;
+      const glm::ivec3 from = source.inside(upstream.x, upstream.y, upstream.z) ? upstream : p;
+      scattered = here * source.value(channel, bin, p.x, p.y, p.z) +
+                  before * source.value(channel, bin, from.x, from.y, from.z);
+    }
+    return arriving + lost * (d.flux * scattered - (here + before) * arriving);
   }
 
   static std::size_t link_of(const glm::ivec3& offset) {
