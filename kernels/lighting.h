@@ -22,20 +22,21 @@
 #define CLPV_ATTENUATE(irradiance, light, position, towards, distance)
 #endif
 
-// Irradiance [W/m^2] at `position` [m] on a plane across the ray. `towards`: unit vector to the light. 0 for an unknown
-// kind.
-static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
+// Irradiance [W/m^2] at `position` [m] on a plane across the ray, before attenuation. `towards`: unit vector to the light.
+// `to_light` [m]: distance of the light. 0 for an
+// unknown kind.
+static inline Vec clpv_clear_irradiance(const ClpvLight light, const Vec position, Vec* towards, float8* to_light) {
   const Vec intensity = vec_of(light.intensity), direction = vec_of(light.direction);
   if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
     *towards = vec(-direction.x, -direction.y, -direction.z);
-    Vec irradiance = intensity;
-    CLPV_ATTENUATE(irradiance, light, position, *towards, (float8)(INFINITY));
-    return irradiance;
+    *to_light = (float8)(INFINITY);
+    return intensity;
   }
   const Vec offset = vec_minus(vec_of(light.position), position);
   const float8 none = (float8)(0.0f), all = (float8)(1.0f), least = (float8)(CLPV_LIGHT_LEAST_DISTANCE);
   float8 distance = sqrt(vec_dot_unfused(offset, offset));
   distance = distance > least ? distance : least;
+  *to_light = distance;
   *towards = vec(offset.x / distance, offset.y / distance, offset.z / distance);
   if (light.kind != CLPV_LIGHT_SPOT && light.kind != CLPV_LIGHT_POINT) return vec(none, none, none);
   float8 attenuation = 1.0f / (distance * distance);
@@ -45,7 +46,13 @@ static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec positio
     attenuation *= cone * cone;
   }
   if (light.range > 0.0f) attenuation = distance > light.range ? none : attenuation;
-  Vec irradiance = vec_times(intensity, attenuation);
+  return vec_times(intensity, attenuation);
+}
+
+// The same after attenuation.
+static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
+  float8 distance;
+  Vec irradiance = clpv_clear_irradiance(light, position, towards, &distance);
   CLPV_ATTENUATE(irradiance, light, position, *towards, distance);
   return irradiance;
 }

@@ -77,18 +77,35 @@ CLPV_INLINE float8 place_in_interval(const NearRow r) {
   return ((float8)(row.x, row.y, row.z, row.w, row.x, row.y, row.z, row.w) + 0.5f) * (1.0f / 16.0f);
 }
 
-// Point k of `steps` of each ray: its distance from the camera [m], and exp(-sigma_t (t - start)) dt [m] of each channel.
-CLPV_INLINE Vec air_point(const AirRays* a, const ClpvMedium medium, const float8 place, const int k, const int steps,
-                          float8* at) {
+// A point of each ray.
+typedef struct {
+  float8 at;           // distance from the camera [m]
+  float8 path, step;   // t, its way through the medium, and dt exp(-sigma t), sigma the mean extinction [m]
+  float sigma;
+} AirPoint;
+
+// Point k of `steps` of each ray.
+CLPV_INLINE void air_point(const AirRays* a, const ClpvMedium medium, const float8 place, const int k, const int steps,
+                           AirPoint* p) {
   const float sigma = (medium.extinction[0] + medium.extinction[1] + medium.extinction[2]) * (1.0f / 3.0f);
   const float8 length = a->end - a->start, x = (place + (float)k) * (1.0f / (float)steps);
   const float8 reached = 1.0f - exp(-sigma * length);
   const int8 thin = sigma * length < (float8)(CLPV_THIN);
   const float8 deep = -log(1.0f - x * reached) * (1.0f / sigma);
   const float8 t = thin ? x * length : (deep < length ? deep : length);
-  const float8 step = (thin ? length : reached * exp(sigma * t) * (1.0f / sigma)) * (1.0f / (float)steps);
-  *at = a->start + t;
-  return vec_times(clpv_transmittance(medium, t), step);
+  const float8 spread = thin ? length * exp(-sigma * t) : reached * (1.0f / sigma);
+  p->at = a->start + t;
+  p->path = t;
+  p->step = spread * (1.0f / (float)steps);
+  p->sigma = sigma;
+}
+
+// exp(-sigma_t (t + further)) dt of each channel [m]. `further` [m]: way through the medium from the light to the point.
+CLPV_INLINE Vec air_share(const AirPoint* p, const ClpvMedium medium, const float8 further) {
+  const float8 way = p->path + (further > (float8)(0.0f) ? further : (float8)(0.0f)), before = p->sigma * p->path;
+  return vec_times(vec(exp(before - medium.extinction[0] * way), exp(before - medium.extinction[1] * way),
+                       exp(before - medium.extinction[2] * way)),
+                   p->step);
 }
 
 __kernel void medium_light(const ClpvView view, __global const float* depths, const ClpvLight light,
@@ -103,11 +120,14 @@ __kernel void medium_light(const ClpvView view, __global const float* depths, co
   const Vec sigma = vec_of(light.medium.scattering);
   Vec sum = vec(none, none, none);
   for (int k = 0; k < CLPV_LIGHT_STEPS; ++k) {
-    float8 at;
-    const Vec share = air_point(&a, light.medium, place, k, CLPV_LIGHT_STEPS, &at);
-    const Vec position = vec_add_scaled(a.origin, at, a.direction);
+    AirPoint p;
+    air_point(&a, light.medium, place, k, CLPV_LIGHT_STEPS, &p);
+    const Vec position = vec_add_scaled(a.origin, p.at, a.direction);
     Vec towards;
-    const Vec irradiance = clpv_light_irradiance(light, position, &towards);
+    float8 distance;
+    const Vec irradiance = clpv_clear_irradiance(light, position, &towards, &distance);
+    const MediumPart part = clpv_medium_part(light.medium, position, towards, distance);
+    const Vec share = air_share(&p, light.medium, part.end - part.start);
     const float8 phase = clpv_phase(light.medium.anisotropy, vec_dot(towards, a.direction));
     const float8 seen = phase * clpv_light_reaches(shadow, position);
     sum = vec_add_scaled(sum, seen, vec_product(share, irradiance));
@@ -128,10 +148,11 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths, 
   const float g = medium.anisotropy, gg = g * g;
   Vec sum = vec(none, none, none);
   for (int k = 0; k < CLPV_VOLUME_STEPS; ++k) {
-    float8 at;
-    const Vec share = air_point(&a, medium, place, k, CLPV_VOLUME_STEPS, &at);
+    AirPoint p;
+    air_point(&a, medium, place, k, CLPV_VOLUME_STEPS, &p);
+    const Vec share = air_share(&p, medium, none);
     RadianceField field;
-    clpv_radiance_field(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, at, a.direction), none, a.direction, a.inside,
+    clpv_radiance_field(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), none, a.direction, a.inside,
                         &field);
     float red[CLPV_ABREAST], green[CLPV_ABREAST], blue[CLPV_ABREAST];
     for (int i = 0; i < CLPV_ABREAST; ++i) {

@@ -12,17 +12,16 @@ typedef struct {
   float8 start, end;
 } MediumPart;
 
-// Part of the ray origin + t direction with t in (0, end). fmin and fmax return the other number for 0 / 0, of rays within
+// Part of the ray origin + t direction with t in (0, end). fmin and fmax return the other number for 0 times infinity, of rays within
 // a face's plane.
 CLPV_INLINE MediumPart clpv_medium_part(const ClpvMedium medium, const Vec origin, const Vec direction,
                                         const float8 end) {
   const Vec lower = vec_of(medium.lower), upper = vec_of(medium.upper);
-  const float8 x0 = (lower.x - origin.x) / direction.x, x1 = (upper.x - origin.x) / direction.x;
-  const float8 y0 = (lower.y - origin.y) / direction.y, y1 = (upper.y - origin.y) / direction.y;
-  const float8 z0 = (lower.z - origin.z) / direction.z, z1 = (upper.z - origin.z) / direction.z;
+  const Vec inverse = vec(1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z);
+  const Vec first = vec_product(vec_minus(lower, origin), inverse), last = vec_product(vec_minus(upper, origin), inverse);
   MediumPart part;
-  part.start = fmax(fmax(fmin(x0, x1), fmin(y0, y1)), fmax(fmin(z0, z1), (float8)(0.0f)));
-  part.end = fmin(fmin(fmax(x0, x1), fmax(y0, y1)), fmin(fmax(z0, z1), end));
+  part.start = fmax(fmax(fmin(first.x, last.x), fmin(first.y, last.y)), fmax(fmin(first.z, last.z), (float8)(0.0f)));
+  part.end = fmin(fmin(fmax(first.x, last.x), fmax(first.y, last.y)), fmin(fmax(first.z, last.z), end));
   return part;
 }
 

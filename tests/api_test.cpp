@@ -213,6 +213,31 @@ TEST(Api, LightsKeepTheirNumbers) {
   EXPECT_THROW(scene.set_lights(std::vector<Light>(65)), Error);
 }
 
+TEST(Api, AMediumCanBeSetAndRemoved) {
+  SceneFile scene(kCornell);
+  Renderer renderer(scene, small());
+  const Image clear = renderer.render();
+  EXPECT_FALSE(scene.medium());
+  const Medium fog{.scattering = {0.5, 0.5, 0.5}, .absorption = {0, 1, 2}, .anisotropy = 0.25};
+  scene.set_medium(fog);
+  EXPECT_EQ(scene.medium()->scattering, fog.scattering);
+  EXPECT_EQ(scene.medium()->absorption, fog.absorption);
+  EXPECT_EQ(scene.medium()->box, scene.bounds());
+  const Image foggy = renderer.render();
+  EXPECT_LT(mean(foggy, 2), 0.9 * mean(clear, 2)) << "blue is absorbed";
+  EXPECT_GT(mean(renderer.show(View::medium), 0), 0);
+  scene.set_medium({});
+  EXPECT_EQ(renderer.render().pixels, clear.pixels);
+  const auto rejected = [&](const std::string& member, const Medium& medium) {
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { scene.set_medium(medium); }),
+                HasSubstr("medium: " + member));
+  };
+  rejected("scattering", {.scattering = {-1, 0, 0}});
+  rejected("absorption", {.absorption = {0, NAN, 0}});
+  rejected("anisotropy", {.anisotropy = 1});
+  rejected("box", {.box = std::array{Vec3{0, 0, 0}, Vec3{1, 0, 1}}});
+}
+
 TEST(Api, ARendererOutlivesItsSceneHandle) {
   auto scene = std::make_unique<SceneFile>(kCornell);
   Renderer renderer(*scene, small());

@@ -60,8 +60,7 @@ TEST(Medium, PhaseFunctionIntegratesToOneAndHasTheMeanCosineOfItsAnisotropy) {
     double integral = 0, mean_cosine = 0;
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
-      const double cosine = -1 + 2 * (i + 0.5) / kSteps,
-                   weight = 4 * pi / kSteps * phase(g, cosine);
+      const double cosine = -1 + 2 * (i + 0.5) / kSteps, weight = 4 * pi / kSteps * phase(g, cosine);
       integral += weight;
       mean_cosine += cosine * weight;
     }
@@ -121,7 +120,8 @@ TEST(Medium, SceneFilesHaveOneInABoxOrInTheirBounds) {
       {R"({"scattering": [1, 1]})", "/medium/scattering"},
       {R"({"absorption": [1, 1, 1], "anisotropy": 1})", "/medium/anisotropy"},
       {R"({"absorption": [1, 1, 1], "box": {"lower": [0, 0, 0]}})", "/medium/box/upper"},
-      {R"({"absorption": [1, 1, 1], "box": {"lower": [0, 0, 0], "upper": [1, 0, 1]}})", "more than 0 m"},
+      {R"({"absorption": [1, 1, 1], "box": {"lower": [0, 0, 0], "upper": [1, 0, 1]}})",
+       "/medium/box: found 0,0,0 to 1,0,1; allowed: an upper corner above the lower one"},
       {R"({"absorption": [1, 1, 1], "colour": [1, 1, 1]})", "colour"}};
   for (const auto& [medium, message] : bad)
     EXPECT_THAT(error_of(ExitCode::bad_input, [&] { loaded(medium); }), HasSubstr(message)) << medium;
@@ -177,6 +177,28 @@ TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
   EXPECT_NEAR(seen.x, expected, 2e-3 * expected);
 }
 
+// A point light 0.3 m beside the same ray: L is the integral of sigma_s p I / r^2 exp(-sigma_t (t + r)) over the ray.
+TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
+  Scene scene = floor_scene(0);
+  const glm::vec3 at(2, 1.5f, 0);
+  scene.lights = {lamp(at, 5)};
+  const float scattering = 1e-3f, absorption = 0.5f;
+  scene.medium = medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {0, 0.5, -2}, {4, 2, 2});
+  const ClpvView view = view_of({0, 1.2, 0}, {1, 0, 0}, {0, 1, 0}, 1e-3f, 1, 1);
+  const double extinction = scattering + absorption;
+  double expected = 0;
+  constexpr int kSteps = 20000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = 4 * (i + 0.5) / kSteps;
+    const glm::dvec3 offset = glm::dvec3(at) - glm::dvec3(t, 1.2, 0);
+    const double r = glm::length(offset);
+    expected +=
+        4.0 / kSteps * scattering * phase(0.4, offset.x / r) * 5 / (r * r) * std::exp(-extinction * (t + r));
+  }
+  const glm::dvec3 seen = mean_of(reference::traced_view(traced(scene, view, 1, 256), Show::medium));
+  EXPECT_NEAR(seen.x, expected, 2e-3 * expected);
+}
+
 // In the middle of a cube of an absorbing medium under a uniform sky, the fluence is the integral of exp(-sigma l) over all
 // directions, l the way to the cube's side.
 TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
@@ -220,8 +242,8 @@ TEST(Medium, ScatteringBetweenBinsKeepsUniformLightEnergyAndMeanCosine) {
       double to = 0, from = 0, cosine = 0;
       for (int other = 0; other < kSweepBins; ++other) {
         to += scattering(b, other), from += scattering(other, b);
-        cosine += scattering(other, b) *
-                  glm::dot(bins[b].directions.front().w, bins[other].directions.front().w);
+        cosine +=
+            scattering(other, b) * glm::dot(bins[b].directions.front().w, bins[other].directions.front().w);
       }
       EXPECT_NEAR(to, 1, 1e-12);
       EXPECT_NEAR(from, 1, 1e-12);
@@ -235,7 +257,7 @@ TEST(Medium, ScatteringBetweenBinsKeepsUniformLightEnergyAndMeanCosine) {
 struct Furnace {
   static constexpr int kGrid = 8;
   static constexpr float kCell = 0.25f;
-  ClpvGrid grid = cascade_grids(glm::vec3(0), 1, kGrid * kCell, kGrid).front();
+  ClpvGrid grid = cascade_grids(glm::vec3(0), 1, kGrid* kCell, kGrid).front();
   Sky sky = constant_sky(glm::vec3(1));
   std::unique_ptr<Basis> basis = swept_basis();
   Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
@@ -325,9 +347,10 @@ std::array<double, 2> floor_error(const ClpvMedium& medium, Bounces bounces, int
   frame.render(camera);
   const std::vector<float> found = frame.read(Show::irradiance);
   PathTracerOptions tracing;
-  tracing.samples = 256, tracing.bounces = traced_bounces;
+  tracing.samples = 512, tracing.bounces = traced_bounces;
   const Image expected = reference::traced_view(
-      reference::trace_paths(scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing),
+      reference::trace_paths(scene, scene.lights_for(camera),
+                             camera_view(camera, options.width, options.height), tracing),
       Show::irradiance);
   double error = 0, signal = 0, sum = 0, expected_sum = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -341,13 +364,13 @@ std::array<double, 2> floor_error(const ClpvMedium& medium, Bounces bounces, int
 
 TEST(Medium, ScatteredLightFallsOnSurfaces) {
   const glm::vec3 lower(-4, 0.5f, -4), upper(4, 2.5f, 4);
-  const auto [thin, thin_energy] = floor_error(medium_of(glm::vec3(0.05f), glm::vec3(0.05f), 0.3f, lower, upper),
-                                               Bounces::one, 1);
-  EXPECT_LT(thin, 0.1);
+  const auto [thin, thin_energy] =
+      floor_error(medium_of(glm::vec3(0.05f), glm::vec3(0.05f), 0.3f, lower, upper), Bounces::one, 1);
+  EXPECT_LT(thin, 0.12);  // 0.07, and the noise of the truth
   EXPECT_NEAR(thin_energy, 1, 0.05);
   const auto [fog, fog_energy] = floor_error(medium_of(glm::vec3(0.5f), {}, 0.3f, lower, upper), Bounces::all,
                                              PathTracerOptions::kAllBounces);
-  EXPECT_LT(fog, 0.1);
+  EXPECT_LT(fog, 0.12);
   EXPECT_NEAR(fog_energy, 1, 0.05);
 }
 

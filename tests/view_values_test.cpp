@@ -109,7 +109,6 @@ TEST_F(CameraByNumbers, BadNumbersAreRejected) {
       {" --medium 1,1e7", "--medium"},
       {" --medium 1,0,1", "--medium"},
       {" --medium 1,0,0,0", "--medium"},
-      {" --medium 1 --near traced", "near: found 'traced' with a medium"},
   };
   for (const auto& [words, mentioned] : bad) {
     const Outcome outcome = run(render + words);

@@ -74,7 +74,8 @@ struct Renderer::State {
   PosedScene posed;
   RenderOptions options;
   Session session;
-  Frame frame;
+  std::optional<Frame> frame;
+  unsigned media;                               ///< of the frame (SceneFile::Contents)
   std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
   double frame_ms = 0;
 
@@ -84,7 +85,8 @@ struct Renderer::State {
         posed(file),
         options(resolve_options(given.given(), posed.scene())),
         session(choose_device(device), ProgramCache::of_user()),
-        frame(session, posed.scene(), options) {
+        media(file.contents().media) {
+    frame.emplace(session, posed.scene(), options);
     scene_stays.unlock();
   }
 
@@ -94,7 +96,7 @@ struct Renderer::State {
   }
 
   Image image(View view) {
-    Image made = view_image(frame, view);
+    Image made = view_image(*frame, view);
     made.metadata = metadata;
     return made;
   }
@@ -121,10 +123,16 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
   const Clock::time_point started = Clock::now();
-  if (state.posed.pose(seconds)) state.frame.scene_moved();
-  const SceneCamera chosen = state.posed.camera(camera);
   state.metadata.clear();
-  state.frame.render(chosen);
+  const bool moved = state.posed.pose(seconds);
+  if (state.media != state.file.contents().media) {
+    state.frame.emplace(state.session, state.posed.scene(), state.options);
+    state.media = state.file.contents().media;
+  } else if (moved) {
+    state.frame->scene_moved();
+  }
+  const SceneCamera chosen = state.posed.camera(camera);
+  state.frame->render(chosen);
   for (const OptionDescription& option : list_options(state.options))
     state.metadata[option.name] = option.value;
   state.metadata["camera"] = chosen.name;
@@ -153,7 +161,7 @@ std::vector<std::array<float, 3>> Renderer::irradiance(std::span<const std::arra
   Points points = checked_points("irradiance", "normal", positions, normals);
   const std::lock_guard lock(state_->mutex);
   state_->require_frame("irradiance");
-  return without_alpha(state_->frame.irradiance_at(std::move(points.positions), std::move(points.vectors)));
+  return without_alpha(state_->frame->irradiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<std::array<float, 3>> Renderer::radiance(std::span<const std::array<float, 3>> positions,
@@ -161,13 +169,13 @@ std::vector<std::array<float, 3>> Renderer::radiance(std::span<const std::array<
   Points points = checked_points("radiance", "direction", positions, directions);
   const std::lock_guard lock(state_->mutex);
   state_->require_frame("radiance");
-  return without_alpha(state_->frame.radiance_at(std::move(points.positions), std::move(points.vectors)));
+  return without_alpha(state_->frame->radiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<LightVolume> Renderer::volumes() {
   const std::lock_guard lock(state_->mutex);
   state_->require_frame("volumes");
-  const GatheredLight light = state_->frame.light();
+  const GatheredLight light = state_->frame->light();
   std::vector<LightVolume> all;
   for (std::size_t c = 0; c < light.grids.size(); ++c) {
     const ClpvGrid& grid = light.grids[c];
@@ -177,7 +185,7 @@ std::vector<LightVolume> Renderer::volumes() {
     volume.cell = grid.cell;
     volume.n = shape.n;
     volume.coefficients = shape.coefficients;
-    volume.basis = state_->frame.gathered().name();
+    volume.basis = state_->frame->gathered().name();
     volume.values = light.accumulated[c]->read(state_->session);
     for (float& value : volume.values) value /= light.scale;
   }

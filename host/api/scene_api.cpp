@@ -63,6 +63,20 @@ void SceneFile::set_lights(const std::vector<Light>& lights) {
   contents_->moving.set_lights(std::move(made));
 }
 
+std::optional<Medium> SceneFile::medium() const {
+  const std::shared_lock lock(contents_->mutex);
+  const std::optional<ClpvMedium>& medium = contents_->moving.scene().medium;
+  return medium ? std::optional(medium_of(*medium)) : std::nullopt;
+}
+
+void SceneFile::set_medium(const std::optional<Medium>& medium) {
+  std::optional<ClpvMedium> made;
+  if (medium) made = scene_medium(*medium, rejected_in("medium"));
+  const std::lock_guard lock(contents_->mutex);
+  contents_->moving.set_medium(made);
+  ++contents_->media;
+}
+
 bool SceneFile::moves() const {
   const std::shared_lock lock(contents_->mutex);
   return contents_->moving.moves();
@@ -93,6 +107,7 @@ bool PosedScene::pose(double seconds) {
   if (!posed_) return false;
   if (const auto& cameras = file_.contents().cameras) posed_->set_cameras(*cameras);
   if (const auto& lights = file_.contents().lights) posed_->set_lights(*lights);
+  posed_->set_medium(file_.contents().moving.scene().medium);
   posed_->pose(seconds);
   return true;
 }

@@ -18,6 +18,7 @@ struct SceneFile::Contents {
   /// Arguments of the last set_cameras() and set_lights().
   std::optional<std::vector<SceneCamera>> cameras;
   std::optional<std::vector<SceneLight>> lights;
+  unsigned media = 0;  ///< calls of set_medium()
 
   Contents(const std::filesystem::path& path, const std::filesystem::path& model) : moving(path, model) {}
 };
@@ -30,7 +31,7 @@ class PosedScene {
 
   const Scene& scene() const { return posed_ ? posed_->scene() : file_.contents().moving.scene(); }
 
-  /// Poses the scene and applies changes of the file's cameras and lights. Returns true if the scene may have moved.
+  /// Poses the scene and applies changes of the file's cameras, lights and medium. Returns true if the scene may have moved.
   /// Throws Error(usage) for a time out of range.
   bool pose(double seconds);
 

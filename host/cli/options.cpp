@@ -64,13 +64,9 @@ ClpvMedium parse_medium(const std::string& text) {
                 "0.05,0.01,0.6",
                 text, bounds::kExtinction, bounds::kAnisotropy, bounds::kAnisotropy);
   }
-  ClpvMedium medium{};
-  for (int c = 0; c < 3; ++c) {
-    medium.scattering[c] = static_cast<float>(numbers->x);
-    medium.extinction[c] = static_cast<float>(numbers->x + numbers->y);
-  }
-  medium.anisotropy = static_cast<float>(numbers->z);
-  return medium;
+  Medium medium{.anisotropy = numbers->z};
+  medium.scattering.fill(numbers->x), medium.absorption.fill(numbers->y);
+  return scene_medium(medium, rejected_in("--medium"));
 }
 
 CLI::Option* add_text(CLI::App& command, const OptionDescription& info,

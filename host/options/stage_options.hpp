@@ -83,7 +83,7 @@ struct NearOptions {
 struct MediumOptions {
   GatherOptions gather = {};  ///< of the volumes
   int light_steps = 8;        ///< points of each ray for each light
-  int volume_steps = 3;       ///< points of each ray for the volumes
+  int volume_steps = 1;       ///< points of each ray for the volumes
 };
 
 /// `unit_flux_lobes`: as in Transport.

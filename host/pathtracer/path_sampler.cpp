@@ -5,7 +5,9 @@
 //
 // A vertex in a medium has pi p, p the phase function, in place of a surface's cosine, and directions of density p in place of
 // p_cosine. All free flights of a path are sampled for one channel, drawn at random, and weighted by the mean density of the
-// three (Wilkie et al., 'Hero Wavelength Spectral Sampling', EGSR 2014).
+// three (Wilkie et al., 'Hero Wavelength Spectral Sampling', EGSR 2014). Suns light these vertices. Light of spots and points
+// that is scattered once on a ray has points of its own on the ray, at equal angles as seen from the light (Kulla and Fajardo,
+// 'Importance Sampling Techniques for Path Tracing in Participating Media', EGSR 2012).
 #include "pathtracer/path_sampler.hpp"
 
 #include <algorithm>
@@ -23,10 +25,10 @@ namespace clpv::reference {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2,
-                        kFlightStream = 3;  // of a bounce, besides its direction
-constexpr std::uint64_t kAirStream = 1ull << 32,
-                        kChannelStream = kAirStream + 1;  // of a path, besides its bounces
+constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3,
+                        kBeamStream = 4;  // of a bounce, besides its direction
+constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1,
+                        kEyeBeamStream = kAirStream + 2;  // of a path, besides its bounces
 constexpr int kCertainBounces = 3;                        // Russian roulette starts at this bounce
 constexpr double kMaxSurvival = 0.95;                     // so that paths end between white walls
 
@@ -89,6 +91,7 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
   const glm::vec3 origin = origin_of(at);
   glm::dvec3 sum(0);
   for (const SceneLight& light : lights_) {
+    if (at.in_medium && kind_of(light.data) != LightKind::directional) continue;  // from_beams()
     const Incident in = light_at(light.data, glm::dvec3(at.hit.position));
     const double cosine = factor(at, in.towards);
     if (cosine <= 0 || in.irradiance == glm::dvec3(0)) continue;
@@ -96,6 +99,35 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
     if (!shadowed(light.data, origin, in.towards)) sum += in.irradiance * cosine;
   }
   return sum;
+}
+
+/// Radiance towards `origin` of light of spots and points that a ray's first `distance` [m] scatters once. Points are drawn with
+/// the density D / (angle (D^2 + (t - t_0)^2)): D is the light's distance from the ray, t_0 its foot, `angle` what it sees of
+/// the ray.
+glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                                   double random) {
+  glm::dvec3 sum(0);
+  if (medium_ == nullptr) return sum;
+  const MediumPart part = medium_part(*medium_, origin, direction, distance);
+  if (part.length() == 0) return sum;
+  for (const SceneLight& light : lights_) {
+    if (kind_of(light.data) == LightKind::directional) continue;
+    const glm::dvec3 offset = vector(light.data.position) - origin;
+    const double foot = glm::dot(offset, direction);
+    const double away = std::max(glm::length(offset - foot * direction), 1e-6);
+    const double first = std::atan((part.start - foot) / away), last = std::atan((part.end - foot) / away);
+    const double beside = away * std::tan(glm::mix(first, last, random)),
+                 t = std::clamp(foot + beside, part.start, part.end);
+    const glm::dvec3 at = origin + t * direction;
+    const Incident in = light_at(light.data, at);
+    if (in.irradiance == glm::dvec3(0)) continue;
+    ++ray_count_;
+    if (shadowed(light.data, glm::vec3(at), in.towards)) continue;
+    const double density = away / ((last - first) * (away * away + beside * beside));
+    sum += transmittance(*medium_, {part.start, t}) * in.irradiance *
+           (phase(double{medium_->anisotropy}, glm::dot(in.towards, direction)) / density);
+  }
+  return vector(medium_->scattering) * sum;
 }
 
 /// Irradiance at `at` from a sampled emitter: L cos cos' / d^2 / (p_light + p_cosine), with densities over area.
@@ -198,9 +230,13 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
     ++ray_count_;
     const glm::vec3 origin = origin_of(at);
     const std::optional<Hit> hit = rays_.intersect(origin, *direction, 0, kInfinity, Faces::all);
+    const double distance = hit ? double{hit->distance} : double{kInfinity};
+    sum += throughput * std::numbers::pi *
+           from_beams(glm::dvec3(origin), glm::dvec3(*direction), distance,
+                      sobol_point(path, mix(dimensions, kBeamStream)).x);
     const std::optional<double> scattered =
-        fly(origin, glm::dvec3(*direction), hit ? double{hit->distance} : double{kInfinity},
-            sobol_point(path, mix(dimensions, kFlightStream)).x, flights, throughput);
+        fly(origin, glm::dvec3(*direction), distance, sobol_point(path, mix(dimensions, kFlightStream)).x,
+            flights, throughput);
     if (!hit && !scattered) {
       if (!sky_.empty()) sum += throughput * sky_along(at, glm::dvec3(*direction));
       break;
@@ -238,7 +274,8 @@ glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::d
                                    : 1 / part.length();
   flights.take(density, throughput);
   const Vertex at = in_medium(origin, direction, part.start + t);
-  return throughput * (direct(at) + indirect(at, path, own, flights)) / std::numbers::pi;
+  return from_beams(origin, direction, distance, sobol_point(path, mix(stream, kEyeBeamStream)).x) +
+         throughput * (direct(at) + indirect(at, path, own, flights)) / std::numbers::pi;
 }
 
 int PathSampler::channel_of(std::uint32_t path, std::uint64_t stream) {

@@ -65,6 +65,8 @@ class PathSampler {
   std::optional<glm::vec3> sample_direction(const Vertex& at, const glm::dvec2& random) const;
   std::optional<double> fly(const glm::vec3& origin, const glm::dvec3& direction, double distance,
                             double random, Flights& flights, glm::dvec3& throughput) const;
+  glm::dvec3 from_beams(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                        double random);
   glm::dvec3 sample_emitter(const Vertex& at, const glm::dvec2& random);
   glm::dvec3 sample_sky(const Vertex& at, const glm::dvec2& random);
   glm::dvec3 sky_along(const Vertex& at, const glm::dvec3& direction) const;

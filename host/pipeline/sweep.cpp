@@ -90,8 +90,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     links_.push_back(volumes_.make(links, "transmittance of the sweep's links"));
   passes_ = make_passes(basis, options.parts);
-  if (options.medium)
-    medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
+  if (options.medium) medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
   if (options.bounces == Bounces::one) return;
   bouncer_.emplace(session, basis, options);
   bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},

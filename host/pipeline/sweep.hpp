@@ -106,7 +106,7 @@ class Sweeper {
   std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce
   std::optional<SweepMedium> medium_;
   bool scattered_swept_ = false;  ///< the next sweep has the medium's light of swept light too
-  Buffer first_swept_;               ///< D_1 of docs/method.md; only with all bounces
+  Buffer first_swept_;            ///< D_1 of docs/method.md; only with all bounces
   float sky_scale_ = 1;
 };
 

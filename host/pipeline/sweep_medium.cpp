@@ -14,8 +14,7 @@ namespace {
 constexpr std::size_t kSourceVolumes = 3 * kSweepBins;
 
 ProgramSource scattering_program(const SweepVolumes& volumes, const ClpvMedium& medium) {
-  ProgramSource source =
-      volumes.program("sweep_medium.cl", scatter_source_text(double{medium.anisotropy}));
+  ProgramSource source = volumes.program("sweep_medium.cl", scatter_source_text(double{medium.anisotropy}));
   source.literals.flag("CLPV_MEDIUM", true);
   return source;
 }

@@ -163,9 +163,8 @@ std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport
                                   std::vector<SweptCascade> cascades,
                                   const std::vector<const Volume*>& reflectors, Bounces bounces) {
   if (cascades.front().scattered != nullptr) {
-    const Sources sources =
-        bounce_in_medium(basis, transport, cascades, reflectors,
-                         bounces == Bounces::all ? kFurtherBounces + 2 : 1);
+    const Sources sources = bounce_in_medium(basis, transport, cascades, reflectors,
+                                             bounces == Bounces::all ? kFurtherBounces + 2 : 1);
     return sweep(basis, transport, sources.of(cascades, 0));
   }
   const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces);

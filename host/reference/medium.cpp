@@ -208,8 +208,7 @@ Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLigh
   const double cell = double{grid.cell};
   for_each_cell(scattered.n, [&](const glm::ivec3& p) {
     const glm::dvec3 corner = vector(grid.origin) + cell * glm::dvec3(p);
-    if (glm::any(glm::greaterThanEqual(corner, upper)) ||
-        glm::any(glm::lessThanEqual(corner + cell, lower)))
+    if (glm::any(glm::greaterThanEqual(corner, upper)) || glm::any(glm::lessThanEqual(corner + cell, lower)))
       return;
     for (const MappedLight& light : lights) {
       const bool directional = light.light.kind == CLPV_LIGHT_DIRECTIONAL;
@@ -247,8 +246,7 @@ void add_scattered(const ClpvMedium& medium, const Volume& swept, Volume& scatte
   for_each_cell(swept.n, [&](const glm::ivec3& p) {
     for (int c = 0; c < 3; ++c) {
       const std::vector<double> added = scattering * swept.cell(c, p);
-      for (int b = 0; b < kSweepBins; ++b)
-        scattered.at(c, b, p.x, p.y, p.z) += albedo(medium, c) * added[b];
+      for (int b = 0; b < kSweepBins; ++b) scattered.at(c, b, p.x, p.y, p.z) += albedo(medium, c) * added[b];
     }
   });
 }

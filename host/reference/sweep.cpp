@@ -59,8 +59,8 @@ class Sweep {
                                                               : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
-        field.at(channel, 0, p.x, p.y, p.z) =
-            dot(means, cascade_.injected->cell(channel, p)) + in_medium(channel, bin, sweep_bin, d, p, arriving);
+        field.at(channel, 0, p.x, p.y, p.z) = dot(means, cascade_.injected->cell(channel, p)) +
+                                              in_medium(channel, bin, sweep_bin, d, p, arriving);
       }
     });
     return field;

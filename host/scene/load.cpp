@@ -189,11 +189,11 @@ void MovingScene::set_lights(std::vector<SceneLight> lights) {
   forget_missing_lights();
 }
 
-void MovingScene::set_medium(ClpvMedium medium) {
-  if (vector(medium.lower) == vector(medium.upper)) {
+void MovingScene::set_medium(std::optional<ClpvMedium> medium) {
+  if (medium && vector(medium->lower) == vector(medium->upper)) {
     for (int i = 0; i < 3; ++i) {
-      medium.lower[i] = scene_.lower[i];
-      medium.upper[i] = scene_.upper[i];
+      medium->lower[i] = scene_.lower[i];
+      medium->upper[i] = scene_.upper[i];
     }
   }
   scene_.medium = medium;

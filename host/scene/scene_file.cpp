@@ -257,24 +257,13 @@ Sky read_sky_member(const json& given, const std::filesystem::path& path, const 
 ClpvMedium read_medium(const json& given, double scale, const std::string& file) {
   if (!given.contains("scattering") && !given.contains("absorption"))
     reject(file, "/medium", "neither scattering nor absorption", "at least one of them");
-  const Vec3 scattering = numbers_in(given, "scattering", {}),
-             absorption = numbers_in(given, "absorption", {});
-  ClpvMedium medium{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    medium.scattering[i] = static_cast<float>(scattering[i]);
-    medium.extinction[i] = static_cast<float>(scattering[i] + absorption[i]);
-  }
-  medium.anisotropy = given.value("anisotropy", 0.0f);
-  if (!given.contains("box")) return medium;
-  const json& box = given["box"];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double lower = box["lower"][i], upper = box["upper"][i];
-    if (!(upper > lower))
-      reject(file, "/medium/box/upper", fmt::format("{} m", upper), fmt::format("more than {} m", lower));
-    medium.lower[i] = static_cast<float>(lower * scale);
-    medium.upper[i] = static_cast<float>(upper * scale);
-  }
-  return medium;
+  Medium medium{numbers_in(given, "scattering", {}),
+                numbers_in(given, "absorption", {}),
+                given.value("anisotropy", 0.0),
+                {}};
+  if (given.contains("box"))
+    medium.box = {numbers_in(given["box"], "lower", {}), numbers_in(given["box"], "upper", {})};
+  return scene_medium(medium, rejected_at(file, "/medium"), scale);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "scene/bounds.hpp"
 #include "scene/light_kind.hpp"
@@ -119,6 +120,36 @@ SceneLight scene_light(const Light& light, const RejectMember& reject, double me
     set_cone(data, glm::radians(light.inner_cone_degrees), glm::radians(light.outer_cone_degrees));
   }
   return made;
+}
+
+ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject, double metres_per_unit) {
+  const glm::dvec3 scattering = checked("scattering", medium.scattering, bounds::kExtinction, false, reject),
+                   absorption = checked("absorption", medium.absorption, bounds::kExtinction, false, reject);
+  check_number("anisotropy", medium.anisotropy, -bounds::kAnisotropy, bounds::kAnisotropy, reject);
+  ClpvMedium made{};
+  store_floats(made.scattering, scattering);
+  store_floats(made.extinction, scattering + absorption);
+  made.anisotropy = static_cast<float>(medium.anisotropy);
+  if (!medium.box) return made;
+  const glm::dvec3 lower = point("box", (*medium.box)[0], reject),
+                   upper = point("box", (*medium.box)[1], reject);
+  if (!glm::all(glm::greaterThan(upper, lower))) {
+    reject("box", fmt::format("{} to {}", text_of((*medium.box)[0]), text_of((*medium.box)[1])),
+           "an upper corner above the lower one");
+  }
+  store_floats(made.lower, lower * metres_per_unit);
+  store_floats(made.upper, upper * metres_per_unit);
+  return made;
+}
+
+Medium medium_of(const ClpvMedium& medium) {
+  const glm::vec3 scattering = glm::make_vec3(medium.scattering),
+                  extinction = glm::make_vec3(medium.extinction);
+  const glm::dvec3 absorption(extinction - scattering);
+  return {vec3(medium.scattering),
+          {absorption.x, absorption.y, absorption.z},
+          double{medium.anisotropy},
+          std::array{vec3(medium.lower), vec3(medium.upper)}};
 }
 
 Camera camera_of(const SceneCamera& camera) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras and lights of the public interface (clpv/scene.hpp) as those of a scene, and back. The only checks of their numbers.
+// Cameras, lights and media of the public interface (clpv/scene.hpp) as those of a scene, and back. The only checks of their numbers.
 #pragma once
 
 #include <functional>
@@ -21,8 +21,12 @@ RejectMember rejected_in(const std::string& what);
 SceneCamera scene_camera(const Camera& camera, const RejectMember& reject, double metres_per_unit = 1);
 SceneLight scene_light(const Light& light, const RejectMember& reject, double metres_per_unit = 1);
 
+/// Without a box, `lower` and `upper` are equal (MovingScene::set_medium).
+ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject, double metres_per_unit = 1);
+
 Camera camera_of(const SceneCamera& camera);
 Light light_of(const SceneLight& light);
+Medium medium_of(const ClpvMedium& medium);
 
 /// The numbers of a camera in one line, as its name in metadata and messages.
 std::string text_of(const Camera& camera);

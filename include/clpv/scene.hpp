@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -42,6 +43,13 @@ struct Light {
   std::string name{};
 };
 
+/// Fog or dust in a box, homogeneous. Errors as for Camera.
+struct Medium {
+  Vec3 scattering{}, absorption{};  ///< of red, green and blue [1/m], 0 to 1e6
+  double anisotropy = 0;            ///< of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards
+  std::optional<std::array<Vec3, 2>> box{};  ///< lower and upper corner [m]; none: the scene's bounding box
+};
+
 /// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data and its changes. Thread-safe:
 /// a change waits for frames in progress, and shows in the next frame of all renderers of the scene.
 class SceneFile {
@@ -60,6 +68,11 @@ class SceneFile {
   /// Throw Error(usage): see Camera and Light; no camera, more than 1024 cameras or 64 lights, two of one name.
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
+
+  /// The medium, with its box; or none. After a change the next frame of a renderer allocates its memory anew. Throws
+  /// Error(usage): see Medium.
+  std::optional<Medium> medium() const;
+  void set_medium(const std::optional<Medium>& medium);
 
   bool moves() const;                        ///< returns true if anything in it is animated
   std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader and not replaced

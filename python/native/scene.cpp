@@ -37,6 +37,14 @@ void add_value_methods(py::class_<T>& type, const std::vector<const char*>& memb
       "replace(**changes): a copy with other values of some arguments.");
 }
 
+/// Red, green, blue; or one number for all of them.
+Vec3 colour_of(const py::object& given) {
+  if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given)) return given.cast<Vec3>();
+  Vec3 grey{};
+  grey.fill(given.cast<double>());
+  return grey;
+}
+
 void add_camera(py::module_& module) {
   py::class_<Camera> type(
       module, "Camera",
@@ -70,14 +78,8 @@ void add_light(py::module_& module) {
   type.def(
       py::init([](const std::string& kind, const Vec3& position, const Vec3& direction,
                   const py::object& intensity, double range, double inner, double outer, std::string name) {
-        Vec3 rgb{};
-        if (py::isinstance<py::float_>(intensity) || py::isinstance<py::int_>(intensity)) {
-          rgb.fill(intensity.cast<double>());
-        } else {
-          rgb = intensity.cast<Vec3>();
-        }
-        return Light{
-            named<LightKind>("kind", kind), position, direction, rgb, range, inner, outer, std::move(name)};
+        return Light{named<LightKind>("kind", kind), position, direction, colour_of(intensity), range, inner,
+                     outer, std::move(name)};
       }),
       py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
       py::arg("direction") = py::make_tuple(0, -1, 0), py::arg("intensity") = py::make_tuple(1, 1, 1),
@@ -95,11 +97,35 @@ void add_light(py::module_& module) {
       type, {"kind", "position", "direction", "intensity", "range", "inner_cone", "outer_cone", "name"});
 }
 
+void add_medium(py::module_& module) {
+  py::class_<Medium> type(
+      module, "Medium",
+      "Homogeneous fog or dust in a box. Immutable; replace() makes another. Values are checked where it is used.\n\n"
+      "scattering, absorption: red, green, blue, or one number [1/m]; anisotropy: -0.9 to 0.9, above 0 "
+      "forwards;\n"
+      "box: lower and upper corner [m], None for the scene's bounding box.");
+  using Box = std::optional<std::array<Vec3, 2>>;
+  type.def(py::init([](const py::object& scattering, const py::object& absorption, double anisotropy, const Box& box) {
+             return Medium{colour_of(scattering), colour_of(absorption), anisotropy, box};
+           }),
+           py::arg("scattering") = py::make_tuple(0, 0, 0), py::arg("absorption") = py::make_tuple(0, 0, 0),
+           py::arg("anisotropy") = 0.0, py::arg("box") = py::none());
+  type.def_property_readonly("scattering", [](const Medium& m) { return tuple_of(m.scattering); });
+  type.def_property_readonly("absorption", [](const Medium& m) { return tuple_of(m.absorption); });
+  type.def_readonly("anisotropy", &Medium::anisotropy);
+  type.def_property_readonly("box", [](const Medium& m) -> py::object {
+    if (!m.box) return py::none();
+    return py::make_tuple(tuple_of((*m.box)[0]), tuple_of((*m.box)[1]));
+  });
+  add_value_methods(type, {"scattering", "absorption", "anisotropy", "box"});
+}
+
 }  // namespace
 
 void add_scene(py::module_& module) {
   add_camera(module);
   add_light(module);
+  add_medium(module);
   py::class_<SceneFile> type(module, "Scene",
                              "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); "
                              "`model` replaces that of the file.\n\n"
@@ -125,6 +151,14 @@ void add_scene(py::module_& module) {
       "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame of every "
       "renderer\n"
       "of this scene recomputes what depends on them.");
+  type.def_property(
+      "medium", &SceneFile::medium,
+      [](SceneFile& scene, const std::optional<Medium>& medium) {
+        py::gil_scoped_release released;
+        scene.set_medium(medium);
+      },
+      "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its "
+      "memory anew.");
   type.def_property_readonly("moves", &SceneFile::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const SceneFile& scene) { return py::tuple(py::cast(scene.notes())); },

@@ -82,6 +82,21 @@ def test_lights_and_cameras_are_replaced():
         scene.lights.append(clpv.Light())  # a tuple: a change would be lost
 
 
+def test_medium_is_set_and_removed():
+    scene = clpv.Scene(CORNELL)
+    renderer = clpv.Renderer(scene, **SMALL)
+    clear = renderer.render().array
+    assert scene.medium is None
+    scene.medium = clpv.Medium(scattering=0.5, absorption=(0, 1, 2), anisotropy=0.25)
+    assert scene.medium.scattering == (0.5, 0.5, 0.5) and scene.medium.box == scene.bounds
+    assert renderer.render().array[..., 2].mean() < 0.9 * clear[..., 2].mean()
+    assert renderer.show("medium").array[..., 0].mean() > 0
+    scene.medium = None
+    assert np.array_equal(renderer.render().array, clear)
+    with pytest.raises(clpv.UsageError, match="medium: anisotropy: found 1, allowed: -0.9..0.9"):
+        scene.medium = clpv.Medium(scattering=1, anisotropy=1)
+
+
 def test_stats(scene):
     renderer = clpv.Renderer(scene, **SMALL)
     assert renderer.stats["propagate"] == 0
