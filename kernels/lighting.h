@@ -13,18 +13,10 @@
 
 #if CLPV_MEDIUM
 #include "medium.h"
-#define CLPV_ATTENUATE(irradiance, light, position, towards, distance)                                          \
-  do {                                                                                                          \
-    const MediumPart part = clpv_medium_part((light).medium, position, towards, distance);                      \
-    irradiance = vec_product(irradiance, clpv_transmittance((light).medium, part.end - part.start));            \
-  } while (0)
-#else
-#define CLPV_ATTENUATE(irradiance, light, position, towards, distance)
 #endif
 
-// Irradiance [W/m^2] at `position` [m] on a plane across the ray, before attenuation. `towards`: unit vector to the light.
-// `to_light` [m]: distance of the light. 0 for an
-// unknown kind.
+// Irradiance [W/m^2] at `position` [m] on a plane across the ray, before attenuation; 0 for an unknown kind. `towards`: unit
+// vector to the light. `to_light` [m]: distance of the light.
 static inline Vec clpv_clear_irradiance(const ClpvLight light, const Vec position, Vec* towards, float8* to_light) {
   const Vec intensity = vec_of(light.intensity), direction = vec_of(light.direction);
   if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
@@ -52,9 +44,13 @@ static inline Vec clpv_clear_irradiance(const ClpvLight light, const Vec positio
 // The same after attenuation.
 static inline Vec clpv_light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
   float8 distance;
-  Vec irradiance = clpv_clear_irradiance(light, position, towards, &distance);
-  CLPV_ATTENUATE(irradiance, light, position, *towards, distance);
+  const Vec irradiance = clpv_clear_irradiance(light, position, towards, &distance);
+#if CLPV_MEDIUM
+  const MediumPart part = clpv_medium_part(light.medium, position, *towards, distance);
+  return vec_product(irradiance, clpv_transmittance(light.medium, part.end - part.start));
+#else
   return irradiance;
+#endif
 }
 
 #endif

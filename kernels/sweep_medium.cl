@@ -6,7 +6,7 @@
 //
 // E [W/m^2]: irradiance of a light, mean over eight points of the cell that lie in the medium; p_b [1/sr]: phase
 // function from the light's direction w to the mean direction of bin b, over all bins scaled to an integral of 1;
-// M (24 x 24): means of the phase function from bin to bin (host/basis/scattering.hpp).
+// M (24 x 24): means of the phase function from bin to bin (host/basis/sweep.hpp).
 //
 // scatter_lights    adds the first sum for one light and one of its shadow maps
 //   In:      grid, light, views, count, which, map   light scaled as volumes are; maps as in shade.cl

@@ -2,6 +2,8 @@
 // View `cells`: which sphere a pixel shows, and its light.
 #include "pipeline/cells.hpp"
 
+#include <gmock/gmock.h>
+
 #include "pipeline/frame.hpp"
 #include "pipeline/view.hpp"
 #include "scene/load.hpp"
