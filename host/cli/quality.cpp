@@ -21,6 +21,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "cli/quality_baselines.hpp"
 #include "cli/quality_subjects.hpp"
 #include "clpv/version.hpp"
 #include "quality/unreached.hpp"
@@ -34,6 +35,7 @@ namespace quality_command {
 
 struct Options {
   QualitySubjects subjects;
+  QualityBaselines baselines;
   std::vector<std::string> varied;
   std::vector<std::string> outputs;
   std::string cache, format;
@@ -50,8 +52,8 @@ struct Options {
   }
 };
 
-/// All combinations of the values of --vary. Without it: the frame that the options name; without any option: all bases
-/// and transports.
+/// All combinations of the values of --vary. Without it: the frame that the options name; without any option and baseline:
+/// all bases and transports.
 std::vector<Variant> variants_of(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
@@ -61,7 +63,7 @@ std::vector<Variant> variants_of(const Options& options) {
                   text);
     }
   }
-  if (varied.empty() && !options.named()) {
+  if (varied.empty() && !options.named() && options.baselines.names.empty()) {
     varied.push_back({"basis", basis_names()});
     varied.push_back({"transport", names_of<TransportKind>()});
   }
@@ -192,6 +194,8 @@ void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   const std::vector<Variant> variants = variants_of(options);
   const reference::PathTracerOptions tracing = options.tracing.resolved();
+  if (!options.baselines.names.empty() && ranks.size() > 1)
+    throw Error(ExitCode::usage, "--baseline: found {} ranks; allowed: one", ranks.size());
   for (const std::string& output : options.outputs) {
     require_extension("--output", output, {".json", ".csv"});
     check_writable(output);
@@ -205,8 +209,14 @@ void run(const Options& options, Shared& shared) {
     const RenderOptions frame = with(options, {}, subject.scene);
     trace_truths(subject, frame.width, frame.height, tracing, folder / "references", ranks);
   }
-  const std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
+  std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
   if (!ranks.is_root()) return;
+  if (!options.baselines.names.empty()) {
+    const auto frame = [&](const Scene& scene) { return with(options, {}, scene); };
+    std::ranges::move(measure_baselines(options.baselines, session, subjects, frame, tracing.bounces,
+                                        options.view, options.frames),
+                      std::back_inserter(cells));
+  }
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
   for (const std::string& output : options.outputs)
     write_file(output, output.ends_with(".csv") ? quality_csv(cells) : json);
@@ -221,7 +231,8 @@ void add_options(CLI::App& command, Options& options) {
   add_subject_options(command, options.subjects);
   add(command, "--vary", "OPTION=a,b,c", options.varied,
       "render option and its values, repeatable; each combination is a variant. Without --vary: the frame\n"
-      "that the other options name, or all bases and transports if none is named");
+      "that the other options name, or all bases and transports if neither one nor --baseline is named");
+  add_baseline_options(command, options.baselines);
   add_choice(command, "--view", options.view, "view to compare");
   command
       .add_option("--frames", options.frames,

@@ -224,6 +224,17 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
   return first_points(session_.read<float>(radiances, numbers), count);
 }
 
+std::vector<SurfaceImage> Frame::read_rsms(int cascade) {
+  require_light("RSMs");
+  lights_.rasterize_rsms(cascade);  // cascades may share their memory
+  std::vector<SurfaceImage> images;
+  for (const Surface* rsm : lights_.rsms(cascade)) {
+    SurfaceImage& image = images.emplace_back(read_surface(session_, *rsm));
+    for (glm::vec4& flux : image.colour) flux /= lights_.scale();
+  }
+  return images;
+}
+
 /// Draws the spheres of visible_spheres() with the irradiance that gathering has at their cells' centres.
 void Frame::draw_cells(std::vector<float>& image) {
   const std::size_t pixels = std::size_t(options_.width) * options_.height;

@@ -60,6 +60,9 @@ class Frame {
   /// Error(usage) before the first render, without a sweep, and if gathering reads images.
   std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> directions);
 
+  /// RSMs of a cascade of the last render, flux in W.
+  std::vector<SurfaceImage> read_rsms(int cascade);
+
   /// One view of the last render as RGBA float, top row first.
   std::vector<float> read(Show view);
 

@@ -31,16 +31,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show) {
-  const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
-  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string(), truth.exposure);
-  cell.nrmse = c.nrmse_valid;
-  cell.best_gain = c.best_gain;
-  cell.nrmse_best_gain = c.nrmse_best_gain;
-  cell.energy_ratio = c.energy_ratio;
-  cell.flip = c.flip;
-}
-
 /// Total times of one frame per stage.
 std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bool& from_events) {
   std::map<std::string, double> sums;
@@ -52,6 +42,16 @@ std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bo
 }
 
 }  // namespace
+
+void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show) {
+  const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
+  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string(), truth.exposure);
+  cell.nrmse = c.nrmse_valid;
+  cell.best_gain = c.best_gain;
+  cell.nrmse_best_gain = c.nrmse_best_gain;
+  cell.energy_ratio = c.energy_ratio;
+  cell.flip = c.flip;
+}
 
 VariedOption parse_varied(const std::string& text) {
   const auto equals = text.find('=');

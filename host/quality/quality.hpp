@@ -47,14 +47,19 @@ struct QualityCell {
   std::map<std::string, double> stage_ms;  ///< median over the timed frames; sum over cascades and lights
   bool from_events = true;                 ///< times from device events; false: wall time
   unsigned compute_units = 0;              ///< of the device or sub-device that was timed
-  double setup_s = 0;                      ///< time to create the frame; 0 if reused from another view
-  double measured_s = 0;                   ///< total time of the measurement
+  std::map<std::string, double>
+      settings;           ///< of a baseline: samples, threads and times (quality/baseline.hpp)
+  double setup_s = 0;     ///< time to create the frame; 0 if reused from another view
+  double measured_s = 0;  ///< total time of the measurement
 };
 
 /// Renders a warm-up frame and `frames` timed ones, and compares the view `show` of the last with the ground truth.
 /// Sets all fields except names and variant. Throws the errors of Frame and compare.
 QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
                     const reference::GroundTruth& truth, Show show, int frames);
+
+/// Sets the errors of an image of the view `show`. Throws the errors of compare.
+void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show);
 
 /// Cache key over all inputs of a cell: ground truth, device (but not the number of its sub-devices), options, view,
 /// number of timed frames, kernels and program.

@@ -33,6 +33,17 @@ std::set<std::string> stage_names(const std::vector<QualityCell>& cells) {
   return names;
 }
 
+/// Names of the options of all variants, in order of first appearance. Baselines have other ones than frames.
+std::vector<std::string> option_names(const std::vector<QualityCell>& cells) {
+  std::vector<std::string> names;
+  for (const QualityCell& cell : cells) {
+    for (const auto& [name, value] : cell.variant) {
+      if (std::ranges::count(names, name) == 0) names.push_back(name);
+    }
+  }
+  return names;
+}
+
 /// Formats lines of equal width: first column left-aligned, others right-aligned.
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows[0].size(), 0);
@@ -72,7 +83,8 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 }  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain, nrmse_best_gain,
-                                   energy_ratio, flip, frame_ms, stage_ms, compute_units, setup_s, measured_s)
+                                   energy_ratio, flip, frame_ms, stage_ms, compute_units, settings, setup_s,
+                                   measured_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse, nrmse_best_gain,
                                    energy_ratio, flip, frame_ms, stage_ms)
 
@@ -101,14 +113,18 @@ nlohmann::json to_json(const QualitySummary& sum) {
 std::string quality_csv(const std::vector<QualityCell>& cells) {
   if (cells.empty()) return "";
   const std::set<std::string> stages = stage_names(cells);
+  const std::vector<std::string> options = option_names(cells);
   std::string text = "scene,camera";
-  for (const auto& [name, value] : cells[0].variant) text += ',' + csv_field(name);
+  for (const std::string& name : options) text += ',' + csv_field(name);
   text += ",rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,flip,frame_ms";
   for (const std::string& stage : stages) text += ',' + csv_field(stage + "_ms");
   text += '\n';
   for (const QualityCell& cell : cells) {
     text += csv_field(cell.scene) + ',' + csv_field(cell.camera);
-    for (const auto& [name, value] : cell.variant) text += ',' + csv_field(value);
+    for (const std::string& name : options) {
+      const auto found = std::ranges::find(cell.variant, name, &Variant::value_type::first);
+      text += ',' + (found == cell.variant.end() ? "" : csv_field(found->second));
+    }
     text += ',' + csv_field(cell.rejected);
     for (const auto& value :
          {cell.nrmse, cell.best_gain, cell.nrmse_best_gain, cell.energy_ratio, cell.flip}) {

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Baseline: virtual point lights from reflective shadow maps.
+#include <algorithm>
+#include <numbers>
+
+#include "baselines/methods.hpp"
+#include "basis/sampling.hpp"
+#include "reference/view.hpp"
+
+namespace clpv::baselines {
+namespace {
+
+/// Lift of a light off its surface [texels of the RSM]: the rasteriser's vertices lie on a lattice of 1/256 texel.
+constexpr double kLift = 1.0 / 32;
+constexpr double kGrazing = 0.05;  // smallest cosine that divides an area
+
+double brightness(const glm::vec4& flux) {
+  return double{std::max(flux.x, 0.0f)} + double{std::max(flux.y, 0.0f)} + double{std::max(flux.z, 0.0f)};
+}
+
+/// The light of a texel, of which `share` lights stand for all of its flux.
+PointLight light_of(const SurfaceImage& rsm, std::size_t texel, double share) {
+  const glm::dvec3 normal(rsm.normal[texel]),
+      position = reference::surface_position(rsm.view, texel, rsm.depth[texel]);
+  const auto x = static_cast<double>(texel % rsm.view.width), y = static_cast<double>(texel / rsm.view.width);
+  const glm::dvec3 ray = glm::normalize(reference::surface_position(rsm.view, x, y, 2) -
+                                        reference::surface_position(rsm.view, x, y, 1));
+  const double area = reference::footprint(rsm.view, x, y, double{rsm.depth[texel]}) /
+                      std::max(kGrazing, -glm::dot(ray, normal));
+  const double lift = kLift * reference::pixel_edge(rsm.view, double{rsm.depth[texel]});
+  return {glm::vec3(position + lift * normal), glm::vec3(normal), glm::vec3(rsm.colour[texel]) / float(share),
+          static_cast<float>(area / share)};
+}
+
+}  // namespace
+
+std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned count) {
+  std::vector<double> cdf;
+  for (const SurfaceImage& rsm : rsms) {
+    for (std::size_t i = 0; i < rsm.depth.size(); ++i)
+      cdf.push_back((cdf.empty() ? 0 : cdf.back()) + (rsm.depth[i] > 0 ? brightness(rsm.colour[i]) : 0));
+  }
+  std::vector<PointLight> lights;
+  if (cdf.empty() || !(cdf.back() > 0)) return lights;
+  const double total = cdf.back();
+  std::size_t at = 0, before = 0;  // `before`: texels of earlier RSMs
+  auto rsm = rsms.begin();
+  for (unsigned i = 0; i < count; ++i) {
+    const double drawn = (i + uniform(mix(1, i))) / count * total;  // one in each interval of equal flux
+    while (at + 1 < cdf.size() && cdf[at] <= drawn) ++at;
+    while (at - before >= rsm->depth.size()) before += rsm->depth.size(), ++rsm;
+    const double flux = cdf[at] - (at > 0 ? cdf[at - 1] : 0);
+    lights.push_back(light_of(*rsm, at - before, count * flux / total));
+  }
+  return lights;
+}
+
+Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave,
+                    unsigned stride) {
+  const unsigned width = view.view().width, sets = interleave * interleave;
+  Irradiance image(view.hits().size(), glm::vec4(0));
+  view.for_each_pixel(stride, [&](reference::PathSampler&, std::size_t pixel) {
+    const reference::Hit& hit = *view.hits()[pixel];
+    const glm::vec3 origin = view.rays().offset_origin(hit);
+    const auto x = static_cast<unsigned>(pixel % width) / stride,
+               y = static_cast<unsigned>(pixel / width) / stride;
+    glm::vec3 sum(0);
+    for (std::size_t i = x % interleave + interleave * (y % interleave); i < lights.size(); i += sets) {
+      const PointLight& light = lights[i];
+      const glm::vec3 to_light = light.position - origin;
+      const float sent = -glm::dot(light.normal, to_light), received = glm::dot(hit.normal, to_light);
+      if (sent <= 0 || received <= 0 || glm::dot(hit.geometric, to_light) <= 0) continue;
+      const float square = glm::dot(to_light, to_light);
+      if (view.rays().occluded(origin, to_light, 1)) continue;
+      sum += light.flux * (sent * received / (square * (std::numbers::pi_v<float> * square + light.area)));
+    }
+    image[pixel] = glm::vec4(float(sets) * sum, 1);
+  });
+  return image;
+}
+
+}  // namespace clpv::baselines

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// What all baselines share: a scene for ray queries, its lights, and the surfaces that a camera sees.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <glm/glm.hpp>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "pathtracer/emitters.hpp"
+#include "pathtracer/path_sampler.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "pathtracer/ray_scene.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv::baselines {
+
+/// Irradiance [W/m^2] per pixel, row 0 first. w: 1 where it was computed, 0 elsewhere.
+using Irradiance = std::vector<glm::vec4>;
+
+/// A pixel's surface, as the joint bilateral filter compares it.
+struct PixelSurface {
+  glm::vec3 position{0}, normal{0};  ///< [m]; normal 0 without a surface
+  float edge = 1;                    ///< distance to the next pixel's position on a plane across the view [m]
+};
+
+/// A camera's view of a scene, which it borrows; a medium is ignored. Baselines do not count the time of its construction: clpv has the G-buffer
+/// too, and caches blockers as these methods may cache the tree of triangles.
+class View {
+ public:
+  /// `bounces` as in PathTracerOptions. Throws as RayScene.
+  View(const Scene& scene, const SceneCamera& camera, int width, int height, int bounces, int threads);
+  View(const View&) = delete;  // members refer to each other
+  View& operator=(const View&) = delete;
+
+  const Scene& scene() const { return scene_; }
+  const reference::RayScene& rays() const { return rays_; }
+  const reference::Emitters& emitters() const { return emitters_; }
+  const reference::SkySampler& sky() const { return sky_; }
+  const ClpvView& view() const { return image_.view; }
+  int threads() const { return threads_; }
+  int bounces() const { return options_.bounces; }
+  /// Surfaces of the pixels' centres: what the camera's ray hits, and its summary for the filter.
+  const std::vector<std::optional<reference::Hit>>& hits() const { return hits_; }
+  const std::vector<PixelSurface>& surfaces() const { return surfaces_; }
+
+  /// G-buffer with this irradiance.
+  reference::TracedImage with(const Irradiance& irradiance) const;
+
+  /// Calls action(sampler, first, last) for ranges of up to `grain` items that cover [0, count), on all threads.
+  template <typename Action>
+  void parallel_for(std::size_t count, std::size_t grain, const Action& action) const {
+    std::atomic<std::size_t> next{0};
+    const auto run = [&] {
+      reference::PathSampler sampler(rays_, lights_, emitters_, sky_, nullptr, options_);
+      for (std::size_t first; (first = next.fetch_add(grain)) < count;)
+        action(sampler, first, std::min(count, first + grain));
+    };
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads_; ++t) others.emplace_back(run);
+    run();
+  }
+
+  /// Calls action(sampler, pixel) for the pixels with a surface in every `stride`-th column and row.
+  template <typename Action>
+  void for_each_pixel(unsigned stride, const Action& action) const {
+    const unsigned width = view().width, height = view().height;
+    parallel_for(height, 1, [&](reference::PathSampler& sampler, std::size_t y, std::size_t) {
+      if (sample_of(static_cast<unsigned>(y), stride, height) != y) return;
+      for (unsigned x = 0; x < width; ++x) {
+        const std::size_t pixel = y * width + x;
+        if (sample_of(x, stride, width) == x && hits_[pixel]) action(sampler, pixel);
+      }
+    });
+  }
+
+  /// Column or row that is computed for the one at `i`, one in `stride`.
+  static unsigned sample_of(unsigned i, unsigned stride, unsigned size) {
+    return std::min(i / stride * stride + stride / 2, size - 1);
+  }
+
+ private:
+  const Scene& scene_;
+  reference::RayScene rays_;
+  reference::Emitters emitters_;
+  reference::SkySampler sky_;
+  std::vector<SceneLight> lights_;
+  reference::PathTracerOptions options_;
+  int threads_;
+  std::vector<std::optional<reference::Hit>> hits_;
+  std::vector<PixelSurface> surfaces_;
+  reference::TracedImage image_;
+};
+
+}  // namespace clpv::baselines

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "cli/quality_baselines.hpp"
+
+#include <fmt/format.h>
+
+#include "image/image_io.hpp"
+#include "support/error.hpp"
+#include "support/progress.hpp"
+
+namespace clpv {
+
+void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
+  CLI::Option* names = add_choices(
+      command, "--baseline", baselines.names,
+      "other methods to compare with, repeatable; each takes the time of the frame without G-buffer, shadow\n"
+      "maps and shading");
+  const NumberRange range{1e-3, 1e7, "0.001..1e7 ms"};
+  add_number(command, "--baseline-time", baselines.time, "time of each baseline in place of the frame's [ms]",
+             range)
+      ->needs(names);
+  add(command, "--images", "DIR", baselines.images, "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
+      ->needs(names);
+}
+
+std::vector<QualityCell> measure_baselines(const QualityBaselines& baselines, Session& session,
+                                           const std::vector<Subject>& subjects,
+                                           const std::function<RenderOptions(const Scene&)>& options_of,
+                                           int bounces, Show show, int frames) {
+  std::size_t views = 0;
+  for (const Subject& subject : subjects) views += subject.cameras.size();
+  Progress progress("baselines", views * baselines.names.size());
+  std::vector<QualityCell> cells;
+  for (const Subject& subject : subjects) {
+    const RenderOptions options = options_of(subject.scene);
+    Frame frame(session, subject.scene, options);
+    for (std::size_t c = 0; c < subject.cameras.size(); ++c) {
+      const SceneCamera& camera = subject.cameras[c];
+      const baselines::View view(subject.scene, camera, options.width, options.height, bounces,
+                                 static_cast<int>(session.device().compute_units));
+      BaselineBudget budget = baseline_budget(session, frame, camera, frames);
+      if (baselines.time > 0) budget.budget_ms = baselines.time;
+      for (const Baseline baseline : baselines.names) {
+        QualityCell cell;
+        try {
+          MeasuredBaseline measured =
+              measure_baseline(baseline, view, budget, subject.truths[c], show, frames);
+          cell = std::move(measured.cell);
+          if (!baselines.images.empty()) {
+            const std::filesystem::path folder = std::filesystem::path(baselines.images) / name_of(baseline);
+            create_folder("--images", folder);
+            write_exr(folder / fmt::format("{}-{}.exr", subject.scene.name, camera.name), measured.image);
+          }
+        } catch (const Error& error) {
+          if (error.code() != ExitCode::usage) throw;
+          cell.rejected = error.what();
+        }
+        cell.scene = subject.scene.name, cell.camera = camera.name;
+        cell.variant = {{"baseline", std::string(name_of(baseline))}};
+        cells.push_back(std::move(cell));
+        progress.advance();
+      }
+    }
+  }
+  return cells;
+}
+
+}  // namespace clpv

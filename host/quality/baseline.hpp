@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Baselines: other methods at the time of a frame's indirect light, calibrated by short runs.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "baselines/view.hpp"
+#include "image/image.hpp"
+#include "image/surface_image.hpp"
+#include "kernels/shared/grid.h"
+#include "pipeline/frame.hpp"
+#include "quality/quality.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv {
+
+enum class Baseline {
+  paths,            ///< path tracing
+  paths_filtered,   ///< the same with a joint bilateral filter
+  vpl,              ///< virtual point lights, the same for all pixels
+  vpl_interleaved,  ///< other ones in each pixel of a block of 4 x 4, with a joint bilateral filter
+  ddgi_first,       ///< irradiance probes, a frame from nothing
+  ddgi_converged,   ///< the same after kConvergedFrames frames; the time is that of one
+};
+
+template <>
+inline constexpr auto kNames<Baseline> = name_list("paths", "paths-filtered", "vpl", "vpl-interleaved",
+                                                   "ddgi-first", "ddgi-converged");
+
+inline constexpr unsigned kConvergedFrames = 128;
+
+/// Time that baselines get, and what they share with the frame that it comes from.
+struct BaselineBudget {
+  double budget_ms = 0;  ///< the frame without `shared_ms`
+  double rsm_ms = 0;     ///< RSMs of the coarsest cascade
+  std::map<std::string, double>
+      shared_ms;                   ///< stages that every method needs: G-buffer, shadow maps, shading
+  std::vector<SurfaceImage> rsms;  ///< of the coarsest cascade, flux in W
+  std::vector<ClpvGrid> grids;     ///< of the cascades, finest first
+};
+
+/// Measures the budget as the median over `frames` frames that recompute all lighting.
+BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera& camera, int frames);
+
+/// Throws Error(usage) with the reason if the method does not have the scene's light, that many bounces, or the view.
+void require_baseline(Baseline baseline, const Scene& scene, int bounces, Show show);
+
+/// Errors and times of a baseline, and its image of the view.
+struct MeasuredBaseline {
+  QualityCell cell;
+  Image image;
+};
+
+/// Chooses the number of samples so that the method takes the budget, runs it `runs` times, and compares it with the ground
+/// truth. The cell's settings are samples, threads and budget; its stage `baseline` is the median time. Throws as
+/// require_baseline().
+MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view,
+                                  const BaselineBudget& budget, const reference::GroundTruth& truth,
+                                  Show show, int runs);
+
+/// The method's irradiance with this number of samples, in one of `stride` x `stride` pixels; the others take from those.
+/// `frames`: of irradiance probes. Adds counts of what it used to `settings`.
+baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& view,
+                                   const BaselineBudget& budget, unsigned samples, unsigned stride,
+                                   unsigned frames, std::map<std::string, double>& settings);
+
+}  // namespace clpv
