@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+// Baselines of clpv quality against path tracing and closed forms, and their options.
+#include "quality/baseline.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "baselines/filter.hpp"
+#include "baselines/methods.hpp"
+#include "image/compare.hpp"
+#include "image/image_io.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "pipeline/view.hpp"
+#include "scene/load.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/run_here.hpp"
+#include "tests/support/traced_scenes.hpp"
+
+namespace clpv::baseline_test {
+namespace {
+
+using std::numbers::pi_v;
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 48, kHeight = 27;
+
+std::filesystem::path scene_file(const std::string& name) {
+  return std::filesystem::path(CLPV_SOURCE_DIR) / "scenes" / name;
+}
+
+SceneCamera camera_at(const glm::vec3& eye, const glm::vec3& along) {
+  SceneCamera camera;
+  camera.eye = eye, camera.forward = glm::normalize(along);
+  camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, glm::vec3(0, 1, 0)), camera.forward));
+  return camera;
+}
+
+/// The Cornell box with a budget from a frame, and its ground truth.
+class Cornell : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = std::make_unique<Scene>(load_scene(scene_file("cornell.json")));
+    camera_ = scene_->camera("front");
+    view_ = std::make_unique<baselines::View>(*scene_, camera_, kWidth, kHeight, 1, 2);
+    RenderOptions options;
+    options.width = kWidth, options.height = kHeight;
+    options.cascades = scene_->cascades.value(), options.cascade_size = scene_->cascade_size.value();
+    Frame frame(test::test_session(), *scene_, options);
+    budget_ = baseline_budget(test::test_session(), frame, camera_, 1);
+    reference::PathTracerOptions tracing;
+    tracing.noise = 0.02;
+    truth_ = traced_view(
+        trace_paths(*scene_, scene_->lights_for(camera_), camera_view(camera_, kWidth, kHeight), tracing),
+        Show::indirect);
+  }
+  static void TearDownTestSuite() { view_.reset(), scene_.reset(); }
+
+  static baselines::Irradiance run(Baseline baseline, unsigned samples, unsigned stride = 1,
+                                   unsigned frames = 1) {
+    std::map<std::string, double> settings;
+    return run_baseline(baseline, *view_, budget_, samples, stride, frames, settings);
+  }
+  static Comparison errors(const baselines::Irradiance& irradiance) {
+    return compare(traced_view(view_->with(irradiance), Show::indirect), "baseline", truth_, "ground truth");
+  }
+
+  static inline std::unique_ptr<Scene> scene_;
+  static inline SceneCamera camera_;
+  static inline std::unique_ptr<baselines::View> view_;
+  static inline BaselineBudget budget_;
+  static inline Image truth_;
+};
+
+TEST_F(Cornell, BudgetIsTheFrameWithoutWhatEveryMethodNeeds) {
+  EXPECT_GT(budget_.budget_ms, budget_.rsm_ms);
+  EXPECT_GT(budget_.rsm_ms, 0);
+  EXPECT_EQ(budget_.shared_ms.size(), 3u);
+  EXPECT_EQ(budget_.rsms.size(), 2u) << "one per light";
+}
+
+// Tolerances: noise of ground truth and method, and what the method blurs: discs and texels of an RSM, cells of probes, and a
+// third of this image's width by the filter.
+TEST_F(Cornell, ConvergesToPathTracing) {
+  struct Limit {
+    Baseline baseline;
+    unsigned samples;
+    double nrmse;
+  };
+  for (const auto& [baseline, samples, nrmse] :
+       {Limit{Baseline::paths, 512, 0.06}, Limit{Baseline::vpl, 4096, 0.12},
+        Limit{Baseline::vpl_interleaved, 1024, 0.14}, Limit{Baseline::paths_filtered, 128, 0.4},
+        Limit{Baseline::ddgi_first, 512, 0.25}}) {
+    const Comparison many = errors(run(baseline, samples)), few = errors(run(baseline, 4));
+    EXPECT_LT(many.nrmse_valid.value(), nrmse) << name_of(baseline);
+    EXPECT_NEAR(many.energy_ratio.value(), 1, 0.03) << name_of(baseline);
+    EXPECT_GT(few.nrmse_valid.value(), many.nrmse_valid.value()) << name_of(baseline);
+  }
+}
+
+TEST_F(Cornell, ProbesConvergeOverFrames) {
+  const double first = errors(run(Baseline::ddgi_first, 8)).nrmse_valid.value(),
+               later = errors(run(Baseline::ddgi_converged, 8, 1, 64)).nrmse_valid.value();
+  EXPECT_LT(later, 0.7 * first);
+}
+
+TEST_F(Cornell, SkippedPixelsTakeTheirNeighboursLight) {
+  for (const Baseline baseline :
+       {Baseline::paths, Baseline::paths_filtered, Baseline::vpl, Baseline::vpl_interleaved}) {
+    const baselines::Irradiance image = run(baseline, 64, 2);
+    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_EQ(image[i].w > 0, view_->hits()[i].has_value());
+    EXPECT_NEAR(errors(image).energy_ratio.value(), 1, 0.2) << name_of(baseline);
+  }
+}
+
+TEST_F(Cornell, BytesDoNotDependOnThreads) {
+  const baselines::View one(*scene_, camera_, kWidth, kHeight, 1, 1);
+  for (const Baseline baseline : values_of<Baseline>()) {
+    std::map<std::string, double> settings;
+    EXPECT_EQ(run_baseline(baseline, one, budget_, 3, 1, 2, settings), run(baseline, 3, 1, 2))
+        << name_of(baseline);
+  }
+}
+
+TEST_F(Cornell, FilterKeepsAConstant) {
+  baselines::Irradiance image(view_->hits().size(), glm::vec4(0));
+  for (std::size_t i = 0; i < image.size(); ++i)
+    image[i] = view_->hits()[i] ? glm::vec4(1, 2, 3, 1) : glm::vec4(0);
+  for (const baselines::Irradiance& filtered : {baselines::wavelet_filter(*view_, image, 4),
+                                                joint_bilateral(*view_, image, baselines::block_taps(1))}) {
+    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_LT(glm::length(filtered[i] - image[i]), 1e-4f) << i;
+  }
+}
+
+TEST(BaselineFilter, DoesNotMixWallAndFloor) {
+  Scene scene = test::floor_scene(0.5f);
+  test::add_quad(scene, {-10, 0, -1}, {20, 0, 0}, {0, 10, 0}, 0);
+  scene.lights = {test::sun({0, -1, -1}, 1)};
+  const SceneCamera camera = camera_at({0, 1, 2}, {0, -0.2f, -1});
+  const baselines::View view(scene, camera, 32, 32, 1, 1);
+  baselines::Irradiance image(view.hits().size(), glm::vec4(0));
+  for (std::size_t i = 0; i < image.size(); ++i)
+    image[i] = glm::vec4(glm::vec3(view.surfaces()[i].normal.y > 0.5f ? 1 : 0), 1);
+  for (std::size_t i = 0; const glm::vec4& value : baselines::wavelet_filter(view, image, 3))
+    EXPECT_FLOAT_EQ(value.x, image[i++].x);
+}
+
+/// A closed cube of edge 2 m seen from inside; its walls emit radiance 2.
+Scene furnace() {
+  Scene scene;
+  scene.path = "furnace";
+  const unsigned wall = test::add_grey(scene, 0.5f);
+  for (float& e : scene.materials[wall].emissive) e = 2;
+  const glm::vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2);
+  test::add_quad(scene, {0, 0, 0}, z, x, wall), test::add_quad(scene, {0, 2, 0}, x, z, wall);
+  test::add_quad(scene, {0, 0, 0}, y, z, wall), test::add_quad(scene, {2, 0, 0}, z, y, wall);
+  test::add_quad(scene, {0, 0, 0}, x, y, wall), test::add_quad(scene, {0, 0, 2}, y, x, wall);
+  return scene;
+}
+
+TEST(BaselineProbes, FurnaceIsEvenlyLit) {
+  const Scene scene = furnace();
+  const SceneCamera camera = camera_at({1, 1, 1.5f}, {0, -0.2f, -1.5f});
+  const baselines::View view(scene, camera, 16, 9, 1, 2);
+  ClpvGrid grid{{-0.5f, -0.5f, -0.5f}, 0.375f, 8, {1, 1, 1}};
+  baselines::Probes probes(view, {grid});
+  for (const glm::vec4& irradiance : probes.render(256)) {
+    EXPECT_NEAR(irradiance.x, 2 * pi_v<float>,
+                0.06f * 2 * pi_v<float>);  // probes behind the walls count a little
+  }
+}
+
+TEST(BaselineLights, NoneWithoutLitSurfaces) {
+  SurfaceImage dark;
+  dark.view = test::kDown;
+  dark.depth.assign(63, 1), dark.normal.assign(63, {0, 1, 0, 0}), dark.colour.assign(63, glm::vec4(0));
+  EXPECT_TRUE(baselines::draw_lights(std::vector{dark}, 16).empty());
+}
+
+TEST(BaselineLights, CarryAllFluxAndArea) {
+  SurfaceImage rsm;
+  rsm.view = test::kDown;
+  rsm.depth.assign(63, 2), rsm.normal.assign(63, {0, 1, 0, 0}), rsm.colour.assign(63, {1, 2, 3, 0});
+  rsm.colour[5] = {9, 9, 9, 0};
+  glm::vec3 flux(0);
+  float area = 0;
+  for (const baselines::PointLight& light : baselines::draw_lights(std::vector{rsm}, 4096))
+    flux += light.flux, area += light.area;
+  EXPECT_NEAR(flux.x, 62 + 9, 0.1f);
+  EXPECT_NEAR(flux.z, 3 * 62 + 9, 0.1f);
+  EXPECT_NEAR(area, 2.0f * 2 * 7 / 9, 0.02f);  // the floor that kDown sees from 2 m: 2 m x 14/9 m
+}
+
+TEST(BaselineRejection, NamesWhatAMethodDoesNotHave) {
+  const auto reason = [](Baseline baseline, const Scene& scene, int bounces, Show show) {
+    return test::error_of(ExitCode::usage, [&] { require_baseline(baseline, scene, bounces, show); });
+  };
+  const Scene lit = load_scene(scene_file("cornell.json")), glowing = furnace();
+  EXPECT_THAT(reason(Baseline::vpl, glowing, 1, Show::indirect), HasSubstr("emissive"));
+  EXPECT_THAT(reason(Baseline::ddgi_first, lit, 2, Show::indirect), HasSubstr("allowed: bounces 1"));
+  EXPECT_THAT(reason(Baseline::paths, lit, 1, Show::full),
+              HasSubstr("found view 'full'; allowed: indirect, irradiance"));
+  EXPECT_THAT(reason(Baseline::paths, load_scene(scene_file("cornell_fog.json")), 1, Show::indirect),
+              HasSubstr("medium"));
+  require_baseline(Baseline::paths, glowing, 0, Show::irradiance);
+}
+
+TEST(BaselineCommand, MeasuresBesideFrames) {
+  const test::TemporaryFolder folder;
+  const std::string cornell = scene_file("cornell.json").string();
+  const std::string command =
+      "quality " + cornell + " --cache " + (folder / "cache").string() +
+      " --camera front --width 32 --height 18 --spp 64 --frames 1 --grid 16 --format json";
+  const test::Outcome outcome =
+      test::run_here(command + " --bounces all --baseline paths,vpl --baseline-time 5 --images " +
+                     (folder / "images").string() + " --output " + (folder / "a.csv").string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json cells = nlohmann::json::parse(outcome.out)["cells"];
+  ASSERT_EQ(cells.size(), 3u);
+  EXPECT_EQ(cells[0]["options"], nlohmann::json::object()) << "the frame itself";
+  EXPECT_EQ(cells[1]["options"]["baseline"], "paths");
+  EXPECT_EQ(cells[1]["rejected"], "");
+  EXPECT_EQ(cells[1]["settings"]["budget_ms"], 5);
+  EXPECT_GE(cells[1]["settings"]["paths_per_pixel"], 1);
+  EXPECT_GE(cells[1]["settings"]["threads"], 1);
+  EXPECT_GT(cells[1]["stage_ms"]["baseline"], 0);
+  EXPECT_GT(cells[1]["nrmse"], 0);
+  EXPECT_THAT(cells[2]["rejected"].get<std::string>(), HasSubstr("more than one bounce"));
+  EXPECT_EQ(read_image(folder / "images/paths/cornell-front.exr").width, 32);
+  EXPECT_THAT(test::read_file((folder / "a.csv").string()), HasSubstr("cornell,front,paths,,"));
+
+  const test::Outcome unknown = test::run_here(command + " --baseline nonsense");
+  EXPECT_EQ(unknown.exit_code, static_cast<int>(ExitCode::usage));
+  EXPECT_THAT(unknown.err, HasSubstr("ddgi-first"));
+}
+
+}  // namespace
+}  // namespace clpv::baseline_test
