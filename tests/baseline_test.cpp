@@ -110,10 +110,10 @@ TEST_F(Cornell, ProbesConvergeOverFrames) {
 }
 
 TEST_F(Cornell, SkippedPixelsTakeTheirNeighboursLight) {
-  for (const Baseline baseline :
-       {Baseline::paths, Baseline::paths_filtered, Baseline::vpl, Baseline::vpl_interleaved}) {
+  for (const Baseline baseline : {Baseline::paths, Baseline::paths_filtered, Baseline::vpl,
+                                  Baseline::vpl_interleaved, Baseline::ddgi_first}) {
     const baselines::Irradiance image = run(baseline, 64, 2);
-    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_EQ(image[i].w > 0, view_->hits()[i].has_value());
+    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_EQ(image.computed(i), view_->hits()[i].has_value());
     EXPECT_NEAR(errors(image).energy_ratio.value(), 1, 0.2) << name_of(baseline);
   }
 }
@@ -128,12 +128,14 @@ TEST_F(Cornell, BytesDoNotDependOnThreads) {
 }
 
 TEST_F(Cornell, FilterKeepsAConstant) {
-  baselines::Irradiance image(view_->hits().size(), glm::vec4(0));
-  for (std::size_t i = 0; i < image.size(); ++i)
-    image[i] = view_->hits()[i] ? glm::vec4(1, 2, 3, 1) : glm::vec4(0);
+  baselines::Irradiance image(view_->hits().size());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (view_->hits()[i]) image.set(i, {1, 2, 3});
+  }
   for (const baselines::Irradiance& filtered : {baselines::wavelet_filter(*view_, image, 4),
                                                 joint_bilateral(*view_, image, baselines::block_taps(1))}) {
-    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_LT(glm::length(filtered[i] - image[i]), 1e-4f) << i;
+    for (std::size_t i = 0; i < image.size(); ++i)
+      EXPECT_LT(glm::length(filtered.at(i) - image.at(i)), 1e-4f) << i;
   }
 }
 
@@ -143,11 +145,11 @@ TEST(BaselineFilter, DoesNotMixWallAndFloor) {
   scene.lights = {test::sun({0, -1, -1}, 1)};
   const SceneCamera camera = camera_at({0, 1, 2}, {0, -0.2f, -1});
   const baselines::View view(scene, camera, 32, 32, 1, 1);
-  baselines::Irradiance image(view.hits().size(), glm::vec4(0));
+  baselines::Irradiance image(view.hits().size());
   for (std::size_t i = 0; i < image.size(); ++i)
-    image[i] = glm::vec4(glm::vec3(view.surfaces()[i].normal.y > 0.5f ? 1 : 0), 1);
-  for (std::size_t i = 0; const glm::vec4& value : baselines::wavelet_filter(view, image, 3))
-    EXPECT_FLOAT_EQ(value.x, image[i++].x);
+    image.set(i, glm::vec3(view.surfaces()[baselines::kNormal + 1][i] > 0.5f ? 1 : 0));
+  const baselines::Irradiance filtered = baselines::wavelet_filter(view, image, 3);
+  for (std::size_t i = 0; i < image.size(); ++i) EXPECT_FLOAT_EQ(filtered.at(i).x, image.at(i).x);
 }
 
 /// A closed cube of edge 2 m seen from inside; its walls emit radiance 2.
@@ -169,8 +171,9 @@ TEST(BaselineProbes, FurnaceIsEvenlyLit) {
   const baselines::View view(scene, camera, 16, 9, 1, 2);
   ClpvGrid grid{{-0.5f, -0.5f, -0.5f}, 0.375f, 8, {1, 1, 1}};
   baselines::Probes probes(view, {grid});
-  for (const glm::vec4& irradiance : probes.render(256)) {
-    EXPECT_NEAR(irradiance.x, 2 * pi_v<float>,
+  const baselines::Irradiance image = probes.render(256, 1);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    EXPECT_NEAR(image.at(i).x, 2 * pi_v<float>,
                 0.16f * 2 * pi_v<float>);  // probes behind the walls count, most in corners
   }
 }

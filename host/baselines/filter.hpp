@@ -21,14 +21,14 @@ std::vector<Tap> block_taps(unsigned step);
 std::vector<Tap> wavelet_taps(int step);
 
 /// Mean over the taps around each pixel. A tap counts less the more its normal differs, and the farther it is from the pixel's
-/// plane, relative to its distance in the image. Pixels that were not computed (w = 0) do not count, but receive a mean.
+/// plane, relative to its distance in the image. Pixels that were not computed do not count, but receive a mean.
 Irradiance joint_bilateral(const View& view, const Irradiance& image, std::span<const Tap> taps);
 
 /// The filter with wavelet_taps() at steps 1, 2, 4, ..., `passes` times: Dammertz et al., 'Edge-Avoiding A-Trous Wavelet
 /// Transform for fast Global Illumination Filtering', HPG 2010.
-Irradiance wavelet_filter(const View& view, Irradiance image, int passes);
+Irradiance wavelet_filter(const View& view, const Irradiance& image, int passes);
 
-/// Gives pixels that were not computed the value of the one in `stride` x `stride` that was.
-Irradiance replicated(const View& view, const Irradiance& image, unsigned stride);
+/// Gives surfaces of `image` without a value that of the one in `stride` x `stride` pixels that was computed.
+void fill(const View& view, Irradiance& image, const Irradiance& computed, unsigned stride);
 
 }  // namespace clpv::baselines

@@ -42,8 +42,8 @@ class Probes {
   Probes(const View& view, std::vector<ClpvGrid> grids) : view_(view), grids_(std::move(grids)) {}
 
   /// Renders the next frame: finds the probes that pixels need, traces `rays` of each, blends the results with those of earlier
-  /// frames, and returns the irradiance of all pixels. The first frame starts from nothing.
-  Irradiance render(unsigned rays);
+  /// frames, and returns the irradiance of one in `stride` x `stride` pixels. The first frame starts from nothing.
+  Irradiance render(unsigned rays, unsigned stride);
 
   std::size_t count() const { return positions_.size(); }  ///< probes of the last frame
 
@@ -53,9 +53,9 @@ class Probes {
     glm::vec3 fraction{0};  ///< position between them
     int grid = -1;          ///< none: no cascade encloses the pixel
   };
-  void find_probes();
+  void find_probes(unsigned stride);
   void trace(unsigned rays);
-  glm::vec4 sample(std::size_t pixel) const;
+  glm::vec3 sample(std::size_t pixel) const;
 
   const View& view_;
   std::vector<ClpvGrid> grids_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Baseline: virtual point lights from reflective shadow maps.
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <numbers>
 
 #include "baselines/methods.hpp"
@@ -16,6 +18,15 @@ constexpr double kGrazing = 0.05;  // smallest cosine that divides an area
 
 double brightness(const glm::vec4& flux) {
   return double{std::max(flux.x, 0.0f)} + double{std::max(flux.y, 0.0f)} + double{std::max(flux.z, 0.0f)};
+}
+
+/// Every second bit, from the lowest: a coordinate of Morton's curve.
+std::uint32_t even_bits(std::uint32_t x) {
+  x &= 0x55555555u;
+  x = (x | (x >> 1)) & 0x33333333u;
+  x = (x | (x >> 2)) & 0x0f0f0f0fu;
+  x = (x | (x >> 4)) & 0x00ff00ffu;
+  return (x | (x >> 8)) & 0x0000ffffu;
 }
 
 /// The light of a texel, of which `share` lights stand for all of its flux.
@@ -35,22 +46,30 @@ PointLight light_of(const SurfaceImage& rsm, std::size_t texel, double share) {
 }  // namespace
 
 std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned count) {
-  std::vector<double> cdf;
+  struct Texel {
+    const SurfaceImage* rsm;
+    std::size_t index;
+    double flux, end;  ///< `end`: sum of the flux up to this one
+  };
+  std::vector<Texel> lit;
+  double total = 0;
   for (const SurfaceImage& rsm : rsms) {
-    for (std::size_t i = 0; i < rsm.depth.size(); ++i)
-      cdf.push_back((cdf.empty() ? 0 : cdf.back()) + (rsm.depth[i] > 0 ? brightness(rsm.colour[i]) : 0));
+    // Along Morton's curve, so that equal intervals of flux are compact patches.
+    const std::uint32_t edge = std::bit_ceil(std::max(rsm.view.width, rsm.view.height));
+    for (std::uint32_t i = 0; i < edge * edge; ++i) {
+      const std::uint32_t x = even_bits(i), y = even_bits(i >> 1);
+      if (x >= rsm.view.width || y >= rsm.view.height) continue;
+      const std::size_t texel = std::size_t{y} * rsm.view.width + x;
+      const double flux = rsm.depth[texel] > 0 ? brightness(rsm.colour[texel]) : 0;
+      if (flux > 0) lit.push_back({&rsm, texel, flux, total += flux});
+    }
   }
   std::vector<PointLight> lights;
-  if (cdf.empty() || !(cdf.back() > 0)) return lights;
-  const double total = cdf.back();
-  std::size_t at = 0, before = 0;  // `before`: texels of earlier RSMs
-  auto rsm = rsms.begin();
-  for (unsigned i = 0; i < count; ++i) {
-    const double drawn = (i + uniform(mix(1, i))) / count * total;  // one in each interval of equal flux
-    while (at + 1 < cdf.size() && cdf[at] <= drawn) ++at;
-    while (at - before >= rsm->depth.size()) before += rsm->depth.size(), ++rsm;
-    const double flux = cdf[at] - (at > 0 ? cdf[at - 1] : 0);
-    lights.push_back(light_of(*rsm, at - before, count * flux / total));
+  for (std::size_t i = 0, at = 0; !lit.empty() && i < count; ++i) {
+    const double drawn =
+        (static_cast<double>(i) + uniform(mix(1, i))) / count * total;  // one in each interval
+    while (at + 1 < lit.size() && lit[at].end <= drawn) ++at;
+    lights.push_back(light_of(*lit[at].rsm, lit[at].index, count * lit[at].flux / total));
   }
   return lights;
 }
@@ -58,7 +77,7 @@ std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned
 Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave,
                     unsigned stride) {
   const unsigned width = view.view().width, sets = interleave * interleave;
-  Irradiance image(view.hits().size(), glm::vec4(0));
+  Irradiance image(view.hits().size());
   view.for_each_pixel(stride, [&](reference::PathSampler&, std::size_t pixel) {
     const reference::Hit& hit = *view.hits()[pixel];
     const glm::vec3 origin = view.rays().offset_origin(hit);
@@ -74,7 +93,7 @@ Irradiance light_by(const View& view, std::span<const PointLight> lights, unsign
       if (view.rays().occluded(origin, to_light, 1)) continue;
       sum += light.flux * (sent * received / (square * (std::numbers::pi_v<float> * square + light.area)));
     }
-    image[pixel] = glm::vec4(float(sets) * sum, 1);
+    image.set(pixel, float(sets) * sum);
   });
   return image;
 }

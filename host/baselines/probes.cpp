@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Baseline: irradiance probes. Numbers without a reason here are the paper's.
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -43,14 +44,24 @@ std::size_t folded(int x, int y, int edge) {
   return static_cast<std::size_t>(y) * edge + x;
 }
 
-/// Bilinear interpolation of an octahedral map.
-template <typename T>
-T look_up(const T* map, int edge, const glm::vec3& direction) {
+/// Texels about a direction and their bilinear weights.
+struct Texels {
+  std::size_t index[4];
+  float weight[4];
+
+  template <typename T>
+  T mean(const T* map) const {
+    return weight[0] * map[index[0]] + weight[1] * map[index[1]] + weight[2] * map[index[2]] +
+           weight[3] * map[index[3]];
+  }
+};
+
+Texels texels_about(const glm::vec3& direction, int edge) {
   const glm::vec2 at = (octahedral_point(direction) + 1.0f) * 0.5f * float(edge) - 0.5f, low = glm::floor(at),
                   f = at - low;
   const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
-  return (1 - f.y) * ((1 - f.x) * map[folded(x, y, edge)] + f.x * map[folded(x + 1, y, edge)]) +
-         f.y * ((1 - f.x) * map[folded(x, y + 1, edge)] + f.x * map[folded(x + 1, y + 1, edge)]);
+  return {{folded(x, y, edge), folded(x + 1, y, edge), folded(x, y + 1, edge), folded(x + 1, y + 1, edge)},
+          {(1 - f.x) * (1 - f.y), f.x * (1 - f.y), (1 - f.x) * f.y, f.x * f.y}};
 }
 
 /// `count` directions of a spherical Fibonacci set, in a random rotation of each frame.
@@ -99,6 +110,10 @@ void blend(T* map, const std::vector<float>& weights, const std::vector<T>& rays
   }
 }
 
+glm::vec3 origin_of(const ClpvGrid& grid) {
+  return {grid.origin[0], grid.origin[1], grid.origin[2]};
+}
+
 /// Radiance that arrives from a surface: emitted, and one reflection of the lights.
 glm::vec3 radiance_of(const View& view, reference::PathSampler& sampler, const reference::Hit& hit,
                       const glm::vec3& direction) {
@@ -110,35 +125,45 @@ glm::vec3 radiance_of(const View& view, reference::PathSampler& sampler, const r
 
 }  // namespace
 
-/// Numbers the probes at the corners of the cubes that hold the pixels. Probes lie at the cells' centres. Results of earlier
+/// Finds the cubes of probes that hold the pixels, and numbers their corners. Probes lie at the cells' centres. Results of earlier
 /// frames stay if the numbers are the same: the camera stands still.
-void Probes::find_probes() {
-  corners_.assign(view_.hits().size(), {});
-  slots_.resize(grids_.size());
-  std::vector<glm::vec3> positions;
-  limits_.clear();
-  for (std::size_t g = 0; g < grids_.size(); ++g)
-    slots_[g].assign(std::size_t{grids_[g].n} * grids_[g].n * grids_[g].n, -1);
-  for (std::size_t pixel = 0; pixel < corners_.size(); ++pixel) {
-    if (!view_.hits()[pixel]) continue;
+void Probes::find_probes(unsigned stride) {
+  corners_.resize(view_.hits().size());
+  std::vector<std::vector<char>>
+      used;  // the cubes by their first cell, by grid; threads write the same value
+  for (const ClpvGrid& grid : grids_) used.emplace_back(std::size_t{grid.n} * grid.n * grid.n, 0);
+  view_.for_each_pixel(stride, [&](reference::PathSampler&, std::size_t pixel) {
+    corners_[pixel] = {};
     for (std::size_t g = 0; g < grids_.size(); ++g) {
       const ClpvGrid& grid = grids_[g];
-      const glm::vec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
-      const glm::vec3 at = (view_.hits()[pixel]->position - origin) / grid.cell - 0.5f, low = glm::floor(at);
+      const glm::vec3 at = (view_.hits()[pixel]->position - origin_of(grid)) / grid.cell - 0.5f,
+                      low = glm::floor(at);
       const auto last = static_cast<float>(grid.n - 1);
       if (glm::any(glm::lessThan(low, glm::vec3(0))) || glm::any(glm::greaterThanEqual(low, glm::vec3(last))))
         continue;
       const glm::uvec3 cell(low);
       corners_[pixel] = {cell.x + grid.n * (cell.y + grid.n * cell.z), at - low, static_cast<int>(g)};
+      std::atomic_ref(used[g][corners_[pixel].first]).store(1, std::memory_order_relaxed);
+      break;
+    }
+  });
+  std::vector<glm::vec3> positions;
+  limits_.clear();
+  slots_.resize(grids_.size());
+  for (std::size_t g = 0; g < grids_.size(); ++g) {
+    const ClpvGrid& grid = grids_[g];
+    slots_[g].assign(used[g].size(), -1);
+    for (std::uint32_t first = 0; first < used[g].size(); ++first) {
+      if (!used[g][first]) continue;
       for (unsigned corner = 0; corner < 8; ++corner) {
-        const glm::uvec3 other = cell + glm::uvec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        std::int32_t& slot = slots_[g][other.x + grid.n * (other.y + grid.n * other.z)];
-        if (slot >= 0) continue;
-        slot = static_cast<std::int32_t>(positions.size());
-        positions.push_back(origin + (glm::vec3(other) + 0.5f) * grid.cell);
+        const std::uint32_t cell =
+            first + (corner & 1) + grid.n * ((corner >> 1 & 1) + grid.n * (corner >> 2));
+        if (slots_[g][cell] >= 0) continue;
+        slots_[g][cell] = static_cast<std::int32_t>(positions.size());
+        const glm::vec3 at(cell % grid.n, cell / grid.n % grid.n, cell / grid.n / grid.n);
+        positions.push_back(origin_of(grid) + (at + 0.5f) * grid.cell);
         limits_.push_back(kReach * std::sqrt(3.0f) * grid.cell);
       }
-      break;
     }
   }
   if (positions == positions_) return;
@@ -176,14 +201,15 @@ void Probes::trace(unsigned rays) {
 }
 
 /// Irradiance at a pixel: the mean of the eight probes about it, by trilinear weights, direction and visibility.
-glm::vec4 Probes::sample(std::size_t pixel) const {
+glm::vec3 Probes::sample(std::size_t pixel) const {
   const Corner& corner = corners_[pixel];
-  if (corner.grid < 0) return glm::vec4(0, 0, 0, 1);
+  if (corner.grid < 0) return glm::vec3(0);
   const ClpvGrid& grid = grids_[corner.grid];
   const reference::Hit& hit = *view_.hits()[pixel];
   const glm::vec3 eye(view_.view().eye[0], view_.view().eye[1], view_.view().eye[2]);
   const glm::vec3 lifted =
       hit.position + kBias * grid.cell * (0.2f * hit.normal + 0.8f * glm::normalize(eye - hit.position));
+  const Texels along_normal = texels_about(hit.normal, kLightTexels);
   glm::vec4 sum(0);
   for (unsigned i = 0; i < 8; ++i) {
     const glm::uvec3 offset(i & 1, i >> 1 & 1, i >> 2);
@@ -198,8 +224,8 @@ glm::vec4 Probes::sample(std::size_t pixel) const {
     const glm::vec3 from_probe = lifted - positions_[probe];
     const float away = glm::length(from_probe);
     if (away > 0) {
-      const glm::vec2 moments =
-          look_up(&distance_[probe * kDistanceTexels * kDistanceTexels], kDistanceTexels, from_probe);
+      const glm::vec2 moments = texels_about(from_probe, kDistanceTexels)
+                                    .mean(&distance_[probe * kDistanceTexels * kDistanceTexels]);
       const float beyond = away - moments.x;
       if (beyond > 0) {  // Chebyshev's bound of the share of distances above `away`
         const float variance = std::abs(moments.y - moments.x * moments.x),
@@ -210,18 +236,18 @@ glm::vec4 Probes::sample(std::size_t pixel) const {
     weight = std::max(weight, 1e-6f);  // so that a pixel that no probe sees has a mean
     if (weight < kCrushed) weight *= weight * weight / (kCrushed * kCrushed);
     weight *= std::max(0.001f, f.x * f.y * f.z);
-    sum += weight *
-           glm::vec4(look_up(&radiance_[probe * kLightTexels * kLightTexels], kLightTexels, hit.normal), 1);
+    sum += weight * glm::vec4(along_normal.mean(&radiance_[probe * kLightTexels * kLightTexels]), 1);
   }
-  return glm::vec4(std::numbers::pi_v<float> * glm::vec3(sum) / sum.w, 1);
+  return std::numbers::pi_v<float> * glm::vec3(sum) / sum.w;
 }
 
-Irradiance Probes::render(unsigned rays) {
-  find_probes();
+Irradiance Probes::render(unsigned rays, unsigned stride) {
+  find_probes(stride);
   trace(rays);
   ++frame_;
-  Irradiance image(view_.hits().size(), glm::vec4(0));
-  view_.for_each_pixel(1, [&](reference::PathSampler&, std::size_t pixel) { image[pixel] = sample(pixel); });
+  Irradiance image(view_.hits().size());
+  view_.for_each_pixel(stride,
+                       [&](reference::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
   return image;
 }
 

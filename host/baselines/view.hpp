@@ -17,14 +17,38 @@
 
 namespace clpv::baselines {
 
-/// Irradiance [W/m^2] per pixel, row 0 first. w: 1 where it was computed, 0 elsewhere.
-using Irradiance = std::vector<glm::vec4>;
+/// Numbers of pixels, one plane for each coordinate. Planes start in different sets of the cache, so that reading the same pixel
+/// of all of them is fast.
+class Planes {
+ public:
+  Planes(std::size_t count, std::size_t pixels)
+      : pixels_(pixels), stride_((pixels / kPage + 1) * kPage + kShift), numbers_(count * stride_, 0) {}
 
-/// A pixel's surface, as the joint bilateral filter compares it.
-struct PixelSurface {
-  glm::vec3 position{0}, normal{0};  ///< [m]; normal 0 without a surface
-  float edge = 1;                    ///< distance to the next pixel's position on a plane across the view [m]
+  float* operator[](std::size_t plane) { return &numbers_[plane * stride_]; }
+  const float* operator[](std::size_t plane) const { return &numbers_[plane * stride_]; }
+  std::size_t size() const { return pixels_; }
+  bool operator==(const Planes&) const = default;
+
+ private:
+  static constexpr std::size_t kPage = 1024, kShift = 17 * 16;  // 4096 bytes; 17 cache lines
+  std::size_t pixels_, stride_;
+  std::vector<float> numbers_;
 };
+
+/// Irradiance per pixel, row 0 first. Planes: red, green, blue [W/m^2], and 1 where it was computed, 0 elsewhere.
+struct Irradiance : Planes {
+  explicit Irradiance(std::size_t pixels = 0) : Planes(4, pixels) {}
+  glm::vec3 at(std::size_t i) const { return {(*this)[0][i], (*this)[1][i], (*this)[2][i]}; }
+  bool computed(std::size_t i) const { return (*this)[3][i] > 0; }
+  void set(std::size_t i, const glm::vec3& value) {
+    for (int c = 0; c < 3; ++c) (*this)[c][i] = value[c];
+    (*this)[3][i] = 1;
+  }
+};
+
+/// Planes of the pixels' surfaces, as the joint bilateral filter compares them: position [m], normal, and pixels per metre on a
+/// plane across the view. Normals are 0 without a surface.
+inline constexpr std::size_t kPosition = 0, kNormal = 3, kDensity = 6, kSurfacePlanes = 7;
 
 /// A camera's view of a scene, which it borrows; a medium is ignored. Baselines do not count the time of its construction: clpv has the G-buffer
 /// too, and caches blockers as these methods may cache the tree of triangles.
@@ -44,7 +68,7 @@ class View {
   int bounces() const { return options_.bounces; }
   /// Surfaces of the pixels' centres: what the camera's ray hits, and its summary for the filter.
   const std::vector<std::optional<reference::Hit>>& hits() const { return hits_; }
-  const std::vector<PixelSurface>& surfaces() const { return surfaces_; }
+  const Planes& surfaces() const { return surfaces_; }
 
   /// G-buffer with this irradiance.
   reference::TracedImage with(const Irradiance& irradiance) const;
@@ -90,7 +114,7 @@ class View {
   reference::PathTracerOptions options_;
   int threads_;
   std::vector<std::optional<reference::Hit>> hits_;
-  std::vector<PixelSurface> surfaces_;
+  Planes surfaces_;
   reference::TracedImage image_;
 };
 

@@ -33,13 +33,12 @@ bool has_probes(Baseline baseline) {
   return baseline == Baseline::ddgi_first || baseline == Baseline::ddgi_converged;
 }
 
-/// Gives surfaces without a value the value of the pixel that was computed for them.
-baselines::Irradiance filled(const baselines::View& view, baselines::Irradiance image,
-                             const baselines::Irradiance& computed, unsigned stride) {
-  const baselines::Irradiance nearest = baselines::replicated(view, computed, stride);
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    if (image[i].w == 0 && view.hits()[i]) image[i] = nearest[i];
-  }
+/// Light of all pixels from one in `stride` x `stride`, by the joint bilateral filter.
+baselines::Irradiance upsampled(const baselines::View& view, baselines::Irradiance computed,
+                                unsigned stride) {
+  if (stride == 1) return computed;
+  baselines::Irradiance image = baselines::wavelet_filter(view, computed, kFillPasses);
+  baselines::fill(view, image, computed, stride);
   return image;
 }
 
@@ -48,14 +47,14 @@ baselines::Irradiance point_lights(const baselines::View& view, const BaselineBu
   const std::vector<baselines::PointLight> lights = baselines::draw_lights(budget.rsms, count);
   baselines::Irradiance computed = baselines::light_by(view, lights, interleave, stride);
   if (interleave > 1) computed = baselines::joint_bilateral(view, computed, baselines::block_taps(stride));
-  if (stride == 1) return computed;
-  return filled(view, baselines::wavelet_filter(view, computed, kFillPasses), computed, stride);
+  return upsampled(view, std::move(computed), stride);
 }
 
 baselines::Irradiance paths(const baselines::View& view, bool filter, unsigned samples, unsigned stride) {
   const baselines::Irradiance computed = baselines::trace_paths(view, samples, stride);
-  if (!filter) return baselines::replicated(view, computed, stride);
-  return filled(view, baselines::wavelet_filter(view, computed, kPasses), computed, stride);
+  baselines::Irradiance image = filter ? baselines::wavelet_filter(view, computed, kPasses) : computed;
+  if (stride > 1) baselines::fill(view, image, computed, stride);
+  return image;
 }
 
 struct Timed {
@@ -88,7 +87,7 @@ Plan plan_for(const Runner& run, double budget_ms) {
   Plan plan;
   run(1, 1);  // fills caches
   double one = run(1, 1).ms;
-  while (!has_probes(run.baseline) && one > budget_ms && plan.stride < kMaxStride) {
+  while (one > budget_ms && plan.stride < kMaxStride) {
     plan.stride *= 2;
     one = run(1, plan.stride).ms;
   }
@@ -172,13 +171,13 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& vie
       baselines::Irradiance image;
       for (unsigned frame = 0; frame < frames; ++frame) {
         stop_if_interrupted();
-        image = probes.render(samples);
+        image = upsampled(view, probes.render(samples, stride), stride);
       }
       settings["rays_per_probe"] = samples, settings["probes"] = static_cast<double>(probes.count());
       return image;
     }
   }
-  return {};
+  return baselines::Irradiance();
 }
 
 MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view,
