@@ -13,6 +13,10 @@ unsigned near_pixels(unsigned pixels, int step) {
   return (pixels + step - 1) / step;
 }
 
+unsigned tiles_down(unsigned rows) {
+  return (rows + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE;
+}
+
 ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
   ProgramSource source{file, {}, {}};
   source.literals.integer("CLPV_NEAR_STEP", options.step)
@@ -93,24 +97,28 @@ void NearField::reserve(const ClpvView& view) {
   plane_ = plane;
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
-  session_.reserve(places_, 3 * options_.rays * numbers, "hits of the near field");
+  const std::size_t tiles = tiles_along(width) * tiles_down(height);
+  session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
+  session_.reserve(hits_, tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float),
+                   "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(differences_, 3 * numbers, "near field");
   session_.reserve(blurred_, 3 * numbers, "blurred near field");
+  session_.fill_zero(radiances_, 3 * options_.rays * numbers);  // read, but not used, where there is no hit
   session_.fill_zero(differences_, 3 * numbers);  // borders stay 0
   session_.fill_zero(blurred_, 3 * numbers);
 }
 
 Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
-  return kernel.set(view, points_, directions_, distances_, places_, buffers_.vertices, buffers_.triangles,
-                    buffers_.materials, buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
+  return kernel.set(view, points_, counts_, hits_, buffers_.vertices, buffers_.triangles, buffers_.materials,
+                    buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
 }
 
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
-                         near_pixels(view.height, options_.step), options_.rays);
+                         tiles_down(near_pixels(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
   const cl::NDRange group(8, 1, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -146,8 +154,8 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
       .launch(with_border, kTileRow);
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
-           buffers_.materials, buffers_.textures, buffers_.texels, distances_, places_)
-      .launch(rows, kTileRow);
+           buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
+      .launch(cl::NDRange(tiles_along(width), tiles_down(height)), cl::NDRange(1, 1));
   light_hits(camera, gatherer, lights, scale, occluded);
   near_.set(view, points_, directions_, distances_, radiances_, differences_);
   gatherer.add_radiance(near_, scale, occluded);
