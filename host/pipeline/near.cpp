@@ -105,7 +105,7 @@ void NearField::reserve(const ClpvView& view) {
   session_.reserve(differences_, 3 * numbers, "near field");
   session_.reserve(blurred_, 3 * numbers, "blurred near field");
   session_.fill_zero(radiances_, 3 * options_.rays * numbers);  // read, but not used, where there is no hit
-  session_.fill_zero(differences_, 3 * numbers);  // borders stay 0
+  session_.fill_zero(differences_, 3 * numbers);                // borders stay 0
   session_.fill_zero(blurred_, 3 * numbers);
 }
 
