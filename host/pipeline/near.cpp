@@ -66,6 +66,7 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       emit_(session, near_source("near_light.cl", buffers, options), "near_emit"),
       near_(session, with_radiance(near_source("near.cl", buffers, options), basis, options.gather), "near"),
       blur_(session, near_source("near_filter.cl", buffers, options), "near_blur"),
+      widen_(session, near_source("near_filter.cl", buffers, options), "near_widen"),
       add_(session, near_source("near_filter.cl", buffers, options), "near_add") {
   if (options.reflects) {
     reflect_.emplace(
@@ -161,7 +162,8 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
   gatherer.add_radiance(near_, scale, occluded);
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
-  add_.set(view, camera.depth, camera.normal, points_, blurred_, irradiance)
+  widen_.set(view, points_, blurred_, differences_).launch(rows, kTileRow);
+  add_.set(view, camera.depth, camera.normal, points_, differences_, irradiance)
       .launch(rows_of_tiles(view), kTileRow);
 }
 

@@ -5,7 +5,7 @@
 
 #define CLPV_NEAR_TILE 4     // pixels along each side of a square, each of which has its own directions
 #define CLPV_NEAR_COLUMNS 8  // empty columns before and at least as many after each row, for the filter's window
-#define CLPV_NEAR_ROWS 2     // empty rows above and below
+#define CLPV_NEAR_ROWS 3     // empty rows above and below
 
 // Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a surface in a cascade.
 #define CLPV_NEAR_POSITION 0
