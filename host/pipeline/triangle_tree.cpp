@@ -100,7 +100,7 @@ BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles
     const Bounds b = bounds_of_triangle(scene, triangle);
     primitives.push_back({b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
   }
-  if (!moves) primitives.resize(triangles.size() * 3 / 2);  // room for parts
+  if (!moves) primitives.resize(triangles.size() * 5 / 4);  // room for parts
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = moves ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH;
   arguments.splitPrimitive = split;
