@@ -153,6 +153,7 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
   const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
   points_kernel_.set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, kTileRow);
+  // A work-item alone in its group: the lists of several would not fit into the first-level cache.
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
