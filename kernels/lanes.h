@@ -39,15 +39,12 @@ static inline void gather_rows(__global const float4* from, const uint8 at, Rows
 
 // Returns true if a comparison holds in no lane.
 static inline bool none(const int8 lanes) {
-  const long4 pairs = as_long4(lanes);
-  return (pairs.x | pairs.y | pairs.z | pairs.w) == 0;
+  return as_long(convert_char8(lanes)) == 0;
 }
 
 // Bit mask of a comparison; the first lane is the lowest bit.
 static inline uint clpv_bits(const int8 lanes) {
-  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-  const int4 four = bits.lo | bits.hi;
-  return (uint)(four.x | four.y | four.z | four.w);
+  return (uint)(((as_ulong(convert_char8(lanes)) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
 }
 
 // Large functions need the attribute: PoCL leaves them out of line.

@@ -14,7 +14,7 @@
 //   Out:  points                planes of shared/near.h, with their border
 // near
 //   In:   points, directions    near_layout.h
-//         hits                  per ray: distance [m], INFINITY without a hit
+//         distances             per ray: distance of the hit [m], INFINITY without one
 //         radiances             L_hit [W/m^2/sr] per ray: three planes for each k
 //         CLPV_RADIANCE         volumes
 //   Out:  differences           D, three planes
@@ -63,7 +63,7 @@ __kernel void near_points(const ClpvView view, __global const float* depths, __g
 }
 
 __kernel void near(const ClpvView view, __global const float* points, __global const float8* directions,
-                   __global const float* hits, __global const float* radiances, __global float* differences,
+                   __global const float* distances, __global const float* radiances, __global float* differences,
                    CLPV_RADIANCE) {
   const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
   if (!near_inside(r)) return;
@@ -83,7 +83,7 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
   for (int i = 0; i < CLPV_ABREAST; ++i) volumes[i] = 0.0f;
   for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
     const Vec w = near_directions(directions, r, &p, k);
-    const int8 hit = vload8(0, hits + k * r.plane + r.at) < (float8)(INFINITY);
+    const int8 hit = vload8(0, distances + k * r.plane + r.at) < (float8)(INFINITY);
     const int8 missed = lit & ~hit & (trust > none);
     clpv_radiance_field(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), none, p.normal, missed, &there);
     const VecLanes back = unpack(lit, vec_times(w, (float8)(-1.0f)));

@@ -7,16 +7,23 @@
 //   below 0.1 R.
 //   In:      points        near_layout.h; differences: D of near.cl
 //   Out:     blurred       D, three planes
+// near_widen
+//   Averages three by three blurred pixels, every third along both axes, which makes the window one of eleven by eleven.
+//   Pixels count by the same rules if they are also nearer than 0.2 R, so that the window stays small where pixels are
+//   far apart.
+//   In:      points, blurred
+//   Out:     widened       D, three planes
 // near_add
 //   Interpolates D bilinearly between pixels of the near field on the same surface; 0 if none is.
-//   In:      depths [m], normals   the camera's surface; points, blurred
+//   In:      depths [m], normals   the camera's surface; points, widened
 //   In, out: irradiance    E [W/m^2] per pixel of the camera: max(0, E + D)
 // A work-item processes eight pixels of a row.
 #include "near_layout.h"
 #include "surface_row.h"
 
 #define CLPV_SAME_NORMAL 0.7f  // cosine
-#define CLPV_SAME_PLANE 0.1f    // [R]
+#define CLPV_SAME_PLANE 0.1f   // [R]
+#define CLPV_WIDENED 0.2f      // [R]
 
 // Surfaces of eight neighbours.
 typedef struct {
@@ -74,6 +81,26 @@ __kernel void near_blur(const ClpvView view, __global const float* points, __glo
   store_near_vectors(mean_of(sum), blurred, r.plane, r.at);
 }
 
+__kernel void near_widen(const ClpvView view, __global const float* points, __global const float* blurred,
+                         __global float* widened) {
+  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
+  if (!near_inside(r)) return;
+  const float8 none = (float8)(0.0f);
+  const Vec position = near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  const Vec normal = near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+  const float8 reach = CLPV_WIDENED * vload8(0, points + CLPV_NEAR_REACH * r.plane + r.at);
+  WeightedSum sum = {{none, none, none}, none};
+  for (int dy = -3; dy <= 3; dy += 3) {
+    for (int dx = -3; dx <= 3; dx += 3) {
+      Neighbours n;
+      neighbours(points, blurred, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
+      const Vec apart = vec_minus(n.position, position);
+      add_weighted(n, vec_dot(apart, apart) < reach * reach ? same_surface(n, position, normal) : none, &sum);
+    }
+  }
+  store_near_vectors(mean_of(sum), widened, r.plane, r.at);
+}
+
 #if CLPV_NEAR_STEP == 2
 // Neighbours of eight pixels of the camera: on even columns the pixel itself, on odd ones that on the left or right.
 #define CLPV_WIDEN(v) (right ? (v).s01122334 : (v).s00112233)
@@ -86,21 +113,21 @@ CLPV_INLINE void widen(Neighbours* n, const bool right) {
 #endif
 
 __kernel void near_add(const ClpvView view, __global const float* depths, __global const float4* normals,
-                       __global const float* points, __global const float* blurred, __global float4* irradiance) {
+                       __global const float* points, __global const float* widened, __global float4* irradiance) {
   const PixelRow p = this_row(view);
   if (p.count == 0) return;
   Surfaces s;
   surfaces(view, p, depths, normals, &s);
   const NearRow r = near_row(view, (int)p.px / CLPV_ABREAST, (int)p.py / CLPV_NEAR_STEP);
 #if CLPV_NEAR_STEP == 1
-  const Vec difference = near_vectors(blurred, r.plane, r.at);
+  const Vec difference = near_vectors(widened, r.plane, r.at);
 #else
   const float8 none = (float8)(0.0f);
   WeightedSum sum = {{none, none, none}, none};
   const uint first = r.at - p.px / 2;
   for (uint corner = 0; corner < 4; ++corner) {
     Neighbours n;
-    neighbours(points, blurred, r.plane, first + (corner / 2) * (p.py % 2) * r.pitch, &n);
+    neighbours(points, widened, r.plane, first + (corner / 2) * (p.py % 2) * r.pitch, &n);
     widen(&n, corner % 2 == 1);
     add_weighted(n, same_surface(n, s.position, s.normal), &sum);
   }

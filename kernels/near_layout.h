@@ -40,6 +40,18 @@ static inline bool near_inside(const NearRow r) {
   return r.x < (int)r.width && r.y < (int)r.height;
 }
 
+// Tile of CLPV_ABREAST x CLPV_NEAR_TILE pixels of this work-item.
+#define CLPV_NO_TILE 0xffffffffu
+static inline uint near_tile(const ClpvView view) {
+  const uint across = (near_pixels(view.width) + CLPV_ABREAST - 1) / CLPV_ABREAST,
+             down = (near_pixels(view.height) + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE,
+             x = get_global_id(0), y = get_global_id(1);
+  return x < across && y < down ? y * across + x : CLPV_NO_TILE;
+}
+
+// Largest number of hits of a tile. They lie in groups of CLPV_ABREAST, whose numbers have rows (shared/near.h).
+#define CLPV_TILE_HITS (CLPV_ABREAST * CLPV_NEAR_TILE * CLPV_NEAR_RAYS)
+
 // Vectors from three planes.
 CLPV_INLINE Vec near_vectors(__global const float* planes, const uint plane, const uint at) {
   return vec(vload8(0, planes + at), vload8(0, planes + plane + at), vload8(0, planes + 2 * plane + at));

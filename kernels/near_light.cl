@@ -7,13 +7,13 @@
 // filtered over the width of a ray's cone, CLPV_NEAR_CONE times its length. A ray that leaves below the plane of its own
 // triangle, where the interpolated normal differs from the triangle's, carries no light.
 //
-// In:      points, directions, distances, places   near_layout.h, near_trace.cl
+// In:      points, counts, hits   near_layout.h, near_trace.cl
 //          CLPV_SCENE          the scene
 //          fresh               1: overwrite `radiances`; 0: add to them
 //   near_light:   light, views, count, which, map   a light and one of its shadow maps (shadow.h)
 //   near_reflect: CLPV_RADIANCE                     volumes (radiance.h)
-// In, out: radiances           three planes for each k
-// A work-item processes the rays k of eight pixels of a row. From the host: CLPV_TEXTURED, CLPV_COLOURED, CLPV_EMISSIVE,
+// In, out: radiances           three planes for each k, of the rays that hit
+// A work-item processes eight hits of a tile. From the host: CLPV_TEXTURED, CLPV_COLOURED, CLPV_EMISSIVE,
 // CLPV_NEAR_CONE, and with CLPV_NEAR_REFLECT 1 what radiance.h needs.
 #include "near_layout.h"
 #include "scene_triangles.h"
@@ -25,36 +25,42 @@
 
 typedef struct {
   int8 hit;
+  uint8 radiance;        // place among the radiances
   Vec position, normal;  // [m]; unit, towards the ray's origin
   Vec albedo, emitted;   // [W/m^2/sr]
 } HitSurface;
 
-// The surfaces that rays k hit.
-CLPV_INLINE void hit_surfaces(const NearRow r, const uint k, __global const float* points,
-                              __global const float8* directions, __global const float* distances,
-                              __global const float* places, CLPV_SCENE, HitSurface* s) {
-  NearPoints p;
-  near_points_at(points, r, &p);
-  const float8 none = (float8)(0.0f), distance = vload8(0, distances + k * r.plane + r.at);
-  const Vec place = near_vectors(places + 3 * k * r.plane, r.plane, r.at);
-  s->hit = (p.reach > none) & (distance < (float8)(INFINITY));
-  const Vec along = near_directions(directions, r, &p, k);
+// The surfaces of this work-item's hits. Returns false if there are none.
+CLPV_INLINE bool hit_surfaces(const ClpvView view, __global const float* points, __global const uint* counts,
+                              __global const float8* hits, CLPV_SCENE, HitSurface* s) {
+  const uint tile = near_tile(view), first = get_global_id(2) * CLPV_ABREAST;
+  if (tile == CLPV_NO_TILE || first >= counts[tile]) return false;
+  hits += (tile * CLPV_TILE_HITS + first) / CLPV_ABREAST * CLPV_HIT_ROWS;
+  const int8 listed = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < (int8)((int)(counts[tile] - first));
+  const float8 none = (float8)(0.0f), u = listed ? hits[CLPV_HIT_U] : none, v = listed ? hits[CLPV_HIT_V] : none,
+               distance = listed ? hits[CLPV_HIT_DISTANCE] : none;
+  const uint8 zero = (uint8)(0u), triangle = listed ? as_uint8(hits[CLPV_HIT_TRIANGLE]) : zero,
+              pixel = listed ? as_uint8(hits[CLPV_HIT_PIXEL]) : zero;
+  s->radiance = as_uint8(hits[CLPV_HIT_RADIANCE]);
+  const uint plane = CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_pixels(view.height));
+  const Vec origin = vec((float8)CLPV_GATHER(points, pixel), (float8)CLPV_GATHER(points, pixel + plane),
+                         (float8)CLPV_GATHER(points, pixel + 2 * plane));
+  const float8 reach = (float8)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
   Rows indices;
-  gather_rows(triangles, as_uint8(place.z), &indices);
+  gather_rows(triangles, triangle, &indices);
   VertexAttributes a, b, c;
   corner_at(vertices, as_uint8(CLPV_COLUMN(indices, x)), &a);
   corner_at(vertices, as_uint8(CLPV_COLUMN(indices, y)), &b);
   corner_at(vertices, as_uint8(CLPV_COLUMN(indices, z)), &c);
   MaterialLanes material;
   material_of(materials, as_uint8(CLPV_COLUMN(indices, w)), &material);
-  const Vec w = vec(1.0f - place.x - place.y, place.x, place.y);
+  const Vec w = vec(1.0f - u - v, u, v);
   const Vec edge1 = vec_minus(b.position, a.position), edge2 = vec_minus(c.position, a.position);
   const Vec across = vec_cross(edge1, edge2);
-  const float8 area2 = sqrt(vec_dot(across, across)), facing = vec_dot(across, along);
-  const int8 back = facing > none;
+  const float8 area2 = sqrt(vec_dot(across, across)), height = vec_dot(vec_minus(origin, a.position), across);
+  const int8 back = height < none;
   // Rays start CLPV_NEAR_LIFT R above their own triangle.
-  const Vec to_origin = vec_minus(p.position, a.position);
-  s->hit &= fabs(vec_dot(to_origin, across)) > 2.0f * CLPV_NEAR_LIFT * p.reach * area2;
+  s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
   s->position = vec_blend(w, a.position, b.position, c.position);
   s->normal = normal_towards(vec_times(across, back ? (float8)(-1.0f) : (float8)(1.0f)),
                              vec_blend(w, a.normal, b.normal, c.normal));
@@ -79,53 +85,52 @@ CLPV_INLINE void hit_surfaces(const NearRow r, const uint k, __global const floa
   apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &s->emitted);
 #endif
 #endif
+  return true;
 }
 
-CLPV_INLINE void add_radiance(const NearRow r, const uint k, const int8 hit, Vec radiance, const uint fresh,
-                              __global float* radiances) {
-  radiances += 3 * k * r.plane;
-  radiance = vec_masked(hit, radiance);
-  if (!fresh) radiance = vec_add_scaled(radiance, (float8)(1.0f), near_vectors(radiances, r.plane, r.at));
-  store_near_vectors(radiance, radiances, r.plane, r.at);
+// Adds radiance, 0 outside the mask `lit`.
+CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const int8 lit, const Vec radiance, const uint fresh,
+                              __global const uint* counts, __global float* radiances) {
+  const uint plane = CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_pixels(view.height));
+  const uint left = counts[near_tile(view)] - get_global_id(2) * CLPV_ABREAST;
+  const VecLanes added = unpack(lit, radiance);
+  uint at[CLPV_ABREAST];
+  vstore8(s.radiance, 0, at);
+  for (uint i = 0; i < min(left, (uint)CLPV_ABREAST); ++i) {
+    __global float* to = radiances + at[i];
+    to[0] = fresh ? added.x[i] : to[0] + added.x[i];
+    to[plane] = fresh ? added.y[i] : to[plane] + added.y[i];
+    to[2 * plane] = fresh ? added.z[i] : to[2 * plane] + added.z[i];
+  }
 }
 
 #define CLPV_NEAR_HITS                                                                                              \
-  const ClpvView view, __global const float *points, __global const float8 *directions,                            \
-      __global const float *distances, __global const float *places, CLPV_SCENE, const uint fresh,                  \
-      __global float *radiances
+  const ClpvView view, __global const float *points, __global const uint *counts, __global const float8 *hits,      \
+      CLPV_SCENE, const uint fresh, __global float *radiances
+#define CLPV_PASS_HITS view, points, counts, hits, CLPV_PASS_SCENE
 
 #if !CLPV_NEAR_REFLECT
 
 __kernel void near_light(CLPV_NEAR_HITS, const ClpvLight light, __global const ClpvView* views, const uint count,
                          const uint which, __global const float* map) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  const uint k = get_global_id(2);
-  if (!near_inside(r)) return;
   HitSurface s;
-  hit_surfaces(r, k, points, directions, distances, places, CLPV_PASS_SCENE, &s);
+  if (!hit_surfaces(CLPV_PASS_HITS, &s)) return;
   const ShadowMap shadow = {views, count, which, map};
   int8 lit = s.hit;
   const Vec irradiance = clpv_shadowed_irradiance(light, shadow, s.position, s.normal, &lit);
-  add_radiance(r, k, lit, vec_times(vec_product(s.albedo, irradiance), (float8)(M_1_PI_F)), fresh, radiances);
+  add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (float8)(M_1_PI_F)), fresh, counts, radiances);
 }
 
 __kernel void near_emit(CLPV_NEAR_HITS) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  const uint k = get_global_id(2);
-  if (!near_inside(r)) return;
   HitSurface s;
-  hit_surfaces(r, k, points, directions, distances, places, CLPV_PASS_SCENE, &s);
-  add_radiance(r, k, s.hit, s.emitted, fresh, radiances);
+  if (hit_surfaces(CLPV_PASS_HITS, &s)) add_radiance(view, s, s.hit, s.emitted, fresh, counts, radiances);
 }
 
 #else
 
 __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  const uint k = get_global_id(2);
-  if (!near_inside(r)) return;
   HitSurface s;
-  hit_surfaces(r, k, points, directions, distances, places, CLPV_PASS_SCENE, &s);
+  if (!hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
   clpv_radiance_field(CLPV_PASS_RADIANCE, s.position, (float8)(CLPV_GATHER_OFFSET), s.normal, s.hit, &field);
   const VecLanes n = unpack(s.hit, s.normal);
@@ -135,7 +140,7 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
     x[i] = e.x, y[i] = e.y, z[i] = e.z;
   }
   const Vec irradiance = vec(vload8(0, x), vload8(0, y), vload8(0, z));
-  add_radiance(r, k, s.hit, vec_times(vec_product(s.albedo, irradiance), (float8)(M_1_PI_F)), fresh, radiances);
+  add_radiance(view, s, s.hit, vec_times(vec_product(s.albedo, irradiance), (float8)(M_1_PI_F)), fresh, counts, radiances);
 }
 
 #endif

@@ -3,6 +3,9 @@
 //
 // A ray tests the eight boxes of a node, or the eight triangles of a leaf, in lanes. Triangles: Moeller and Trumbore
 // 1997, 'Fast, minimum storage ray-triangle intersection'. Both sides are hit; holes of masked materials are not.
+//
+// Eight rays share lists of nodes and leaves to visit. Processors test the entries of a list at the same time, while a
+// depth-first traversal waits for each node before it knows the next.
 #ifndef CLPV_TRIANGLE_TREE_H
 #define CLPV_TRIANGLE_TREE_H
 
@@ -13,45 +16,53 @@ typedef struct {
   __global const float8 *nodes, *leaves;
 } Tree;
 
+// Eight rays and their nearest hits.
 typedef struct {
-  float from[3], along[3], inverse[3];  // origin [m], unit direction, 1 / direction
-  uint near_row[3], far_row[3];         // rows of a node that hold the nearer and the farther planes
-} Ray;
-
-typedef struct {
-  float distance;  // [m]
-  float u, v;      // weights of the second and third vertex
-  uint triangle;
-} Hit;
+  float from[3][CLPV_ABREAST], along[3][CLPV_ABREAST], inverse[3][CLPV_ABREAST];  // [m]; unit; 1 / along
+  uint near_row[3][CLPV_ABREAST];  // row of a node that holds the nearer planes
+  float distance[CLPV_ABREAST];   // of the hit [m], or reach of the ray
+  float u[CLPV_ABREAST], v[CLPV_ABREAST];  // weights of the second and third vertex
+  uint triangle[CLPV_ABREAST];
+} Rays;
 
 #define CLPV_BOX_MARGIN 1.000001f  // covers the rounding of distances to planes
 
-CLPV_INLINE void clpv_make_ray(const float x, const float y, const float z, const float dx, const float dy, const float dz,
-                          Ray* ray) {
-  ray->from[0] = x, ray->from[1] = y, ray->from[2] = z;
-  ray->along[0] = dx, ray->along[1] = dy, ray->along[2] = dz;
-  for (int a = 0; a < 3; ++a) {
-    const float d = ray->along[a], least = 1e-20f;
-    ray->inverse[a] = 1.0f / (fabs(d) > least ? d : (d < 0.0f ? -least : least));
-    ray->near_row[a] = (d < 0.0f ? CLPV_TREE_UPPER : CLPV_TREE_LOWER) + a;
-    ray->far_row[a] = (d < 0.0f ? CLPV_TREE_LOWER : CLPV_TREE_UPPER) + a;
-  }
+CLPV_INLINE void clpv_set_ray_axis(const int axis, const float8 from, const float8 along, Rays* rays) {
+  const float8 none = (float8)(0.0f), least = along < none ? (float8)(-1e-20f) : (float8)(1e-20f);
+  vstore8(from, 0, rays->from[axis]);
+  vstore8(along, 0, rays->along[axis]);
+  vstore8(1.0f / (fabs(along) > fabs(least) ? along : least), 0, rays->inverse[axis]);
+  vstore8(along < none ? (uint8)(CLPV_TREE_UPPER + axis) : (uint8)(CLPV_TREE_LOWER + axis), 0, rays->near_row[axis]);
 }
 
-// Bit mask of the children whose boxes the ray meets before `reach` [m].
-#define CLPV_BOXES_HIT(name, memory)                                                                     \
-CLPV_INLINE uint name(memory const float8* node, const Ray* ray, const float reach) { \
-  const float8 nx = (node[ray->near_row[0]] - ray->from[0]) * ray->inverse[0], \
-               ny = (node[ray->near_row[1]] - ray->from[1]) * ray->inverse[1], \
-               nz = (node[ray->near_row[2]] - ray->from[2]) * ray->inverse[2]; \
-  const float8 fx = (node[ray->far_row[0]] - ray->from[0]) * ray->inverse[0], \
-               fy = (node[ray->far_row[1]] - ray->from[1]) * ray->inverse[1], \
-               fz = (node[ray->far_row[2]] - ray->from[2]) * ray->inverse[2]; \
-  const float8 none = (float8)(0.0f), end = (float8)(reach); \
-  const float8 nxy = nx > ny ? nx : ny, nz0 = nz > none ? nz : none, enter = nxy > nz0 ? nxy : nz0; \
-  const float8 fxy = fx < fy ? fx : fy, fz1 = fz < end ? fz : end, leave = fxy < fz1 ? fxy : fz1; \
-  return clpv_bits(enter <= leave * CLPV_BOX_MARGIN); \
+// Rays without hits; those of reach 0 have none.
+CLPV_INLINE void clpv_set_rays(const Vec from, const Vec along, const float8 reach, Rays* rays) {
+  clpv_set_ray_axis(0, from.x, along.x, rays);
+  clpv_set_ray_axis(1, from.y, along.y, rays);
+  clpv_set_ray_axis(2, from.z, along.z, rays);
+  vstore8(reach, 0, rays->distance);
+  vstore8((float8)(0.0f), 0, rays->u);
+  vstore8((float8)(0.0f), 0, rays->v);
+  vstore8((uint8)(0u), 0, rays->triangle);
 }
+
+// Shortens the parts of ray i within eight boxes to those between their planes across axis a.
+#define CLPV_MEET_SLABS(a)                                                                                       \
+  {                                                                                                              \
+    const uint near_row = rays->near_row[a][i], far_row = CLPV_TREE_LOWER + CLPV_TREE_UPPER + 2 * a - near_row;  \
+    const float8 from = (float8)(rays->from[a][i]), inverse = (float8)(rays->inverse[a][i]);                     \
+    const float8 entered = (node[near_row] - from) * inverse, left = (node[far_row] - from) * inverse;           \
+    enter = entered > enter ? entered : enter;                                                                   \
+    leave = left < leave ? left : leave;                                                                         \
+  }
+
+// Bit mask of the children whose boxes ray i meets before its hit.
+#define CLPV_BOXES_HIT(name, memory)                                                                                  \
+  CLPV_INLINE uint name(memory const float8* node, const Rays* rays, const uint i) {                                  \
+    float8 enter = (float8)(0.0f), leave = (float8)(rays->distance[i]);                                               \
+    CLPV_MEET_SLABS(0) CLPV_MEET_SLABS(1) CLPV_MEET_SLABS(2)                                                          \
+    return clpv_bits(enter <= leave * CLPV_BOX_MARGIN);                                                               \
+  }
 CLPV_BOXES_HIT(clpv_boxes_hit, __global)
 CLPV_BOXES_HIT(clpv_entry_hit, )
 
@@ -59,15 +70,10 @@ static inline uint clpv_lowest(const uint bits) {
   return 31u - clz(bits & (0u - bits));
 }
 
-// Child `lane` of a node.
-static inline int clpv_child(__global const float8* node, const uint lane) {
-  return ((__global const int*)(node + CLPV_TREE_CHILDREN))[lane];
-}
-
-// Mask of the lanes where a masked material has a hole at weights (u, v). Other lanes may be anything.
+// Mask of the lanes where a masked material has a hole at weights (u, v).
 __attribute__((noinline)) int8 clpv_holes(const uint8 triangle, const float8 u, const float8 v, CLPV_SCENE) {
   Rows indices, a, b, c, base, factors, maps;
-  gather_rows(triangles, triangle & ~CLPV_TREE_MASKED, &indices);
+  gather_rows(triangles, triangle, &indices);
   const uint8 ia = as_uint8(CLPV_COLUMN(indices, x)), ib = as_uint8(CLPV_COLUMN(indices, y)),
               ic = as_uint8(CLPV_COLUMN(indices, z)), im = as_uint8(CLPV_COLUMN(indices, w));
   const float8 w = 1.0f - u - v;
@@ -85,7 +91,7 @@ __attribute__((noinline)) int8 clpv_holes(const uint8 triangle, const float8 u, 
   gather_rows(materials + 2, 3u * im, &maps);
   const float8 alpha = CLPV_COLUMN(base, w) * vertex_alpha *
                        clpv_bilinear_alpha(textures, texels, as_uint8(CLPV_COLUMN(maps, x)) * CLPV_TEXTURE_LEVELS, uv);
-  return (alpha < CLPV_COLUMN(factors, w)) & ((triangle & CLPV_TREE_MASKED) != 0u);
+  return alpha < CLPV_COLUMN(factors, w);
 }
 
 static inline float clpv_least(const float8 v) {
@@ -94,56 +100,66 @@ static inline float clpv_least(const float8 v) {
   return two.x < two.y ? two.x : two.y;
 }
 
-// Takes the nearest triangle of a leaf that is nearer than `hit`; of equals the first.
-CLPV_INLINE void clpv_leaf_hit(__global const float8* leaf, const Ray* ray, CLPV_SCENE, Hit* hit) {
-  const Vec along = vec((float8)(ray->along[0]), (float8)(ray->along[1]), (float8)(ray->along[2]));
+// Hits on masked materials, which count unless there is a hole. Eight are looked up together.
+typedef struct {
+  float distance[CLPV_ABREAST], u[CLPV_ABREAST], v[CLPV_ABREAST];
+  uint triangle[CLPV_ABREAST], ray[CLPV_ABREAST];
+} MaskedHits;
+
+CLPV_INLINE void clpv_take(Rays* rays, const uint i, const float distance, const float u, const float v,
+                           const uint triangle) {
+  rays->distance[i] = distance;
+  rays->u[i] = u;
+  rays->v[i] = v;
+  rays->triangle[i] = triangle;
+}
+
+CLPV_INLINE void clpv_take_masked(const MaskedHits* masked, const uint count, CLPV_SCENE, Rays* rays) {
+  if (count == 0) return;
+  const uint holes = clpv_bits(clpv_holes(vload8(0, masked->triangle), vload8(0, masked->u), vload8(0, masked->v),
+                                          CLPV_PASS_SCENE));
+  for (uint j = 0; j < count; ++j) {
+    const uint i = masked->ray[j];
+    if ((holes >> j & 1u) == 0u && masked->distance[j] < rays->distance[i])
+      clpv_take(rays, i, masked->distance[j], masked->u[j], masked->v[j], masked->triangle[j]);
+  }
+}
+
+// Takes the nearest triangle of a leaf, if it is nearer than the hit of ray i; of equals the first.
+CLPV_INLINE void clpv_leaf_hit(__global const float8* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
+                               uint* masked_count) {
+  const Vec along = vec((float8)(rays->along[0][i]), (float8)(rays->along[1][i]), (float8)(rays->along[2][i]));
   const Vec edge1 = vec(leaf[CLPV_TREE_EDGE1], leaf[CLPV_TREE_EDGE1 + 1], leaf[CLPV_TREE_EDGE1 + 2]);
   const Vec edge2 = vec(leaf[CLPV_TREE_EDGE2], leaf[CLPV_TREE_EDGE2 + 1], leaf[CLPV_TREE_EDGE2 + 2]);
-  const Vec from = vec(ray->from[0] - leaf[CLPV_TREE_CORNER], ray->from[1] - leaf[CLPV_TREE_CORNER + 1],
-                       ray->from[2] - leaf[CLPV_TREE_CORNER + 2]);
+  const Vec from = vec(rays->from[0][i] - leaf[CLPV_TREE_CORNER], rays->from[1][i] - leaf[CLPV_TREE_CORNER + 1],
+                       rays->from[2][i] - leaf[CLPV_TREE_CORNER + 2]);
   const Vec across = vec_cross(along, edge2), around = vec_cross(from, edge1);
   const float8 zero = (float8)(0.0f), one = (float8)(1.0f), scale = one / vec_dot(edge1, across);
   const float8 u = vec_dot(from, across) * scale, v = vec_dot(along, around) * scale,
                distance = vec_dot(edge2, around) * scale;
-  int8 met = (u >= zero) & (v >= zero) & (u + v <= one) & (distance > zero) & (distance < (float8)(hit->distance));
+  int8 met = (u >= zero) & (v >= zero) & (u + v <= one) & (distance > zero) & (distance < (float8)(rays->distance[i]));
   if (none(met)) return;
   const uint8 triangle = as_uint8(leaf[CLPV_TREE_TRIANGLES]);
-  if (!none(met & ((triangle & CLPV_TREE_MASKED) != 0u))) {
-    met &= ~clpv_holes(triangle, u, v, CLPV_PASS_SCENE);
+  const int8 unsure = met & ((triangle & CLPV_TREE_MASKED) != 0u);
+  if (!none(unsure)) {
+    for (uint bits = clpv_bits(unsure); bits != 0; bits &= bits - 1u) {
+      const uint lane = clpv_lowest(bits), j = *masked_count;
+      masked->distance[j] = ((const float*)&distance)[lane];
+      masked->u[j] = ((const float*)&u)[lane];
+      masked->v[j] = ((const float*)&v)[lane];
+      masked->triangle[j] = ((const uint*)&triangle)[lane] & ~CLPV_TREE_MASKED;
+      masked->ray[j] = i;
+      *masked_count = (j + 1) % CLPV_ABREAST;
+      if (j + 1 == CLPV_ABREAST) clpv_take_masked(masked, CLPV_ABREAST, CLPV_PASS_SCENE, rays);
+    }
+    met &= ~unsure;
     if (none(met)) return;
   }
   const float8 reached = met ? distance : (float8)(INFINITY);
   const float nearest = clpv_least(reached);
-  const uint bits = clpv_bits(reached == (float8)(nearest));
-  const uint lane = clpv_lowest(bits);
-  hit->distance = nearest;
-  hit->u = ((const float*)&u)[lane];
-  hit->v = ((const float*)&v)[lane];
-  hit->triangle = ((const uint*)&triangle)[lane] & ~CLPV_TREE_MASKED;
-}
-
-// Takes the nearest triangle below a node, if it is nearer than `hit`. The stack has one entry per level: a node and the
-// bit mask of its children to visit.
-CLPV_INLINE void clpv_subtree_hit(const Tree tree, uint node, const Ray* ray, CLPV_SCENE, Hit* hit) {
-  uint stack[CLPV_TREE_DEPTH];
-  uint depth = 0, children = clpv_boxes_hit(tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS, ray, hit->distance);
-  for (;;) {
-    if (children == 0) {
-      if (depth == 0) return;
-      const uint top = stack[--depth];
-      node = top >> CLPV_TREE_WIDTH;
-      children = top & ((1u << CLPV_TREE_WIDTH) - 1u);
-    }
-    const int child = clpv_child(tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS, clpv_lowest(children));
-    children &= children - 1u;
-    if (child < 0) {
-      clpv_leaf_hit(tree.leaves + (size_t)(uint)~child * CLPV_TREE_LEAF_ROWS, ray, CLPV_PASS_SCENE, hit);
-      continue;
-    }
-    if (children != 0) stack[depth++] = node << CLPV_TREE_WIDTH | children;
-    node = (uint)child;
-    children = clpv_boxes_hit(tree.nodes + (size_t)node * CLPV_TREE_NODE_ROWS, ray, hit->distance);
-  }
+  const uint lane = clpv_lowest(clpv_bits(reached == (float8)(nearest)));
+  if (nearest < rays->distance[i])
+    clpv_take(rays, i, nearest, ((const float*)&u)[lane], ((const float*)&v)[lane], ((const uint*)&triangle)[lane]);
 }
 
 // Up to eight subtrees that hold all triangles in a box: a node (shared/tree.h) that rays of one region share.
@@ -194,27 +210,53 @@ CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
       const uint child = clpv_lowest(overlaps);
       overlaps &= overlaps - 1u;
       for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][lane] = ((__global const float*)(node + row))[child];
-      children[lane] = clpv_child(node, child);
+      children[lane] = ((__global const int*)(node + CLPV_TREE_CHILDREN))[child];
     }
   }
   for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) entry->rows[row] = vload8(0, rows[row]);
   entry->rows[CLPV_TREE_CHILDREN] = as_float8(vload8(0, children));
 }
 
-// Finds the nearest triangle before hit->distance [m]. Returns false, and leaves `hit`, if there is none.
-CLPV_INLINE bool clpv_nearest_triangle(const Tree tree, const Entry* entry, const Ray* ray, CLPV_SCENE, Hit* hit) {
-  const float reach = hit->distance;
-  uint children = clpv_entry_hit(entry->rows, ray, reach);
-  while (children != 0) {
-    const int child = ((const int*)&entry->rows[CLPV_TREE_CHILDREN])[clpv_lowest(children)];
-    children &= children - 1u;
-    if (child < 0) {
-      clpv_leaf_hit(tree.leaves + (size_t)(uint)~child * CLPV_TREE_LEAF_ROWS, ray, CLPV_PASS_SCENE, hit);
-    } else {
-      clpv_subtree_hit(tree, (uint)child, ray, CLPV_PASS_SCENE, hit);
-    }
+// Entries of the lists: number of a node or a leaf, and a ray in the lowest bits.
+#define CLPV_RAY_BITS 3
+#define CLPV_LIST 256  // entries, before the last node or leaf adds its own
+
+// Adds the children in the mask `bits` of a node for ray i.
+#define CLPV_ADD_CHILDREN(memory, node, bits, i)                                                        \
+  for (uint rest = bits; rest != 0; rest &= rest - 1u) {                                                \
+    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[clpv_lowest(rest)];            \
+    const uint inner = child >= 0;                                                                      \
+    nodes[node_count] = (uint)child << CLPV_RAY_BITS | i;                                               \
+    leaves[leaf_count] = (uint)~child << CLPV_RAY_BITS | i;                                             \
+    node_count += inner;                                                                                \
+    leaf_count += 1u - inner;                                                                           \
   }
-  return hit->distance < reach;
+
+// Finds the nearest triangle of each ray. Nodes are visited in the order in which they were found; once the list is
+// long the last first, for which the rest of the array suffices.
+CLPV_INLINE void clpv_nearest_triangles(const Tree tree, const Entry* entry, CLPV_SCENE, Rays* rays) {
+  uint nodes[CLPV_LIST + CLPV_TREE_WIDTH * CLPV_TREE_DEPTH], leaves[CLPV_LIST + CLPV_TREE_WIDTH];
+  uint visited = 0, node_count = 0, leaf_count = 0, masked_count = 0;
+  MaskedHits masked;
+  vstore8((uint8)(0u), 0, masked.triangle);
+  for (uint i = 0; i < CLPV_ABREAST; ++i) {
+    const uint bits = rays->distance[i] > 0.0f ? clpv_entry_hit(entry->rows, rays, i) : 0u;
+    CLPV_ADD_CHILDREN(, entry->rows, bits, i)
+  }
+  while (visited < node_count || leaf_count > 0) {
+    while (visited < node_count && leaf_count <= CLPV_LIST) {
+      const uint next = nodes[node_count > CLPV_LIST ? --node_count : visited++], i = next % CLPV_ABREAST;
+      __global const float8* node = tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * CLPV_TREE_NODE_ROWS;
+      const uint bits = clpv_boxes_hit(node, rays, i);
+      CLPV_ADD_CHILDREN(__global, node, bits, i)
+    }
+    for (uint j = 0; j < leaf_count; ++j) {
+      __global const float8* leaf = tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * CLPV_TREE_LEAF_ROWS;
+      clpv_leaf_hit(leaf, leaves[j] % CLPV_ABREAST, CLPV_PASS_SCENE, rays, &masked, &masked_count);
+    }
+    leaf_count = 0;
+  }
+  clpv_take_masked(&masked, masked_count, CLPV_PASS_SCENE, rays);
 }
 
 #endif

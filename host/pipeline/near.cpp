@@ -13,6 +13,10 @@ unsigned near_pixels(unsigned pixels, int step) {
   return (pixels + step - 1) / step;
 }
 
+unsigned tiles_down(unsigned rows) {
+  return (rows + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE;
+}
+
 ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
   ProgramSource source{file, {}, {}};
   source.literals.integer("CLPV_NEAR_STEP", options.step)
@@ -62,6 +66,7 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       emit_(session, near_source("near_light.cl", buffers, options), "near_emit"),
       near_(session, with_radiance(near_source("near.cl", buffers, options), basis, options.gather), "near"),
       blur_(session, near_source("near_filter.cl", buffers, options), "near_blur"),
+      widen_(session, near_source("near_filter.cl", buffers, options), "near_widen"),
       add_(session, near_source("near_filter.cl", buffers, options), "near_add") {
   if (options.reflects) {
     reflect_.emplace(
@@ -93,24 +98,28 @@ void NearField::reserve(const ClpvView& view) {
   plane_ = plane;
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
-  session_.reserve(places_, 3 * options_.rays * numbers, "hits of the near field");
+  const std::size_t tiles = tiles_along(width) * tiles_down(height);
+  session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
+  session_.reserve(hits_, tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float),
+                   "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(differences_, 3 * numbers, "near field");
   session_.reserve(blurred_, 3 * numbers, "blurred near field");
-  session_.fill_zero(differences_, 3 * numbers);  // borders stay 0
+  session_.fill_zero(radiances_, 3 * options_.rays * numbers);  // read, but not used, where there is no hit
+  session_.fill_zero(differences_, 3 * numbers);                // borders stay 0
   session_.fill_zero(blurred_, 3 * numbers);
 }
 
 Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
-  return kernel.set(view, points_, directions_, distances_, places_, buffers_.vertices, buffers_.triangles,
-                    buffers_.materials, buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
+  return kernel.set(view, points_, counts_, hits_, buffers_.vertices, buffers_.triangles, buffers_.materials,
+                    buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
 }
 
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
-                         near_pixels(view.height, options_.step), options_.rays);
+                         tiles_down(near_pixels(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
   const cl::NDRange group(8, 1, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -144,16 +153,18 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
   const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
   points_kernel_.set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, kTileRow);
+  // A work-item alone in its group: the lists of several would not fit into the first-level cache.
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
-           buffers_.materials, buffers_.textures, buffers_.texels, distances_, places_)
-      .launch(rows, kTileRow);
+           buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
+      .launch(cl::NDRange(tiles_along(width), tiles_down(height)), cl::NDRange(1, 1));
   light_hits(camera, gatherer, lights, scale, occluded);
   near_.set(view, points_, directions_, distances_, radiances_, differences_);
   gatherer.add_radiance(near_, scale, occluded);
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
-  add_.set(view, camera.depth, camera.normal, points_, blurred_, irradiance)
+  widen_.set(view, points_, blurred_, differences_).launch(rows, kTileRow);
+  add_.set(view, camera.depth, camera.normal, points_, differences_, irradiance)
       .launch(rows_of_tiles(view), kTileRow);
 }
 

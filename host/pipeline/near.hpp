@@ -44,10 +44,10 @@ class NearField {
   const SceneBuffers& buffers_;
   NearOptions options_;
   TriangleTree tree_;
-  Kernel points_kernel_, trace_, light_, emit_, near_, blur_, add_;
+  Kernel points_kernel_, trace_, light_, emit_, near_, blur_, widen_, add_;
   std::optional<Kernel> reflect_;  ///< with more than one bounce
   Buffer nodes_, leaves_, directions_, views_;
-  Buffer points_, distances_, places_, radiances_, differences_, blurred_;
+  Buffer points_, distances_, counts_, hits_, radiances_, differences_, blurred_;
   std::size_t plane_ = 0;  ///< numbers of a plane of the buffers
 };
 

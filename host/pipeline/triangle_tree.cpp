@@ -18,6 +18,8 @@
 namespace clpv {
 namespace {
 
+constexpr int kFixed = 0, kMoving = 1;  // children of the root
+
 /// A node of Embree's tree: an inner one, or a leaf with triangles.
 struct BuiltNode {
   std::array<BuiltNode*, CLPV_TREE_WIDTH> children{};
@@ -72,7 +74,21 @@ Bounds bounds_of_triangle(const Scene& scene, std::uint32_t triangle) {
   return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
 }
 
-BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles, Pool& pool) {
+/// Splits the box about a triangle, or about a part of one.
+void split(const RTCBuildPrimitive* part, unsigned axis, float position, RTCBounds* before, RTCBounds* after,
+           void*) {
+  *before = *after = {part->lower_x, part->lower_y, part->lower_z, 0,
+                      part->upper_x, part->upper_y, part->upper_z, 0};
+  float *const upper[] = {&before->upper_x, &before->upper_y, &before->upper_z}, *const lower[] = {
+                                                                                     &after->lower_x,
+                                                                                     &after->lower_y,
+                                                                                     &after->lower_z};
+  *upper[axis] = *lower[axis] = position;
+}
+
+/// `moves`: builds fast. Otherwise several leaves may hold a triangle, each for a part of it, since boxes then overlap
+/// less.
+BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles, bool moves, Pool& pool) {
   const std::unique_ptr<std::remove_pointer_t<RTCDevice>, void (*)(RTCDevice)> device(
       rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
   if (!device) check_embree(nullptr, false);
@@ -84,15 +100,20 @@ BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles
     const Bounds b = bounds_of_triangle(scene, triangle);
     primitives.push_back({b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
   }
+  if (!moves) primitives.resize(triangles.size() * 5 / 4);  // room for parts
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+  arguments.buildQuality = moves ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH;
+  arguments.splitPrimitive = split;
   arguments.maxBranchingFactor = CLPV_TREE_WIDTH;
   arguments.maxDepth = CLPV_TREE_DEPTH - 2;  // without the root that joins two trees
-  arguments.sahBlockSize = CLPV_TREE_WIDTH;
+  // Leaves for moving triangles are smaller, since their boxes overlap more.
+  arguments.sahBlockSize = moves ? CLPV_TREE_WIDTH / 2 : CLPV_TREE_WIDTH;
+  arguments.minLeafSize = moves ? CLPV_TREE_WIDTH / 4 : CLPV_TREE_WIDTH;
   arguments.maxLeafSize = CLPV_TREE_WIDTH;
   arguments.bvh = tree.get();
   arguments.primitives = primitives.data();
-  arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();
+  arguments.primitiveCount = triangles.size();
+  arguments.primitiveArrayCapacity = primitives.size();
   arguments.createNode = create_node;
   arguments.setNodeChildren = set_children;
   arguments.setNodeBounds = set_bounds;
@@ -177,7 +198,7 @@ TriangleTree::TriangleTree(const Scene& scene) {
   std::vector<std::uint32_t> fixed;
   for (std::uint32_t i = 0; i < moves.size(); ++i) (moves[i] ? moving_ : fixed).push_back(i);
   append_node(nodes_);
-  add(scene, fixed, 0);
+  add(scene, fixed, kFixed);
   fixed_nodes_ = nodes_.size();
   fixed_leaves_ = leaves_.size();
   move(scene);
@@ -186,14 +207,14 @@ TriangleTree::TriangleTree(const Scene& scene) {
 void TriangleTree::move(const Scene& scene) {
   nodes_.resize(fixed_nodes_);
   leaves_.resize(fixed_leaves_);
-  add(scene, moving_, 1);
+  add(scene, moving_, kMoving);
 }
 
 /// Adds a tree of triangles as child `lane` of the root.
 void TriangleTree::add(const Scene& scene, const std::vector<std::uint32_t>& triangles, int lane) {
   if (triangles.empty()) return;
   Pool pool;
-  BuiltNode* root = build(scene, triangles, pool);
+  BuiltNode* root = build(scene, triangles, lane == kMoving, pool);
   const int child = Flattener{scene, nodes_, leaves_}.append(*root, 2);
   Bounds box = bounds_of_triangle(scene, triangles.front());
   for (const std::uint32_t triangle : triangles) {

@@ -22,33 +22,43 @@ glm::dvec3 normal_of(const SurfaceImage& image, std::size_t pixel) {
   return glm::dvec3(image.normal[pixel]);
 }
 
-bool same_surface(const SurfaceImage& later, const glm::dvec3& point, const glm::dvec3& normal) {
+/// Returns the pixel of `later` that shows a point, or kNotSeen.
+std::size_t pixel_of(const SurfaceImage& later, const glm::dvec3& point, const glm::dvec3& normal) {
   const reference::ProjectedPoint at = reference::project(later.view, point);
-  if (!(at.depth > later.view.near_depth)) return false;
+  if (!(at.depth > later.view.near_depth)) return kNotSeen;
   const double x = std::round(at.pixel.x), y = std::round(at.pixel.y);
-  if (!(x >= 0 && x < later.view.width && y >= 0 && y < later.view.height)) return false;
+  if (!(x >= 0 && x < later.view.width && y >= 0 && y < later.view.height)) return kNotSeen;
   const std::size_t pixel = static_cast<std::size_t>(y) * later.view.width + static_cast<std::size_t>(x);
-  if (later.depth[pixel] <= 0) return false;
+  if (later.depth[pixel] <= 0) return kNotSeen;
   const glm::dvec3 there = reference::surface_position(later.view, x, y, double{later.depth[pixel]}),
                    off = there - point, there_normal = normal_of(later, pixel);
   const double edge = reference::pixel_edge(later.view, at.depth);
   const glm::dvec3 ray = glm::normalize(there - vector(later.view.eye));
   const double slope = std::max(std::abs(glm::dot(ray, there_normal)), 0.05);
-  return glm::dot(normal, there_normal) > kMinCosine && std::abs(glm::dot(off, normal)) < kOffPlane * edge &&
-         glm::length(off) * slope < kApart * edge;
+  const bool same = glm::dot(normal, there_normal) > kMinCosine &&
+                    std::abs(glm::dot(off, normal)) < kOffPlane * edge &&
+                    glm::length(off) * slope < kApart * edge;
+  return same ? pixel : kNotSeen;
 }
 
 }  // namespace
 
-std::vector<bool> still_seen(const SurfaceImage& earlier, const SurfaceImage& later) {
-  std::vector<bool> seen(earlier.depth.size());
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+std::vector<std::size_t> later_pixels(const SurfaceImage& earlier, const SurfaceImage& later) {
+  std::vector<std::size_t> pixels(earlier.depth.size(), kNotSeen);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (earlier.depth[i] <= 0) continue;
     const auto x = static_cast<double>(i % earlier.view.width),
                y = static_cast<double>(i / earlier.view.width);
-    seen[i] = same_surface(later, reference::surface_position(earlier.view, x, y, double{earlier.depth[i]}),
-                           normal_of(earlier, i));
+    pixels[i] = pixel_of(later, reference::surface_position(earlier.view, x, y, double{earlier.depth[i]}),
+                         normal_of(earlier, i));
   }
+  return pixels;
+}
+
+std::vector<bool> still_seen(const SurfaceImage& earlier, const SurfaceImage& later) {
+  const std::vector<std::size_t> pixels = later_pixels(earlier, later);
+  std::vector<bool> seen(pixels.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = pixels[i] != kNotSeen;
   return seen;
 }
 
@@ -102,14 +112,28 @@ void Stability::add(int number, double seconds, const Scene& scene, const SceneC
   if (before_) {
     const std::vector<bool> counted = still_seen(before_->surfaces, now.surfaces);
     const auto surfaces = std::ranges::count_if(before_->surfaces.depth, [](float d) { return d > 0; });
-    const LightChange change =
-        change_of_light(counted, before_->irradiance, frame_.irradiance_on(before_->surfaces));
+    const LightChange change = change_of_light(counted, before_->irradiance, light_before(now));
     const double seen =
         surfaces > 0 ? static_cast<double>(change.points) / static_cast<double>(surfaces) : 0.0;
     steps_.push_back({number, seconds, now.content == before_->content, moved(before_->grids, now.grids),
                       seen, change, noise(scene, camera, counted)});
   }
   before_ = std::move(now);
+}
+
+/// Light of the frame `now` at the points of the previous one: that of the volumes there, and the near field of the
+/// nearest pixels.
+std::vector<float> Stability::light_before(const Seen& now) {
+  std::vector<float> light = frame_.irradiance_on(before_->surfaces);
+  if (frame_.options().near == Near::off) return light;
+  const std::vector<float> volumes = frame_.irradiance_on(now.surfaces);
+  const std::vector<std::size_t> pixels = later_pixels(before_->surfaces, now.surfaces);
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (pixels[i / 4] == kNotSeen) continue;
+    const std::size_t there = 4 * pixels[i / 4] + i % 4;
+    light[i] += now.irradiance[there] - volumes[there];
+  }
+  return light;
 }
 
 /// Compares two path-traced images of the previous frame's surfaces under the current light.

@@ -13,9 +13,13 @@
 
 namespace clpv {
 
-/// Returns, for each pixel of `earlier`, whether `later` sees the same surface at the same position.
-/// Its point is projected to a pixel of `later`, which must show a similar normal, the same plane and a point
+constexpr std::size_t kNotSeen = static_cast<std::size_t>(-1);
+
+/// Returns, for each pixel of `earlier`, the pixel of `later` that sees the same surface at the same position, or
+/// kNotSeen. Its point is projected to a pixel of `later`, which must show a similar normal, the same plane and a point
 /// within the pixel spacing. Moved, hidden and out-of-view points and edges do not match.
+std::vector<std::size_t> later_pixels(const SurfaceImage& earlier, const SurfaceImage& later);
+/// Whether there is such a pixel.
 std::vector<bool> still_seen(const SurfaceImage& earlier, const SurfaceImage& later);
 
 /// Change of light at points.
@@ -44,7 +48,7 @@ struct StabilityStep {
 };
 
 /// Measures consecutive frames. Gathers the light of each frame at the points visible in the previous frame, which
-/// avoids interpolation between pixels.
+/// avoids interpolation between pixels. The near field is that of the nearest pixel.
 class Stability {
  public:
   /// `traced`: paths per pixel of the path-traced images; 0: none.
@@ -62,6 +66,7 @@ class Stability {
     std::vector<ClpvGrid> grids;
     std::uint64_t content;  ///< hash of lights and triangles
   };
+  std::vector<float> light_before(const Seen& now);
   std::optional<double> noise(const Scene& scene, const SceneCamera& camera,
                               const std::vector<bool>& counted) const;
 

@@ -15,8 +15,8 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kSameNormal = 0.7, kSamePlane = 0.1;  // near_filter.cl
-constexpr double kLeastArriving = 0.5;                 // near.cl
+constexpr double kSameNormal = 0.7, kSamePlane = 0.1, kWidened = 0.2;  // near_filter.cl
+constexpr double kLeastArriving = 0.5;                                 // near.cl
 
 bool close_to(double value, double limit) {
   return std::abs(value - limit) < kNearEdge * std::max(1.0, std::abs(limit));
@@ -179,6 +179,28 @@ NearImage blurred(const NearImage& image) {
   return result;
 }
 
+NearImage widened(const NearImage& image) {
+  NearImage result = image;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      NearPoint& point = result.points[y * image.width + x];
+      Mean mean;
+      for (const int dy : {-3, 0, 3}) {
+        for (const int dx : {-3, 0, 3}) {
+          const NearPoint& there = image.at(x + dx, y + dy);
+          const double apart =
+              point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
+          mean.uncertain = mean.uncertain || close_to(apart, kWidened);
+          mean.add(there, apart < kWidened ? 1 : 0, point.position, point.normal);
+        }
+      }
+      point.difference = mean.value();
+      point.uncertain = mean.uncertain;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<NearHit> nearest_triangle(const Scene& scene, const Materials& materials, const NearRay& ray,
@@ -228,7 +250,7 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
         field.trace(point, directions[y % CLPV_NEAR_TILE * CLPV_NEAR_TILE + x % CLPV_NEAR_TILE]);
     }
   }
-  image = blurred(image);
+  image = widened(blurred(image));
   NearResult result{gathered, std::vector<bool>(gathered.size(), false)};
   for (std::size_t pixel = 0; pixel < gathered.size(); ++pixel) {
     if (camera.depth[pixel] <= 0) continue;

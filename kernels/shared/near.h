@@ -3,9 +3,9 @@
 #ifndef CLPV_SHARED_NEAR_H
 #define CLPV_SHARED_NEAR_H
 
-#define CLPV_NEAR_TILE 4     // pixels along each side of a tile; each pixel of a tile has its own directions
+#define CLPV_NEAR_TILE 4     // pixels along each side of a square, each of which has its own directions
 #define CLPV_NEAR_COLUMNS 8  // empty columns before and at least as many after each row, for the filter's window
-#define CLPV_NEAR_ROWS 2     // empty rows above and below
+#define CLPV_NEAR_ROWS 3     // empty rows above and below
 
 // Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a surface in a cascade.
 #define CLPV_NEAR_POSITION 0
@@ -16,6 +16,16 @@
 // Numbers of a row and of a plane of `width` x `height` pixels.
 #define CLPV_NEAR_PITCH_OF(width) (((width) + 7) / 8 * 8 + 2 * CLPV_NEAR_COLUMNS)
 #define CLPV_NEAR_PLANE_OF(width, height) (CLPV_NEAR_PITCH_OF(width) * ((height) + 2 * CLPV_NEAR_ROWS))
+
+// Rows of eight hits: weights of the triangle's second and third vertex, distance [m], the triangle (uint), its pixel in a
+// plane (uint), and the ray's place among the radiances (uint).
+#define CLPV_HIT_U 0
+#define CLPV_HIT_V 1
+#define CLPV_HIT_DISTANCE 2
+#define CLPV_HIT_TRIANGLE 3
+#define CLPV_HIT_PIXEL 4
+#define CLPV_HIT_RADIANCE 5
+#define CLPV_HIT_ROWS 6
 
 // Distance of a ray's origin from its surface [R].
 #define CLPV_NEAR_LIFT 1e-3f
