@@ -35,7 +35,10 @@ bool has_probes(Baseline baseline) {
 /// The fewest samples that a method gets before it leaves out pixels. Below them its errors are larger than those of
 /// interpolation.
 unsigned fewest_samples(Baseline baseline) {
-  return lights_by_rsm(baseline) ? 16 : has_probes(baseline) ? 8 : 1;
+  return lights_by_rsm(baseline)                ? 16
+         : has_probes(baseline)                 ? 8
+         : baseline == Baseline::paths_filtered ? 2
+                                                : 1;
 }
 
 struct Timed {
