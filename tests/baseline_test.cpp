@@ -64,7 +64,7 @@ class Cornell : public ::testing::Test {
   static baselines::Irradiance run(Baseline baseline, unsigned samples, unsigned stride = 1,
                                    unsigned frames = 1) {
     std::map<std::string, double> settings;
-    return run_baseline(baseline, *view_, budget_, samples, stride, frames, settings);
+    return run_baseline(baseline, *view_, view_->thinned(stride), budget_, samples, frames, settings);
   }
   static Comparison errors(const baselines::Irradiance& irradiance) {
     return compare(traced_view(view_->with(irradiance), Show::indirect), "baseline", truth_, "ground truth");
@@ -112,7 +112,7 @@ TEST_F(Cornell, ProbesConvergeOverFrames) {
 TEST_F(Cornell, SkippedPixelsTakeTheirNeighboursLight) {
   for (const Baseline baseline : {Baseline::paths, Baseline::paths_filtered, Baseline::vpl,
                                   Baseline::vpl_interleaved, Baseline::ddgi_first}) {
-    const baselines::Irradiance image = run(baseline, 64, 2);
+    const baselines::Irradiance image = run(baseline, 256, 2);
     for (std::size_t i = 0; i < image.size(); ++i) EXPECT_EQ(image.computed(i), view_->hits()[i].has_value());
     EXPECT_NEAR(errors(image).energy_ratio.value(), 1, 0.2) << name_of(baseline);
   }
@@ -122,7 +122,7 @@ TEST_F(Cornell, BytesDoNotDependOnThreads) {
   const baselines::View one(*scene_, camera_, kWidth, kHeight, 1, 1);
   for (const Baseline baseline : values_of<Baseline>()) {
     std::map<std::string, double> settings;
-    EXPECT_EQ(run_baseline(baseline, one, budget_, 3, 1, 2, settings), run(baseline, 3, 1, 2))
+    EXPECT_EQ(run_baseline(baseline, one, one, budget_, 3, 2, settings), run(baseline, 3, 1, 2))
         << name_of(baseline);
   }
 }
@@ -132,8 +132,14 @@ TEST_F(Cornell, FilterKeepsAConstant) {
   for (std::size_t i = 0; i < image.size(); ++i) {
     if (view_->hits()[i]) image.set(i, {1, 2, 3});
   }
-  for (const baselines::Irradiance& filtered : {baselines::wavelet_filter(*view_, image, 4),
-                                                joint_bilateral(*view_, image, baselines::block_taps(1))}) {
+  const baselines::View thin = view_->thinned(4);
+  baselines::Irradiance part(thin.hits().size());
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (thin.hits()[i]) part.set(i, {1, 2, 3});
+  }
+  for (const baselines::Irradiance& filtered :
+       {baselines::wavelet_filter(*view_, image, 4), joint_bilateral(*view_, image, baselines::block_taps()),
+        baselines::upsampled(*view_, thin, part)}) {
     for (std::size_t i = 0; i < image.size(); ++i)
       EXPECT_LT(glm::length(filtered.at(i) - image.at(i)), 1e-4f) << i;
   }
@@ -150,6 +156,20 @@ TEST(BaselineFilter, DoesNotMixWallAndFloor) {
     image.set(i, glm::vec3(view.surfaces()[baselines::kNormal + 1][i] > 0.5f ? 1 : 0));
   const baselines::Irradiance filtered = baselines::wavelet_filter(view, image, 3);
   for (std::size_t i = 0; i < image.size(); ++i) EXPECT_FLOAT_EQ(filtered.at(i).x, image.at(i).x);
+}
+
+// A plane's irradiance that rises along a row is interpolated exactly.
+TEST(BaselineFilter, InterpolatesBetweenThinnedPixels) {
+  Scene scene = test::floor_scene(0.5f);
+  scene.lights = {test::sun({0, -1, 0}, 1)};
+  SceneCamera camera;
+  camera.eye = {0, 2, 0}, camera.forward = {0, -1, 0}, camera.up = {0, 0, -1};
+  const baselines::View view(scene, camera, 32, 16, 1, 2), thin = view.thinned(4);
+  baselines::Irradiance part(thin.hits().size());
+  for (std::size_t i = 0; i < part.size(); ++i) part.set(i, glm::vec3(static_cast<float>(i % 8) * 4 + 2));
+  const baselines::Irradiance image = baselines::upsampled(view, thin, part);
+  for (std::size_t i = 0; i < image.size(); ++i)
+    EXPECT_NEAR(image.at(i).x, std::clamp(static_cast<float>(i % 32), 2.0f, 30.0f), 1e-3f) << i;
 }
 
 /// A closed cube of edge 2 m seen from inside; its walls emit radiance 2.
@@ -171,7 +191,7 @@ TEST(BaselineProbes, FurnaceIsEvenlyLit) {
   const baselines::View view(scene, camera, 16, 9, 1, 2);
   ClpvGrid grid{{-0.5f, -0.5f, -0.5f}, 0.375f, 8, {1, 1, 1}};
   baselines::Probes probes(view, {grid});
-  const baselines::Irradiance image = probes.render(256, 1);
+  const baselines::Irradiance image = probes.render(256);
   for (std::size_t i = 0; i < image.size(); ++i) {
     EXPECT_NEAR(image.at(i).x, 2 * pi_v<float>,
                 0.16f * 2 * pi_v<float>);  // probes behind the walls count, most in corners

@@ -2,6 +2,7 @@
 // The filter's inner loop runs along a row, one tap at a time, so that compilers vectorise it.
 #include "baselines/filter.hpp"
 
+#include <cmath>
 #include <cstdlib>
 
 // Compile a function for the processor's widest vectors, as OpenCL drivers do with kernels, and a loop whose iterations do not
@@ -62,12 +63,43 @@ CLPV_WIDE void add_tap(Row a, Row b, std::size_t count, float share, float inver
   }
 }
 
+/// Divides the sums of a row's pixels by their weights.
+void normalise(Irradiance& sums, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    const float scale = sums[3][i] > 0 ? 1 / sums[3][i] : 0;
+    for (int c = 0; c < 3; ++c) sums[c][i] *= scale;
+    sums[3][i] = sums[3][i] > 0 ? 1.0f : 0.0f;
+  }
+}
+
+/// A row of a thinned view at the pixels of the full one: of each, the thinned pixel before it or after it.
+struct SpreadRow {
+  Planes surfaces;
+  Irradiance image;
+
+  explicit SpreadRow(std::size_t width) : surfaces(kSurfacePlanes, width), image(width) {}
+
+  /// Neighbour 0 or 1 of `row`; the image's weights are those of linear interpolation.
+  void set(const View& thin, const Irradiance& from, std::size_t row, int neighbour) {
+    const auto stride = static_cast<int>(thin.stride()), last = static_cast<int>(thin.width()) - 1;
+    for (int x = 0; x < static_cast<int>(image.size()); ++x) {
+      const float at = static_cast<float>(x - stride / 2) / static_cast<float>(stride),
+                  before = std::floor(at);
+      const std::size_t i = row * thin.width() + std::clamp(static_cast<int>(before) + neighbour, 0, last);
+      for (std::size_t plane = 0; plane < kSurfacePlanes; ++plane)
+        surfaces[plane][x] = thin.surfaces()[plane][i];
+      for (int c = 0; c < 3; ++c) image[c][x] = from[c][i];
+      image[3][x] = from[3][i] * (neighbour == 0 ? 1 - (at - before) : at - before);
+    }
+  }
+};
+
 }  // namespace
 
 Irradiance joint_bilateral(const View& view, const Irradiance& image, std::span<const Tap> taps) {
-  const auto width = static_cast<int>(view.view().width), height = static_cast<int>(view.view().height);
+  const auto width = static_cast<int>(view.width()), height = static_cast<int>(view.height());
   Irradiance sums(image.size());
-  view.parallel_for(view.view().height, 1, [&](reference::PathSampler&, std::size_t row, std::size_t) {
+  view.parallel_for(view.height(), 1, [&](reference::PathSampler&, std::size_t row, std::size_t) {
     const int y = static_cast<int>(row);
     for (const Tap& tap : taps) {
       const int first = std::max(0, -tap.x), last = std::min(width, width - tap.x);
@@ -78,20 +110,15 @@ Irradiance joint_bilateral(const View& view, const Irradiance& image, std::span<
               static_cast<std::size_t>(last - first), tap.weight, 1 / (kThickness * reach), &sums[0][a],
               &sums[1][a], &sums[2][a], &sums[3][a]);
     }
-    for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-      const float scale = sums[3][i] > 0 ? 1 / sums[3][i] : 0;
-      for (int c = 0; c < 3; ++c) sums[c][i] *= scale;
-      sums[3][i] = sums[3][i] > 0 ? 1.0f : 0.0f;
-    }
+    normalise(sums, row * width, (row + 1) * width);
   });
   return sums;
 }
 
-std::vector<Tap> block_taps(unsigned step) {
-  const int s = static_cast<int>(step);
+std::vector<Tap> block_taps() {
   std::vector<Tap> taps;
   for (int y = -1; y <= 2; ++y) {
-    for (int x = -1; x <= 2; ++x) taps.push_back({x * s, y * s, 1});
+    for (int x = -1; x <= 2; ++x) taps.push_back({x, y, 1});
   }
   return taps;
 }
@@ -111,14 +138,36 @@ Irradiance wavelet_filter(const View& view, const Irradiance& image, int passes)
   return result;
 }
 
-void fill(const View& view, Irradiance& image, const Irradiance& computed, unsigned stride) {
-  const unsigned width = view.view().width, height = view.view().height;
-  view.for_each_pixel(1, [&](reference::PathSampler&, std::size_t pixel) {
-    if (image.computed(pixel)) return;
-    const unsigned x = View::sample_of(static_cast<unsigned>(pixel % width), stride, width),
-                   y = View::sample_of(static_cast<unsigned>(pixel / width), stride, height);
-    image.set(pixel, computed.at(std::size_t{y} * width + x));
+Irradiance upsampled(const View& full, const View& thin, const Irradiance& image) {
+  const std::size_t width = full.width(), height = full.height(), stride = thin.stride();
+  const auto last = static_cast<int>(thin.height()) - 1;
+  Irradiance sums(width * height);
+  // Bands of rows between the same two thinned rows: the first one starts above the image.
+  full.parallel_for(thin.height() + 1, 1, [&](reference::PathSampler&, std::size_t band, std::size_t) {
+    SpreadRow spread(width);
+    const int above = static_cast<int>(band) - 1,
+              start = above * static_cast<int>(stride) + static_cast<int>(stride) / 2;
+    const std::size_t first = static_cast<std::size_t>(std::max(0, start)),
+                      end = std::min<std::size_t>(height,
+                                                  static_cast<std::size_t>(start + static_cast<int>(stride)));
+    for (int i = 0; i < 4 && first < end; ++i) {
+      const int row = std::clamp(above + i / 2, 0, last);
+      spread.set(thin, image, static_cast<std::size_t>(row), i % 2);
+      for (std::size_t y = first; y < end; ++y) {
+        const float below = static_cast<float>(static_cast<int>(y) - start) / static_cast<float>(stride);
+        const std::size_t at = y * width;
+        add_tap(row_at(full.surfaces(), sums, at), row_at(spread.surfaces, spread.image, 0), width,
+                i < 2 ? 1 - below : below, 1 / (kThickness * static_cast<float>(stride)), &sums[0][at],
+                &sums[1][at], &sums[2][at], &sums[3][at]);
+      }
+    }
+    for (std::size_t y = first; y < end; ++y) normalise(sums, y * width, (y + 1) * width);
   });
+  full.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) {
+    const std::size_t x = pixel % width / stride, y = pixel / width / stride;
+    if (!sums.computed(pixel)) sums.set(pixel, image.at(y * thin.width() + x));
+  });
+  return sums;
 }
 
 }  // namespace clpv::baselines

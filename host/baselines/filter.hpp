@@ -15,8 +15,8 @@ struct Tap {
   float weight;
 };
 
-/// 4 x 4 neighbours of equal weight, `step` pixels apart: one of each kind, where these pixels alternate in blocks of 4 x 4.
-std::vector<Tap> block_taps(unsigned step);
+/// 4 x 4 neighbours of equal weight: one pixel of each kind, where pixels alternate in blocks of 4 x 4.
+std::vector<Tap> block_taps();
 /// 3 x 3 neighbours at a distance of `step`, with the weights of a B-spline.
 std::vector<Tap> wavelet_taps(int step);
 
@@ -28,7 +28,8 @@ Irradiance joint_bilateral(const View& view, const Irradiance& image, std::span<
 /// Transform for fast Global Illumination Filtering', HPG 2010.
 Irradiance wavelet_filter(const View& view, const Irradiance& image, int passes);
 
-/// Gives surfaces of `image` without a value that of the one in `stride` x `stride` pixels that was computed.
-void fill(const View& view, Irradiance& image, const Irradiance& computed, unsigned stride);
+/// Image of all pixels of `full` from one of `thin`, its thinned view: bilinear interpolation with the weights of the joint
+/// bilateral filter, or the nearest pixel where no similar surface is near.
+Irradiance upsampled(const View& full, const View& thin, const Irradiance& image);
 
 }  // namespace clpv::baselines

@@ -14,8 +14,8 @@
 
 namespace clpv::baselines {
 
-/// Path tracing with `samples` paths per pixel, in one of `stride` x `stride` pixels.
-Irradiance trace_paths(const View& view, unsigned samples, unsigned stride);
+/// Path tracing with `samples` paths per pixel.
+Irradiance trace_paths(const View& view, unsigned samples);
 
 /// Virtual point light (VPL): a small disc.
 struct PointLight {
@@ -28,11 +28,10 @@ struct PointLight {
 /// Shadow Maps', I3D 2005). Empty if no surface is lit.
 std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned count);
 
-/// Irradiance from VPLs with a shadow ray each, in one of `stride` x `stride` pixels. `interleave` n: pixel (x, y) takes only
-/// lights (x mod n) + n (y mod n) of each n^2, for all of them (Keller and Heidrich, 'Interleaved Sampling', EGWR 2001).
-/// A light is a disc seen from afar, which bounds it at corners: flux cos cos' / (pi d^2 + area) (Wallace et al., SIGGRAPH 1989).
-Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave,
-                    unsigned stride);
+/// Irradiance from VPLs with a shadow ray each. `interleave` n: pixel (x, y) takes only lights (x mod n) + n (y mod n) of each
+/// n^2, for all of them (Keller and Heidrich, 'Interleaved Sampling', EGWR 2001). A light is a disc seen from afar, which bounds
+/// it at corners: flux cos cos' / (pi d^2 + area) (Wallace et al., SIGGRAPH 1989).
+Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave);
 
 /// Irradiance probes with visibility at the centres of cascades' cells (DDGI; Majercik et al., 'Dynamic Diffuse Global
 /// Illumination with Ray-Traced Irradiance Fields', JCGT 8(2), 2019). A pixel takes the finest cascade whose probes enclose it;
@@ -42,8 +41,8 @@ class Probes {
   Probes(const View& view, std::vector<ClpvGrid> grids) : view_(view), grids_(std::move(grids)) {}
 
   /// Renders the next frame: finds the probes that pixels need, traces `rays` of each, blends the results with those of earlier
-  /// frames, and returns the irradiance of one in `stride` x `stride` pixels. The first frame starts from nothing.
-  Irradiance render(unsigned rays, unsigned stride);
+  /// frames, and returns the irradiance of all pixels. The first frame starts from nothing.
+  Irradiance render(unsigned rays);
 
   std::size_t count() const { return positions_.size(); }  ///< probes of the last frame
 
@@ -53,7 +52,7 @@ class Probes {
     glm::vec3 fraction{0};  ///< position between them
     int grid = -1;          ///< none: no cascade encloses the pixel
   };
-  void find_probes(unsigned stride);
+  void find_probes();
   void trace(unsigned rays);
   glm::vec3 sample(std::size_t pixel) const;
 

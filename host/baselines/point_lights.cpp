@@ -74,15 +74,13 @@ std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned
   return lights;
 }
 
-Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave,
-                    unsigned stride) {
-  const unsigned width = view.view().width, sets = interleave * interleave;
+Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave) {
+  const unsigned width = view.width(), sets = interleave * interleave;
   Irradiance image(view.hits().size());
-  view.for_each_pixel(stride, [&](reference::PathSampler&, std::size_t pixel) {
+  view.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) {
     const reference::Hit& hit = *view.hits()[pixel];
     const glm::vec3 origin = view.rays().offset_origin(hit);
-    const auto x = static_cast<unsigned>(pixel % width) / stride,
-               y = static_cast<unsigned>(pixel / width) / stride;
+    const auto x = static_cast<unsigned>(pixel % width), y = static_cast<unsigned>(pixel / width);
     glm::vec3 sum(0);
     for (std::size_t i = x % interleave + interleave * (y % interleave); i < lights.size(); i += sets) {
       const PointLight& light = lights[i];

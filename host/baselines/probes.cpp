@@ -127,12 +127,12 @@ glm::vec3 radiance_of(const View& view, reference::PathSampler& sampler, const r
 
 /// Finds the cubes of probes that hold the pixels, and numbers their corners. Probes lie at the cells' centres. Results of earlier
 /// frames stay if the numbers are the same: the camera stands still.
-void Probes::find_probes(unsigned stride) {
+void Probes::find_probes() {
   corners_.resize(view_.hits().size());
   std::vector<std::vector<char>>
       used;  // the cubes by their first cell, by grid; threads write the same value
   for (const ClpvGrid& grid : grids_) used.emplace_back(std::size_t{grid.n} * grid.n * grid.n, 0);
-  view_.for_each_pixel(stride, [&](reference::PathSampler&, std::size_t pixel) {
+  view_.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) {
     corners_[pixel] = {};
     for (std::size_t g = 0; g < grids_.size(); ++g) {
       const ClpvGrid& grid = grids_[g];
@@ -206,9 +206,9 @@ glm::vec3 Probes::sample(std::size_t pixel) const {
   if (corner.grid < 0) return glm::vec3(0);
   const ClpvGrid& grid = grids_[corner.grid];
   const reference::Hit& hit = *view_.hits()[pixel];
-  const glm::vec3 eye(view_.view().eye[0], view_.view().eye[1], view_.view().eye[2]);
   const glm::vec3 lifted =
-      hit.position + kBias * grid.cell * (0.2f * hit.normal + 0.8f * glm::normalize(eye - hit.position));
+      hit.position +
+      kBias * grid.cell * (0.2f * hit.normal + 0.8f * glm::normalize(view_.eye() - hit.position));
   const Texels along_normal = texels_about(hit.normal, kLightTexels);
   glm::vec4 sum(0);
   for (unsigned i = 0; i < 8; ++i) {
@@ -241,13 +241,12 @@ glm::vec3 Probes::sample(std::size_t pixel) const {
   return std::numbers::pi_v<float> * glm::vec3(sum) / sum.w;
 }
 
-Irradiance Probes::render(unsigned rays, unsigned stride) {
-  find_probes(stride);
+Irradiance Probes::render(unsigned rays) {
+  find_probes();
   trace(rays);
   ++frame_;
   Irradiance image(view_.hits().size());
-  view_.for_each_pixel(stride,
-                       [&](reference::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
+  view_.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
   return image;
 }
 

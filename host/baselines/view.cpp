@@ -6,44 +6,72 @@
 
 namespace clpv::baselines {
 
+View::Shared::Shared(const Scene& of, const SceneCamera& camera, int bounces, int use_threads)
+    : scene(of),
+      rays(of),
+      emitters(of, rays.materials()),
+      sky(of.sky.get()),
+      lights(of.lights_for(camera)),
+      threads(use_threads),
+      eye(camera.eye) {
+  options.bounces = bounces;
+}
+
 View::View(const Scene& scene, const SceneCamera& camera, int width, int height, int bounces, int threads)
-    : scene_(scene),
-      rays_(scene),
-      emitters_(scene, rays_.materials()),
-      sky_(scene.sky.get()),
-      lights_(scene.lights_for(camera)),
-      threads_(threads),
-      surfaces_(kSurfacePlanes, static_cast<std::size_t>(width) * height) {
-  options_.bounces = bounces;
-  image_.view = camera_view(camera, width, height);
-  const std::size_t pixels = std::size_t{image_.view.width} * image_.view.height;
-  hits_.resize(pixels);
-  image_.depth.assign(pixels, 0);
-  for (auto* layer : {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance})
-    layer->assign(pixels, glm::vec3(0));
-  parallel_for(pixels, image_.view.width,
+    : shared_(std::make_shared<Shared>(scene, camera, bounces, threads)),
+      width_(static_cast<unsigned>(width)),
+      height_(static_cast<unsigned>(height)),
+      hits_(std::size_t{width_} * height_),
+      surfaces_(kSurfacePlanes, hits_.size()) {
+  reference::TracedImage& image = shared_->image;
+  image.view = camera_view(camera, width, height);
+  image.depth.assign(hits_.size(), 0);
+  for (auto* layer : {&image.normal, &image.albedo, &image.emissive, &image.direct, &image.irradiance})
+    layer->assign(hits_.size(), glm::vec3(0));
+  parallel_for(hits_.size(), width_,
                [&](reference::PathSampler& sampler, std::size_t first, std::size_t last) {
                  for (std::size_t i = first; i < last; ++i) {
-                   const auto x = static_cast<unsigned>(i % image_.view.width),
-                              y = static_cast<unsigned>(i / image_.view.width);
-                   hits_[i] = sampler.primary_hit(image_.view, x, y);
+                   const auto x = static_cast<unsigned>(i % width_), y = static_cast<unsigned>(i / width_);
+                   hits_[i] = sampler.primary_hit(image.view, x, y);
                    if (!hits_[i]) continue;
                    const reference::Hit& hit = *hits_[i];
-                   image_.depth[i] = hit.distance;
-                   image_.normal[i] = hit.normal;
-                   image_.albedo[i] = rays_.materials().albedo(hit.point, footprint(image_.view, x, y, hit));
+                   image.depth[i] = hit.distance;
+                   image.normal[i] = hit.normal;
+                   image.albedo[i] = rays().materials().albedo(hit.point, footprint(image.view, x, y, hit));
                    for (int c = 0; c < 3; ++c) {
                      surfaces_[kPosition + c][i] = hit.position[c];
                      surfaces_[kNormal + c][i] = hit.normal[c];
                    }
                    surfaces_[kDensity][i] =
-                       static_cast<float>(1 / reference::pixel_edge(image_.view, double{hit.distance}));
+                       static_cast<float>(1 / reference::pixel_edge(image.view, double{hit.distance}));
                  }
                });
 }
 
+View::View(const View& full, unsigned stride)
+    : shared_(full.shared_),
+      width_((full.width_ + stride - 1) / stride),
+      height_((full.height_ + stride - 1) / stride),
+      stride_(stride),
+      hits_(std::size_t{width_} * height_),
+      surfaces_(kSurfacePlanes, hits_.size()) {
+  for (std::size_t i = 0; i < hits_.size(); ++i) {
+    const unsigned x = std::min(static_cast<unsigned>(i % width_) * stride + stride / 2, full.width_ - 1),
+                   y = std::min(static_cast<unsigned>(i / width_) * stride + stride / 2, full.height_ - 1);
+    const std::size_t from = std::size_t{y} * full.width_ + x;
+    hits_[i] = full.hits_[from];
+    for (std::size_t plane = 0; plane < kSurfacePlanes; ++plane)
+      surfaces_[plane][i] = full.surfaces_[plane][from];
+    surfaces_[kDensity][i] /= static_cast<float>(stride);
+  }
+}
+
+View View::thinned(unsigned stride) const {
+  return {*this, stride};
+}
+
 reference::TracedImage View::with(const Irradiance& irradiance) const {
-  reference::TracedImage image = image_;
+  reference::TracedImage image = shared_->image;
   for (std::size_t i = 0; i < irradiance.size(); ++i) image.irradiance[i] = irradiance.at(i);
   return image;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -50,27 +51,32 @@ struct Irradiance : Planes {
 /// plane across the view. Normals are 0 without a surface.
 inline constexpr std::size_t kPosition = 0, kNormal = 3, kDensity = 6, kSurfacePlanes = 7;
 
-/// A camera's view of a scene, which it borrows; a medium is ignored. Baselines do not count the time of its construction: clpv has the G-buffer
-/// too, and caches blockers as these methods may cache the tree of triangles.
+/// A camera's view of a scene, which it borrows; a medium is ignored. Baselines do not count the time of its construction: clpv
+/// has the G-buffer too, and caches blockers as these methods may cache the tree of triangles.
 class View {
  public:
   /// `bounces` as in PathTracerOptions. Throws as RayScene.
   View(const Scene& scene, const SceneCamera& camera, int width, int height, int bounces, int threads);
-  View(const View&) = delete;  // members refer to each other
-  View& operator=(const View&) = delete;
 
-  const Scene& scene() const { return scene_; }
-  const reference::RayScene& rays() const { return rays_; }
-  const reference::Emitters& emitters() const { return emitters_; }
-  const reference::SkySampler& sky() const { return sky_; }
-  const ClpvView& view() const { return image_.view; }
-  int threads() const { return threads_; }
-  int bounces() const { return options_.bounces; }
+  /// View of one in `stride` x `stride` pixels, the middle ones.
+  View thinned(unsigned stride) const;
+  unsigned stride() const { return stride_; }  ///< 1: of all pixels
+
+  const Scene& scene() const { return shared_->scene; }
+  const reference::RayScene& rays() const { return shared_->rays; }
+  const reference::Emitters& emitters() const { return shared_->emitters; }
+  const reference::SkySampler& sky() const { return shared_->sky; }
+  int threads() const { return shared_->threads; }
+  int bounces() const { return shared_->options.bounces; }
+
+  unsigned width() const { return width_; }
+  unsigned height() const { return height_; }
+  const glm::vec3& eye() const { return shared_->eye; }
   /// Surfaces of the pixels' centres: what the camera's ray hits, and its summary for the filter.
   const std::vector<std::optional<reference::Hit>>& hits() const { return hits_; }
   const Planes& surfaces() const { return surfaces_; }
 
-  /// G-buffer with this irradiance.
+  /// G-buffer of all pixels with this irradiance.
   reference::TracedImage with(const Irradiance& irradiance) const;
 
   /// Calls action(sampler, first, last) for ranges of up to `grain` items that cover [0, count), on all threads.
@@ -78,44 +84,47 @@ class View {
   void parallel_for(std::size_t count, std::size_t grain, const Action& action) const {
     std::atomic<std::size_t> next{0};
     const auto run = [&] {
-      reference::PathSampler sampler(rays_, lights_, emitters_, sky_, nullptr, options_);
+      const Shared& s = *shared_;
+      reference::PathSampler sampler(s.rays, s.lights, s.emitters, s.sky, nullptr, s.options);
       for (std::size_t first; (first = next.fetch_add(grain)) < count;)
         action(sampler, first, std::min(count, first + grain));
     };
     std::vector<std::jthread> others;
-    for (int t = 1; t < threads_; ++t) others.emplace_back(run);
+    for (int t = 1; t < threads(); ++t) others.emplace_back(run);
     run();
   }
 
-  /// Calls action(sampler, pixel) for the pixels with a surface in every `stride`-th column and row.
+  /// Calls action(sampler, pixel) for the pixels with a surface.
   template <typename Action>
-  void for_each_pixel(unsigned stride, const Action& action) const {
-    const unsigned width = view().width, height = view().height;
-    parallel_for(height, 1, [&](reference::PathSampler& sampler, std::size_t y, std::size_t) {
-      if (sample_of(static_cast<unsigned>(y), stride, height) != y) return;
-      for (unsigned x = 0; x < width; ++x) {
-        const std::size_t pixel = y * width + x;
-        if (sample_of(x, stride, width) == x && hits_[pixel]) action(sampler, pixel);
-      }
-    });
-  }
-
-  /// Column or row that is computed for the one at `i`, one in `stride`.
-  static unsigned sample_of(unsigned i, unsigned stride, unsigned size) {
-    return std::min(i / stride * stride + stride / 2, size - 1);
+  void for_each_pixel(const Action& action) const {
+    parallel_for(hits_.size(), width_,
+                 [&](reference::PathSampler& sampler, std::size_t first, std::size_t last) {
+                   for (std::size_t pixel = first; pixel < last; ++pixel) {
+                     if (hits_[pixel]) action(sampler, pixel);
+                   }
+                 });
   }
 
  private:
-  const Scene& scene_;
-  reference::RayScene rays_;
-  reference::Emitters emitters_;
-  reference::SkySampler sky_;
-  std::vector<SceneLight> lights_;
-  reference::PathTracerOptions options_;
-  int threads_;
+  struct Shared {  ///< by all views of a scene from a camera
+    const Scene& scene;
+    reference::RayScene rays;
+    reference::Emitters emitters;
+    reference::SkySampler sky;
+    std::vector<SceneLight> lights;
+    reference::PathTracerOptions options;
+    int threads;
+    glm::vec3 eye;
+    reference::TracedImage image;  ///< G-buffer of all pixels
+
+    Shared(const Scene& of, const SceneCamera& camera, int bounces, int use_threads);
+  };
+  View(const View& full, unsigned stride);
+
+  std::shared_ptr<Shared> shared_;
+  unsigned width_, height_, stride_ = 1;
   std::vector<std::optional<reference::Hit>> hits_;
   Planes surfaces_;
-  reference::TracedImage image_;
 };
 
 }  // namespace clpv::baselines

@@ -17,6 +17,7 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
   const NumberRange range{1e-3, 1e7, "0.001..1e7 ms"};
   add_number(command, "--baseline-time", baselines.time, "time of each baseline in place of the frame's [ms]",
              range)
+      ->type_name("MS")
       ->needs(names);
   add(command, "--images", "DIR", baselines.images, "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
       ->needs(names);

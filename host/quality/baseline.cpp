@@ -16,8 +16,7 @@ namespace clpv {
 namespace {
 
 constexpr unsigned kMaxSamples = 1u << 16, kMaxStride = 4;
-constexpr int kPasses = 4;      // of the filter: its last taps are 8 pixels away; more blur Cornell's corners
-constexpr int kFillPasses = 3;  // reach the next computed pixels at kMaxStride
+constexpr int kPasses = 4;  // of the filter: its last taps are 8 pixels away; more blur Cornell's corners
 constexpr unsigned kInterleave = 4;
 constexpr double kFarthest = 2;      // extrapolation of samples
 constexpr int kCorrections = 3;      // of the number of samples
@@ -33,28 +32,13 @@ bool has_probes(Baseline baseline) {
   return baseline == Baseline::ddgi_first || baseline == Baseline::ddgi_converged;
 }
 
-/// Light of all pixels from one in `stride` x `stride`, by the joint bilateral filter.
-baselines::Irradiance upsampled(const baselines::View& view, baselines::Irradiance computed,
-                                unsigned stride) {
-  if (stride == 1) return computed;
-  baselines::Irradiance image = baselines::wavelet_filter(view, computed, kFillPasses);
-  baselines::fill(view, image, computed, stride);
-  return image;
-}
-
-baselines::Irradiance point_lights(const baselines::View& view, const BaselineBudget& budget, unsigned count,
-                                   unsigned interleave, unsigned stride) {
-  const std::vector<baselines::PointLight> lights = baselines::draw_lights(budget.rsms, count);
-  baselines::Irradiance computed = baselines::light_by(view, lights, interleave, stride);
-  if (interleave > 1) computed = baselines::joint_bilateral(view, computed, baselines::block_taps(stride));
-  return upsampled(view, std::move(computed), stride);
-}
-
-baselines::Irradiance paths(const baselines::View& view, bool filter, unsigned samples, unsigned stride) {
-  const baselines::Irradiance computed = baselines::trace_paths(view, samples, stride);
-  baselines::Irradiance image = filter ? baselines::wavelet_filter(view, computed, kPasses) : computed;
-  if (stride > 1) baselines::fill(view, image, computed, stride);
-  return image;
+/// The fewest samples that a method gets before it leaves out pixels. Below them its errors are larger than those of
+/// interpolation.
+unsigned fewest_samples(Baseline baseline) {
+  return lights_by_rsm(baseline)                ? 16
+         : has_probes(baseline)                 ? 8
+         : baseline == Baseline::paths_filtered ? 2
+                                                : 1;
 }
 
 struct Timed {
@@ -62,41 +46,53 @@ struct Timed {
   double ms;
 };
 
-/// What a number of samples takes, with the RSMs that it needs; of one frame.
-struct Runner {
-  Baseline baseline;
-  const baselines::View& view;
-  const BaselineBudget& budget;
-  std::map<std::string, double>& settings;
-
-  Timed operator()(unsigned samples, unsigned stride, unsigned frames = 1) const {
-    const auto start = std::chrono::steady_clock::now();
-    baselines::Irradiance image = run_baseline(baseline, view, budget, samples, stride, frames, settings);
-    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
-    return {std::move(image), taken.count() / frames + (lights_by_rsm(baseline) ? budget.rsm_ms : 0)};
+/// Runs a method with a number of samples, in one of `stride` x `stride` pixels. The time is that of one frame, with the RSMs
+/// that it needs.
+class Runner {
+ public:
+  Runner(Baseline baseline, const baselines::View& view, const BaselineBudget& budget)
+      : baseline_(baseline), budget_(budget) {
+    for (unsigned stride = 1; stride <= kMaxStride; stride *= 2) views_.emplace(stride, view.thinned(stride));
   }
+
+  Timed operator()(unsigned samples, unsigned stride, unsigned frames = 1) {
+    const auto start = std::chrono::steady_clock::now();
+    baselines::Irradiance image =
+        run_baseline(baseline_, views_.at(1), views_.at(stride), budget_, samples, frames, settings_);
+    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+    return {std::move(image), taken.count() / frames + (lights_by_rsm(baseline_) ? budget_.rsm_ms : 0)};
+  }
+  Baseline baseline() const { return baseline_; }
+  const std::map<std::string, double>& settings() const { return settings_; }  ///< of the last run
+
+ private:
+  Baseline baseline_;
+  const BaselineBudget& budget_;
+  std::map<unsigned, baselines::View> views_;  ///< by stride
+  std::map<std::string, double> settings_;
 };
 
 struct Plan {
-  unsigned samples = 1, stride = 1;
+  unsigned samples, stride;
 };
 
-/// Doubles the samples up to half of the budget, then extrapolates, up to kFarthest times as many since times are noisy. Leaves
-/// out pixels only if one sample for each takes too long.
-Plan plan_for(const Runner& run, double budget_ms) {
-  Plan plan;
-  run(1, 1);  // fills caches
-  double one = run(1, 1).ms;
-  while (one > budget_ms && plan.stride < kMaxStride) {
+/// Leaves out pixels until the fewest samples fit. Then doubles the samples up to half of the budget and extrapolates, up to
+/// kFarthest times as many since times are noisy.
+Plan plan_for(Runner& run, double budget_ms) {
+  const unsigned fewest = fewest_samples(run.baseline());
+  Plan plan{fewest, 1};
+  run(fewest, 1);  // fills caches
+  double ms = run(fewest, 1).ms;
+  while (ms > budget_ms && plan.stride < kMaxStride) {
     plan.stride *= 2;
-    one = run(1, plan.stride).ms;
+    ms = run(fewest, plan.stride).ms;
   }
-  if (one > budget_ms) return plan;
-  double ms = one;
-  do {
+  const double one = plan.samples > 1 ? run(1, plan.stride).ms : ms;
+  while (ms < budget_ms / 2 && plan.samples < kMaxSamples) {
     plan.samples *= 2;
     ms = run(plan.samples, plan.stride).ms;
-  } while (ms < budget_ms / 2 && plan.samples < kMaxSamples);
+  }
+  if (plan.samples == 1) ms = run(plan.samples = 2, plan.stride).ms;
   const double each = (ms - one) / (plan.samples - 1), most = kFarthest * plan.samples;
   const double fitting = each > 0 ? 1 + (budget_ms - one) / each : most;
   plan.samples = static_cast<unsigned>(std::clamp(fitting, 1.0, std::min(most, double{kMaxSamples})));
@@ -150,28 +146,37 @@ void require_baseline(Baseline baseline, const Scene& scene, int bounces, Show s
     throw Error(ExitCode::usage, "baseline {}: found more than one bounce; allowed: bounces 1", name);
 }
 
-baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& view,
-                                   const BaselineBudget& budget, unsigned samples, unsigned stride,
-                                   unsigned frames, std::map<std::string, double>& settings) {
+baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& full,
+                                   const baselines::View& thin, const BaselineBudget& budget,
+                                   unsigned samples, unsigned frames,
+                                   std::map<std::string, double>& settings) {
   stop_if_interrupted();
+  const auto all_pixels = [&](baselines::Irradiance image) {
+    return thin.stride() == 1 ? image : baselines::upsampled(full, thin, image);
+  };
+  const auto vpls = [&](unsigned interleave) {
+    const unsigned count = interleave * interleave * samples;
+    settings["vpls"] = count, settings["vpls_per_pixel"] = samples;
+    return baselines::light_by(thin, baselines::draw_lights(budget.rsms, count), interleave);
+  };
   switch (baseline) {
     case Baseline::paths:
+      settings["paths_per_pixel"] = samples;
+      return all_pixels(baselines::trace_paths(thin, samples));
     case Baseline::paths_filtered:
       settings["paths_per_pixel"] = samples;
-      return paths(view, baseline == Baseline::paths_filtered, samples, stride);
+      return all_pixels(baselines::wavelet_filter(thin, baselines::trace_paths(thin, samples), kPasses));
     case Baseline::vpl:
-      settings["vpls"] = settings["vpls_per_pixel"] = samples;
-      return point_lights(view, budget, samples, 1, stride);
+      return all_pixels(vpls(1));
     case Baseline::vpl_interleaved:
-      settings["vpls"] = kInterleave * kInterleave * samples, settings["vpls_per_pixel"] = samples;
-      return point_lights(view, budget, kInterleave * kInterleave * samples, kInterleave, stride);
+      return all_pixels(baselines::joint_bilateral(thin, vpls(kInterleave), baselines::block_taps()));
     case Baseline::ddgi_first:
     case Baseline::ddgi_converged: {
-      baselines::Probes probes(view, budget.grids);
+      baselines::Probes probes(thin, budget.grids);
       baselines::Irradiance image;
       for (unsigned frame = 0; frame < frames; ++frame) {
         stop_if_interrupted();
-        image = upsampled(view, probes.render(samples, stride), stride);
+        image = all_pixels(probes.render(samples));
       }
       settings["rays_per_probe"] = samples, settings["probes"] = static_cast<double>(probes.count());
       return image;
@@ -186,7 +191,7 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   require_baseline(baseline, view.scene(), view.bounces(), show);
   MeasuredBaseline measured;
   QualityCell& cell = measured.cell;
-  const Runner run{baseline, view, budget, cell.settings};
+  Runner run(baseline, view, budget);
   Plan plan = plan_for(run, budget.budget_ms);
   Timed last;
   double taken = 0;
@@ -202,12 +207,13 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   if (baseline == Baseline::ddgi_converged) {
     last = run(plan.samples, plan.stride, kConvergedFrames);
     taken = last.ms;
-    cell.settings["frames"] = kConvergedFrames;
   }
   measured.image = traced_view(view.with(last.image), show);
   fill_errors(cell, measured.image, truth, show);
+  cell.settings = run.settings();
   cell.settings.insert(
       {{"budget_ms", budget.budget_ms}, {"stride", plan.stride}, {"threads", view.threads()}});
+  if (baseline == Baseline::ddgi_converged) cell.settings["frames"] = kConvergedFrames;
   if (filters(baseline)) cell.settings["filter_passes"] = baseline == Baseline::paths_filtered ? kPasses : 1;
   cell.from_events = false;
   cell.compute_units = static_cast<unsigned>(view.threads());

@@ -60,10 +60,11 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
                                   const BaselineBudget& budget, const reference::GroundTruth& truth,
                                   Show show, int runs);
 
-/// The method's irradiance with this number of samples, in one of `stride` x `stride` pixels; the others take from those.
-/// `frames`: of irradiance probes. Adds counts of what it used to `settings`.
-baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& view,
-                                   const BaselineBudget& budget, unsigned samples, unsigned stride,
-                                   unsigned frames, std::map<std::string, double>& settings);
+/// The method's irradiance of all pixels of `full` with this number of samples in each pixel of `thin`, its thinned view.
+/// `frames`: of irradiance probes. Sets counts of what it used in `settings`.
+baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& full,
+                                   const baselines::View& thin, const BaselineBudget& budget,
+                                   unsigned samples, unsigned frames,
+                                   std::map<std::string, double>& settings);
 
 }  // namespace clpv
