@@ -222,6 +222,29 @@ class Light:
     def replace(self, **changes: Any) -> Light:
         """replace(**changes): a copy with other values of some arguments."""
 
+class Medium:
+    """Homogeneous fog or dust in a box. Immutable; replace() makes another. Values are checked where it is used.
+
+    scattering, absorption: red, green, blue, or one number [1/m]; anisotropy: -0.9 to 0.9, above 0 forwards;
+    box: lower and upper corner [m], None for the scene's bounding box.
+    """
+    def __init__(self, scattering: float | _Vector = (0, 0, 0), absorption: float | _Vector = (0, 0, 0), anisotropy: float = 0.0, box: Sequence[_Vector] | None = None) -> None:
+        ...
+    @property
+    def scattering(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def absorption(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def anisotropy(self) -> float:
+        ...
+    @property
+    def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        ...
+    def replace(self, **changes: Any) -> Medium:
+        """replace(**changes): a copy with other values of some arguments."""
+
 class Renderer:
     """Renderer(scene, device='', **options): renders frames of one scene on one OpenCL device.
 
@@ -281,6 +304,11 @@ class Scene:
         """
     @lights.setter
     def lights(self, value: Sequence[Light]) -> None: ...
+    @property
+    def medium(self) -> Medium | None:
+        """Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its memory anew."""
+    @medium.setter
+    def medium(self, value: Medium | None) -> None: ...
     @property
     def moves(self) -> bool:
         """True if anything is animated."""
