@@ -206,8 +206,9 @@ TEST_F(TevCommands, SequenceSendsItsFrames) {
 
 TEST_F(TevCommands, PathtraceSendsEverySecond) {
   Server server;
-  const Outcome outcome = run("pathtrace " + kCornell +
-                              " --width 96 --height 54 --spp 2048 --view indirect -o a.exr" + server.option());
+  const Outcome outcome =
+      run("pathtrace " + kCornell + " --width 96 --height 54 --spp 2048 --view indirect -o a.exr" +
+          server.option());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   server.finish();
   EXPECT_GT(server.updates, 1) << "before its end";

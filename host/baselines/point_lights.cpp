@@ -29,7 +29,7 @@ std::uint32_t even_bits(std::uint32_t x) {
   return (x | (x >> 8)) & 0x0000ffffu;
 }
 
-/// The light of a texel, of which `share` lights stand for all of its flux.
+/// One of `share` lights that share the flux of a texel.
 PointLight light_of(const SurfaceImage& rsm, std::size_t texel, double share) {
   const glm::dvec3 normal(rsm.normal[texel]),
       position = reference::surface_position(rsm.view, texel, rsm.depth[texel]);

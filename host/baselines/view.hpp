@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all baselines share: a scene for ray queries, its lights, and the surfaces that a camera sees.
+// Data that all baselines share: a scene for ray queries, its lights, and the surfaces that a camera sees.
 #pragma once
 
 #include <algorithm>
