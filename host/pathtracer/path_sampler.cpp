@@ -5,9 +5,9 @@
 //
 // A vertex in a medium has pi p, p the phase function, in place of a surface's cosine, and directions of density p in place of
 // p_cosine. All free flights of a path are sampled for one channel, drawn at random, and weighted by the mean density of the
-// three (Wilkie et al., 'Hero Wavelength Spectral Sampling', EGSR 2014). Suns light these vertices. Light of spots and points
-// that is scattered once on a ray has points of its own on the ray, at equal angles as seen from the light (Kulla and Fajardo,
-// 'Importance Sampling Techniques for Path Tracing in Participating Media', EGSR 2012).
+// three (Wilkie et al., 'Hero Wavelength Spectral Sampling', EGSR 2014). Suns light these vertices. For spots and points,
+// a ray has a second sample, equiangular as seen from the light (Kulla and Fajardo, 'Importance Sampling Techniques for Path
+// Tracing in Participating Media', EGSR 2012).
 #include "pathtracer/path_sampler.hpp"
 
 #include <algorithm>

@@ -69,7 +69,7 @@ class SceneFile {
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 
-  /// The medium, with its box; or none. After a change the next frame of a renderer allocates its memory anew. Throws
+  /// The medium with its box, or none. After a change, the next frame of each renderer allocates its memory again. Throws
   /// Error(usage): see Medium.
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);

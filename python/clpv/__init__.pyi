@@ -306,7 +306,7 @@ class Scene:
     def lights(self, value: Sequence[Light]) -> None: ...
     @property
     def medium(self) -> Medium | None:
-        """Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its memory anew."""
+        """Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its memory again."""
     @medium.setter
     def medium(self, value: Medium | None) -> None: ...
     @property

@@ -158,7 +158,7 @@ void add_scene(py::module_& module) {
         scene.set_medium(medium);
       },
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its "
-      "memory anew.");
+      "memory again.");
   type.def_property_readonly("moves", &SceneFile::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const SceneFile& scene) { return py::tuple(py::cast(scene.notes())); },
