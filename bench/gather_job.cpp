@@ -6,7 +6,7 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
-#include "pipeline/gather.hpp"
+#include "pipeline/gather/gather.hpp"
 #include "reference/gather.hpp"
 #include "reference/view.hpp"
 #include "verify/comparison.hpp"

@@ -7,7 +7,7 @@
 
 #include "basis/basis.hpp"
 #include "bench/stage_jobs.hpp"
-#include "pipeline/inject.hpp"
+#include "pipeline/inject/inject.hpp"
 #include "reference/inject.hpp"
 #include "verify/comparison.hpp"
 #include "verify/tolerances.hpp"

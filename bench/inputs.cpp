@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "pipeline/blockers.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/scene_buffers.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/inject.hpp"
 #include "support/error.hpp"
 #include "volume/volume.hpp"

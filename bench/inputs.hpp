@@ -8,10 +8,10 @@
 
 #include "device/session.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/inject.hpp"
-#include "pipeline/rasterize.hpp"
-#include "pipeline/scene_buffers.hpp"
-#include "pipeline/surface.hpp"
+#include "pipeline/inject/inject.hpp"
+#include "pipeline/raster/rasterize.hpp"
+#include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/raster/surface.hpp"
 #include "reference/volume.hpp"
 #include "scene/scene.hpp"
 

@@ -7,7 +7,7 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "bench/stage_jobs.hpp"
-#include "pipeline/propagate.hpp"
+#include "pipeline/steps/propagate.hpp"
 #include "reference/propagate.hpp"
 #include "verify/comparison.hpp"
 #include "verify/tolerances.hpp"

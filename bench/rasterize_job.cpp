@@ -7,9 +7,9 @@
 #include "bench/baseline/rasterize_gl.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pathtracer/ray_scene.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/rasterize.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/raster/rasterize.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/view.hpp"
 #include "support/error.hpp"
 

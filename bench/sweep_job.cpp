@@ -10,7 +10,7 @@
 #include "bench/stage_jobs.hpp"
 #include "codegen/sweep_source.hpp"
 #include "codegen/transmittance_source.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/sweep/sweep.hpp"
 #include "reference/sweep.hpp"
 #include "verify/tolerances.hpp"
 

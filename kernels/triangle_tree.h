@@ -9,7 +9,7 @@
 #ifndef CLPV_TRIANGLE_TREE_H
 #define CLPV_TRIANGLE_TREE_H
 
-#include "scene_triangles.h"
+#include "raster/scene_triangles.h"
 #include "shared/tree.h"
 
 typedef struct {

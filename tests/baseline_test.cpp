@@ -14,7 +14,7 @@
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"

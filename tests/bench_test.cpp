@@ -343,12 +343,12 @@ TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
 
 TEST(BenchProgram, AnAlteredLiteralIsCaught) {
   const test::TemporaryFolder folder;
-  std::string text = test::read_file(std::string(CLPV_SOURCE_DIR) + "/kernels/propagate.cl");
+  std::string text = test::read_file(std::string(CLPV_SOURCE_DIR) + "/kernels/steps/propagate.cl");
   const std::string sum = "r.c##i = a.c##i + b.c##i;";
   const auto at = text.find(sum);
   ASSERT_NE(at, std::string::npos);
   text.replace(at, sum.size(), "r.c##i = a.c##i + 1.0001f * b.c##i;");
-  std::ofstream(folder.path() / "propagate.cl") << text;
+  std::ofstream(folder.path() / "steps/propagate.cl") << text;
   const auto out = test::run("CLPV_KERNEL_DIR=" + folder.path().string() +
                              " CLPV_PROGRAM_CACHE=off " CLPV_PROGRAM " " + "bench " + kOneRow);
   EXPECT_EQ(out.exit_code, static_cast<int>(ExitCode::validation)) << out.out << out.err;

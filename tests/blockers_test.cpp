@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Blockers from a scene's triangles against known areas.
-#include "pipeline/blockers.hpp"
+#include "pipeline/voxels/blockers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reflected light against closed forms, by the CPU reference; and the kernels against that reference.
-#include "pipeline/bounce.hpp"
+#include "pipeline/sweep/bounce.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/sweep/sweep.hpp"
 #include "reference/blockers.hpp"
 #include "reference/bounce.hpp"
 #include "reference/reflectors.hpp"

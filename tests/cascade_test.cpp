@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cascades: nested grids about the camera, on whole cells.
-#include "pipeline/cascade.hpp"
+#include "pipeline/frame/cascade.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // View `cells`: which sphere a pixel shows, and its light.
-#include "pipeline/cells.hpp"
+#include "pipeline/frame/cells.hpp"
 
 #include <gmock/gmock.h>
 
-#include "pipeline/frame.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Emissive surfaces: flux and positions of their virtual point lights, and the light in a frame.
-#include "pipeline/emit.hpp"
+#include "pipeline/inject/emit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/cascade.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/inject.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/inject/inject.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/emit.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"

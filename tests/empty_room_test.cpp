@@ -8,8 +8,8 @@
 
 #include "image/compare.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "options/render_options.hpp"
-#include "pipeline/cached.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/cached.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
 #include "tests/support/gltf_builder.hpp"
 

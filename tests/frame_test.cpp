@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whole frames against golden images and known properties of the scenes.
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
-#include "pipeline/frame_lights.hpp"
+#include "pipeline/frame/frame_lights.hpp"
 #include "scene/load.hpp"
 #include "scene/sky.hpp"
 #include "tests/support/error_of.hpp"

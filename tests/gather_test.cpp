@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gathering against closed forms, by the CPU reference: uniform and linear fields, seams between cascades, clamping,
 // visibility. And the kernels against that reference.
-#include "pipeline/gather.hpp"
+#include "pipeline/gather/gather.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 #include <numbers>
 #include <random>
 
-#include "pipeline/cascade.hpp"
-#include "pipeline/visibility.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "reference/gather.hpp"
 #include "reference/visibility.hpp"
 #include "support/error.hpp"

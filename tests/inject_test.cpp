@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Injection against closed forms: position and flux of light, blockers, several surfaces, repeatability; and the
 // kernels against their CPU reference.
-#include "pipeline/inject.hpp"
+#include "pipeline/inject/inject.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

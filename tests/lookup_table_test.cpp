@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The paper's look-up tables on the device, and lobes that the propagation kernel computes from them. clpv check compares such
 // lobes with the CPU reference; these tests cover the rest.
-#include "pipeline/lookup_table.hpp"
+#include "pipeline/inject/lookup_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "pipeline/propagate.hpp"
+#include "pipeline/steps/propagate.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 

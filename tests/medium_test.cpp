@@ -11,9 +11,9 @@
 
 #include "basis/sampling.hpp"
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/sweep.hpp"
 #include "scene/load.hpp"
 #include "scene/sky.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Near field against closed forms, by the CPU reference: emissive boxes and walls, fields that it must not change. The
 // directions, and the kernels against that reference.
-#include "pipeline/near.hpp"
+#include "pipeline/gather/near.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 
 #include "basis/near_directions.hpp"
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "reference/near.hpp"
 #include "reference/radiance.hpp"
 #include "tests/support/error_of.hpp"

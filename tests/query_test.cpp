@@ -5,10 +5,10 @@
 
 #include <cstdlib>
 
-#include "pipeline/cascade.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/view.hpp"
-#include "pipeline/visibility.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/raster/view.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "quality/points_file.hpp"
 #include "reference/radiance.hpp"
 #include "reference/view.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rasteriser against closed forms: coverage, depth, normals, flux, clipping, culling, holes,
 // repeatability.
-#include "pipeline/rasterize.hpp"
+#include "pipeline/raster/rasterize.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <random>
 
 #include "kernels/shared/loops.h"
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"

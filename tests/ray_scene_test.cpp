@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/rasterize.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/raster/rasterize.hpp"
+#include "pipeline/raster/view.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/traced_scenes.hpp"
 

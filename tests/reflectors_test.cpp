@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Face albedo of voxelised triangles against known areas.
-#include "pipeline/reflectors.hpp"
+#include "pipeline/voxels/reflectors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shading against closed forms: Lambert's law for every kind of light, views, shadows
 // of known outline, surfaces that must not shadow themselves. And the kernels against the CPU reference.
-#include "pipeline/shade.hpp"
+#include "pipeline/raster/shade.hpp"
 
 #include <gmock/gmock.h>
 

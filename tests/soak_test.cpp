@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
 
 namespace clpv::soak_test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The sort by cell against the standard library's stable sort: every texel that has a cell once, cell by cell, each
 // cell's in their own order.
-#include "pipeline/sort_by_cell.hpp"
+#include "pipeline/inject/sort_by_cell.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/frame.hpp"
-#include "pipeline/frame_lights.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"

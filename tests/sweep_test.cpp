@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The sweep against closed forms, by the CPU reference; and the kernels against that reference.
-#include "pipeline/sweep.hpp"
+#include "pipeline/sweep/sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/propagate.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/steps/propagate.hpp"
 #include "reference/sweep.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"

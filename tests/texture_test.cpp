@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/rasterize.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/raster/rasterize.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/mip_chain.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Views of a frame: the space they cover, and steps of whole texels as a cascade moves.
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "pipeline/cascade.hpp"
+#include "pipeline/frame/cascade.hpp"
 #include "reference/view.hpp"
 #include "support/error.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Visibility between cells against closed forms: walls hide exactly the cells behind them.
-#include "pipeline/visibility.hpp"
+#include "pipeline/voxels/visibility.hpp"
 
 #include <gtest/gtest.h>
 

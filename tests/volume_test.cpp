@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/propagate.hpp"
+#include "pipeline/steps/propagate.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "volume/accumulator.hpp"

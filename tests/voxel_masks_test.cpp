@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Voxelised triangles are the same whether computed from nothing or updated as cascades and triangles move.
-#include "pipeline/voxel_masks.hpp"
+#include "pipeline/voxels/voxel_masks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "basis/bounce.hpp"
-#include "pipeline/blockers.hpp"
-#include "pipeline/reflectors.hpp"
-#include "pipeline/visibility.hpp"
+#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 

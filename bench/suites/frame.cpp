@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Suite `frame`: whole frames along a camera path, and the time of each stage, with and without cached results.
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Suite `rasterize`: G-buffer, shadow maps and RSMs by clpv, and the same work by OpenGL ES.
-#include "pipeline/rasterize.hpp"
+#include "pipeline/raster/rasterize.hpp"
 
 #include <fmt/format.h>
 

@@ -12,9 +12,9 @@
 #include "api/scene_contents.hpp"
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/scene_options.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/scene_options.hpp"
+#include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 

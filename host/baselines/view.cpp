@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baselines/view.hpp"
 
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/view.hpp"
 
 namespace clpv::baselines {

@@ -18,13 +18,13 @@ std::string sum_of_products(std::span<const double> factors, const std::vector<s
 std::string horner(std::span<const double> coefficients, const std::string& x);
 
 /// Name of a table parameter in kernel text: suffix of the macros CLPV_AND_* and CLPV_PASS_* of
-/// pipeline/lookup_table.hpp, and the parameter's name.
+/// pipeline/inject/lookup_table.hpp, and the parameter's name.
 struct TableName {
   std::string macro = "TABLE", argument = "table";
 };
 inline const TableName kFunctionsTable{"FUNCTIONS", "functions"};
 
-// Both functions require a basis with centres, and return text that requires the macros of pipeline/lookup_table.hpp.
+// Both functions require a basis with centres, and return text that requires the macros of pipeline/inject/lookup_table.hpp.
 // `table_size`: entries per table; tables lie one after the other, as in ZonalTables::values().
 
 /// Returns the function `Coefficients clpv_rotated_integrals(x, y, z, table)`: R c, the integrals of b_i times the lobe

@@ -14,7 +14,7 @@ namespace clpv {
 /// light that travels along it, so it averages the sky over the opposite directions.
 std::vector<glm::dvec3> sky_means(const Sky& sky, int parts);
 
-/// Returns D = L |w_m| of the sky at the border for cells of 1 m^2, in the order of CLPV_ORDINATE (kernels/sweep_border.h).
+/// Returns D = L |w_m| of the sky at the border for cells of 1 m^2, in the order of CLPV_ORDINATE (kernels/sweep/sweep_border.h).
 std::vector<float> swept_sky(const Sky& sky, int parts);
 
 }  // namespace clpv

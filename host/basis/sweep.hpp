@@ -71,7 +71,7 @@ Matrix scattering_matrix(double anisotropy);
 /// opaque along diagonals too.
 void close_diagonals(std::vector<SweepLink>& links, double power);
 
-/// Returns the links from a cell's 26 neighbours in the order of kernels/transmittance.cl, without blocking weights.
+/// Returns the links from a cell's 26 neighbours in the order of kernels/steps/transmittance.cl, without blocking weights.
 std::vector<SweepLink> sweep_links();
 
 /// Transmittance volumes that sweep_links.cl writes: for each axis in order, the links that directions of that axis use.

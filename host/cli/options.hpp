@@ -18,7 +18,7 @@
 #include "device/device.hpp"
 #include "options/render_options.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/scene_options.hpp"
+#include "pipeline/frame/scene_options.hpp"
 #include "scene/load.hpp"
 #include "support/named_enum.hpp"
 #include "support/progress.hpp"

@@ -16,7 +16,7 @@
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"

@@ -4,7 +4,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/render_request.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
 #include "scene/motion.hpp"
 #include "support/helpers.hpp"

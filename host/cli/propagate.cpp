@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // clpv propagate: propagation without a scene: sources and blockers in an empty grid, energy of each step.
-#include "pipeline/propagate.hpp"
+#include "pipeline/steps/propagate.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 
 #include "cli/options.hpp"
 #include "parallel/ranks.hpp"
-#include "pipeline/cascade.hpp"
+#include "pipeline/frame/cascade.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"

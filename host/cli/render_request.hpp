@@ -12,7 +12,7 @@
 #include "cli/options.hpp"
 #include "image/image.hpp"
 #include "image/tone_map.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
 
 namespace clpv {

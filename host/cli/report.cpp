@@ -16,7 +16,7 @@
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "quality/unreached.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generates the text of the gathering kernels (kernels/pack.cl, kernels/gather.cl).
+// Generates the text of the gathering kernels (kernels/gather/pack.cl, kernels/gather/gather.cl).
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ std::string pack_source(const Basis& basis);
 std::string gather_source(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
                           bool from_table);
 
-/// For kernels/radiance.h: coefficient_macros, CLPV_EACH_PAIR, and the functions of the basis of swept light.
+/// For kernels/gather/radiance.h: coefficient_macros, CLPV_EACH_PAIR, and the functions of the basis of swept light.
 std::string radiance_source(const Basis& basis);
 
 /// Number of float8 in a record, each with two coefficients of three channels.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generates the text of injection kernels for a basis (kernels/inject.cl). Independent of OpenCL.
+// Generates the text of injection kernels for a basis (kernels/inject/inject.cl). Independent of OpenCL.
 #pragma once
 
 #include <string>

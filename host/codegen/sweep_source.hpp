@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generates the linear maps of the sweep's kernels as text (kernels/sweep_*.cl, kernels/bounce.cl).
+// Generates the linear maps of the sweep's kernels as text (kernels/sweep_*.cl, kernels/sweep/bounce.cl).
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generates the transmittance of each link into a cell (kernels/transmittance.cl).
+// Generates the transmittance of each link into a cell (kernels/steps/transmittance.cl).
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generates the transport of a propagation step for one basis as straight-line OpenCL C (kernels/propagate.cl).
+// Generates the transport of a propagation step for one basis as straight-line OpenCL C (kernels/steps/propagate.cl).
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct StepForm {
   bool functions_at_run_time = false;  ///< CLPV_ARRIVE reads the basis functions `at[face]` from the kernel
 };
 
-/// Generated text and its operations. For kernels/propagate.cl the text defines the structs Source, Target and
+/// Generated text and its operations. For kernels/steps/propagate.cl the text defines the structs Source, Target and
 /// Coefficients with their counts and CLPV_EACH_ macros (cell_macros), and
 ///   CLPV_EACH_NEIGHBOUR(DO)   DO(i, dx, dy, dz) for each neighbour (x + dx, y + dy, z + dz) that light comes from
 ///   CLPV_ARRIVE               declares `gained`, the light that the cell gains from its neighbours a0, a1, ...; with

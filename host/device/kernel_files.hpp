@@ -8,7 +8,7 @@
 
 namespace clpv {
 
-/// Returns the text of kernels/NAME ("propagate.cl", "volume/soa.h"): from CLPV_KERNEL_DIR if that folder
+/// Returns the text of kernels/NAME ("steps/propagate.cl", "volume/soa.h"): from CLPV_KERNEL_DIR if that folder
 /// has the file, else the embedded copy. Throws Error(run_time) for an unknown name.
 std::string kernel_file(const std::string& name);
 

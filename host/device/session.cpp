@@ -57,7 +57,7 @@ void dump(const ProgramSource& source, const std::string& text) {
   const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
   if (folder == nullptr || *folder == '\0') return;
   const std::filesystem::path file =
-      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), source.file);
+      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), std::filesystem::path(source.file).filename().string());
   try {
     write_file(file, text);
   } catch (const Error& error) {

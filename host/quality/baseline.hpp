@@ -10,7 +10,7 @@
 #include "image/image.hpp"
 #include "image/surface_image.hpp"
 #include "kernels/shared/grid.h"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "quality/quality.hpp"
 #include "support/named_enum.hpp"
 

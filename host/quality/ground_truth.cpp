@@ -10,7 +10,7 @@
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/emission.hpp"
 #include "scene/sky.hpp"
 #include "support/error.hpp"

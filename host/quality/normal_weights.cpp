@@ -6,11 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/cascade.hpp"
-#include "pipeline/rasterize.hpp"
-#include "pipeline/scene_buffers.hpp"
-#include "pipeline/surface.hpp"
-#include "pipeline/view.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/raster/rasterize.hpp"
+#include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/raster/surface.hpp"
+#include "pipeline/raster/view.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {

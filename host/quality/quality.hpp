@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 #include "quality/ground_truth.hpp"
 
 namespace clpv {

@@ -9,7 +9,7 @@
 
 #include "device/session.hpp"
 #include "image/surface_image.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 
 namespace clpv {
 

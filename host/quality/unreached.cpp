@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/cascade.hpp"
+#include "pipeline/frame/cascade.hpp"
 #include "reference/view.hpp"
 #include "support/log.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "device/session.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/frame/frame.hpp"
 
 namespace clpv {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A triangle projected along an axis of a grid and sampled, as in kernels/blockers.cl and kernels/reflectors.cl.
+// A triangle projected along an axis of a grid and sampled, as in kernels/voxels/blockers.cl and kernels/voxels/reflectors.cl.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `blockers` (kernels/blockers.cl): geometry volume from triangles, in double (docs/method.md,
+// CPU reference of stage `blockers` (kernels/voxels/blockers.cl): geometry volume from triangles, in double (docs/method.md,
 // 'Blockers').
 #pragma once
 

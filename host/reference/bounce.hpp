@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `bounce` (kernels/bounce.cl), in double: light reflected by surfaces before the last sweep
+// CPU reference of stage `bounce` (kernels/sweep/bounce.cl), in double: light reflected by surfaces before the last sweep
 // (docs/method.md, 'More bounces').
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `emit` (kernels/emit.cl): virtual point lights of emissive triangles, in double (docs/method.md,
+// CPU reference of stage `emit` (kernels/inject/emit.cl): virtual point lights of emissive triangles, in double (docs/method.md,
 // 'Emissive surfaces').
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `gather` (kernels/gather.cl): irradiance from light volumes, in double (docs/method.md, 'Gathering').
+// CPU reference of stage `gather` (kernels/gather/gather.cl): irradiance from light volumes, in double (docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstdint>

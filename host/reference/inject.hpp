@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `inject` (kernels/inject.cl), in double: light and surfels of an RSM or G-buffer into volumes
+// CPU reference of stage `inject` (kernels/inject/inject.cl), in double: light and surfels of an RSM or G-buffer into volumes
 // (docs/method.md, 'Injection', 'Blockers').
 #pragma once
 

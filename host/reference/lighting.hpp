@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/lighting.h: unshadowed irradiance of directional, point and spot lights (KHR_lights_punctual).
+// CPU reference of kernels/raster/lighting.h: unshadowed irradiance of directional, point and spot lights (KHR_lights_punctual).
 #pragma once
 
 #include <glm/glm.hpp>

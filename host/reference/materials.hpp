@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/texture.h: albedo, emission and alpha of a scene's surfaces, filtered like the rasteriser.
+// CPU reference of kernels/raster/texture.h: albedo, emission and alpha of a scene's surfaces, filtered like the rasteriser.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +52,7 @@ class Materials {
 glm::vec4 look_up(const Texture& texture, const glm::vec2& uv);
 
 /// Returns the texture at (u, v), interpolated between mip levels (mip_chain). The level is the logarithm of the longer
-/// step in texels from pixel to pixel, approximated piecewise linearly as in kernels/texture.h. Steps that are not a
+/// step in texels from pixel to pixel, approximated piecewise linearly as in kernels/raster/texture.h. Steps that are not a
 /// number use the coarsest level.
 glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const glm::dvec2& step_x,
                   const glm::dvec2& step_y);

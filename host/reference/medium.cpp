@@ -18,7 +18,7 @@
 namespace clpv::reference {
 namespace {
 
-// kernels/medium.cl
+// kernels/gather/medium.cl
 constexpr int kStep = 2, kWindow = 2;
 constexpr double kSameEnd = 0.1, kUnlike = 1e-3, kThin = 1e-3;
 constexpr int kBayer[CLPV_NEAR_TILE][CLPV_NEAR_TILE] = {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Paths through a homogeneous medium in a box (kernels/shared/light.h, kernels/medium.h), and CPU references of stage `medium`
-// (kernels/medium.cl) and of the light that it scatters in cells (kernels/sweep_medium.cl), in double.
+// Paths through a homogeneous medium in a box (kernels/shared/light.h, kernels/gather/medium.h), and CPU references of stage `medium`
+// (kernels/gather/medium.cl) and of the light that it scatters in cells (kernels/sweep/sweep_medium.cl), in double.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -44,7 +44,7 @@ struct MediumScene {
 std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options,
                                         const MediumScene& scene, const SurfaceImage& camera);
 
-/// Returns the source function of `lights` in the cells of `grid`, times s^2 [W/sr], in bins24 (kernels/sweep_medium.cl).
+/// Returns the source function of `lights` in the cells of `grid`, times s^2 [W/sr], in bins24 (kernels/sweep/sweep_medium.cl).
 Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLight>& lights,
                           const ClpvGrid& grid);
 /// Adds that of `swept` light, the result of sweep().

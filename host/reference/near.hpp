@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `near` (kernels/near.cl): light from near surfaces, by brute force and in double (docs/method.md,
+// CPU reference of stage `near` (kernels/gather/near.cl): light from near surfaces, by brute force and in double (docs/method.md,
 // 'Near field').
 #pragma once
 

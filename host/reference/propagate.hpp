@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `propagate` (kernels/propagate.cl), in double: steps of light between neighbouring cells
+// CPU reference of stage `propagate` (kernels/steps/propagate.cl), in double: steps of light between neighbouring cells
 // (Kaplanyan and Dachsbacher 2010; docs/method.md, 'Propagation').
 #pragma once
 

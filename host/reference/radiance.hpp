@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/radiance.h: radiance from volumes of swept light, in double.
+// CPU reference of kernels/gather/radiance.h: radiance from volumes of swept light, in double.
 #pragma once
 
 #include <array>

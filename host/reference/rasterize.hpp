@@ -17,7 +17,7 @@ struct RasterizedImage {
   std::vector<bool> uncertain;
 };
 
-/// Returns the G-buffer of a view by the rules of pipeline/rasterize.hpp: corners snapped to 1/256 pixel, top-left rule,
+/// Returns the G-buffer of a view by the rules of pipeline/raster/rasterize.hpp: corners snapped to 1/256 pixel, top-left rule,
 /// perspective-correct attributes, nearest surface. The first triangle of equal depth wins.
 RasterizedImage rasterize_camera(const Scene& scene, const ClpvView& view);
 /// Returns the RSM of a view. `colour` is the flux [W] of each texel's virtual point light; format float32.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `reflectors` (kernels/reflectors.cl): reflecting areas of cell faces, in double (docs/method.md,
+// CPU reference of stage `reflectors` (kernels/voxels/reflectors.cl): reflecting areas of cell faces, in double (docs/method.md,
 // 'More bounces').
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `shade` (kernels/shade.cl): shadowed direct light and the final image, in double (docs/method.md,
+// CPU reference of stage `shade` (kernels/raster/shade.cl): shadowed direct light and the final image, in double (docs/method.md,
 // 'Shading').
 #pragma once
 

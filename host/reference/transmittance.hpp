@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/transmittance.cl: transmittance of a link into a cell, T = 1 - clamp(B, 0, 1) (docs/method.md,
+// CPU reference of kernels/steps/transmittance.cl: transmittance of a link into a cell, T = 1 - clamp(B, 0, 1) (docs/method.md,
 // 'Blockers').
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/surface.h: projection between pixels and world positions, in double.
+// CPU reference of kernels/raster/surface.h: projection between pixels and world positions, in double.
 #pragma once
 
 #include <glm/glm.hpp>

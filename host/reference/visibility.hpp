@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `visibility` (kernels/visibility.cl): cells occluded from points between them, in double
+// CPU reference of stage `visibility` (kernels/voxels/visibility.cl): cells occluded from points between them, in double
 // (docs/method.md, 'Gathering').
 #pragma once
 

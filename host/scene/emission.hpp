@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Emissive triangles of a scene, and the points on them that kernels/emit.cl injects. Does not depend on OpenCL.
+// Emissive triangles of a scene, and the points on them that kernels/inject/emit.cl injects. Does not depend on OpenCL.
 #pragma once
 
 #include <array>

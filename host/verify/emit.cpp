@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Points of emissive triangles: kernel against CPU reference on random triangles of all sizes, textured and masked.
-#include "pipeline/emit.hpp"
+#include "pipeline/inject/emit.hpp"
 
 #include <fmt/format.h>
 

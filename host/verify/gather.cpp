@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Gathering: kernels against CPU reference, on random light in three nested cascades, for surfaces in and around them.
-#include "pipeline/gather.hpp"
+#include "pipeline/gather/gather.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/visibility.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "reference/gather.hpp"
 #include "verify/check.hpp"
 #include "verify/inputs.hpp"

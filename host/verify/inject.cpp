@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Injection: kernels against CPU reference on small random surfaces.
-#include "pipeline/inject.hpp"
+#include "pipeline/inject/inject.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <memory>
 #include <random>
 
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/inject.hpp"
 #include "reference/view.hpp"
 #include "verify/check.hpp"

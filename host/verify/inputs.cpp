@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "verify/comparison.hpp"
 #include "verify/tolerances.hpp"
 

@@ -12,8 +12,8 @@
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
-#include "pipeline/shade.hpp"
-#include "pipeline/surface.hpp"
+#include "pipeline/raster/shade.hpp"
+#include "pipeline/raster/surface.hpp"
 #include "reference/shade.hpp"
 #include "reference/volume.hpp"
 #include "scene/scene.hpp"

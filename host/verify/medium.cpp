@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Light scattered by a medium: kernels against CPU reference, under a sun, a spot and a point light and in random light of
 // two cascades.
-#include "pipeline/medium.hpp"
+#include "pipeline/gather/medium.hpp"
 
 #include <memory>
 #include <random>
 
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/gather.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/gather/gather.hpp"
 #include "reference/medium.hpp"
 #include "verify/check.hpp"
 #include "verify/inputs.hpp"

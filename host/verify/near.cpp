@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Near field: kernels against CPU reference, on random triangles with textures, holes and emission, under all kinds of
 // light, in random light of three cascades. Pixels that rounding may decide are left out.
-#include "pipeline/near.hpp"
+#include "pipeline/gather/near.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <random>
 
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/gather.hpp"
-#include "pipeline/view.hpp"
-#include "pipeline/visibility.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/gather/gather.hpp"
+#include "pipeline/raster/view.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "reference/gather.hpp"
 #include "reference/near.hpp"
 #include "verify/check.hpp"

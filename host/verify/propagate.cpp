@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Propagation: kernels against CPU reference on a small grid of random light and random blockers.
-#include "pipeline/propagate.hpp"
+#include "pipeline/steps/propagate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rasteriser against CPU reference: random and degenerate triangles, all kinds of views.
-#include "pipeline/rasterize.hpp"
+#include "pipeline/raster/rasterize.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/rasterize.hpp"
 #include "verify/check.hpp"
 #include "verify/tolerances.hpp"

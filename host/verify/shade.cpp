@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Shading: kernels against CPU reference, on random surfaces and random shadow maps of all kinds of light.
-#include "pipeline/shade.hpp"
+#include "pipeline/raster/shade.hpp"
 
 #include <algorithm>
 #include <random>
 
-#include "pipeline/view.hpp"
+#include "pipeline/raster/view.hpp"
 #include "reference/shade.hpp"
 #include "support/named_enum.hpp"
 #include "verify/check.hpp"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "basis/bounce.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/sweep/sweep.hpp"
 #include "reference/bounce.hpp"
 #include "reference/medium.hpp"
 #include "verify/check.hpp"

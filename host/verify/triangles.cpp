@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "basis/bounce.hpp"
-#include "pipeline/blockers.hpp"
-#include "pipeline/reflectors.hpp"
-#include "pipeline/visibility.hpp"
+#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "reference/blockers.hpp"
 #include "reference/reflectors.hpp"
 #include "reference/visibility.hpp"

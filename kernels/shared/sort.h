@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Constants of the sort by cell (kernels/sort_by_cell.cl), shared by host and kernels.
+// Constants of the sort by cell (kernels/inject/sort_by_cell.cl), shared by host and kernels.
 #ifndef CLPV_SHARED_SORT_H
 #define CLPV_SHARED_SORT_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tree of bounding boxes over the scene's triangles (host/pipeline/triangle_tree.hpp), in rows of eight numbers; shared
+// Tree of bounding boxes over the scene's triangles (host/pipeline/gather/triangle_tree.hpp), in rows of eight numbers; shared
 // by host and kernels.
 #ifndef CLPV_SHARED_TREE_H
 #define CLPV_SHARED_TREE_H

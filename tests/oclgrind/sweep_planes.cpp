@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Runs the form of a sweep that devices of many thousand work-items take, which Oclgrind's, as a CPU, does not.
 #include "basis/sweep.hpp"
-#include "pipeline/cascade.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/sweep/sweep.hpp"
 
 int main() {
   using namespace clpv;

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pipeline/shade.hpp"
+#include "pipeline/raster/shade.hpp"
 #include "reference/shade.hpp"
 #include "reference/view.hpp"
 #include "tests/support/on_device.hpp"

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame/cascade.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+// The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full light, and the next two
+// fade out. 24 cells leave room for moving parts.
+constexpr double kRoom = 32.0 / 24;
+constexpr double kFarTooLarge =
+    4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
+
+constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
+
+}  // namespace
+
+std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells) {
+  std::vector<ClpvGrid> grids;
+  for (int c = 0; c < count; ++c) {
+    const double cell = std::ldexp(size, c) / cells;
+    ClpvGrid grid{};
+    grid.cell = cell;
+    grid.n = cells;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double first = std::floor(eye[axis] / cell) - cells / 2;
+      grid.origin[axis] = first * cell;
+      grid.middle[axis] = eye[axis];
+    }
+    grids.push_back(grid);
+  }
+  return grids;
+}
+
+double fitting_cascade_size(const Scene& scene, int count, double size) {
+  const double just = std::ldexp(2 * scene.reach() * kRoom, 1 - count);
+  return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
+}
+
+bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double size, int cells) {
+  const ClpvGrid grid = cascade_grids(eye, count, size, cells).back();
+  const glm::vec3 lower(grid.origin[0], grid.origin[1], grid.origin[2]);
+  const glm::vec3 upper = lower + grid.cell * static_cast<float>(cells);
+  const auto corner = [&](unsigned vertex) {
+    const auto& p = scene.vertices[vertex].position;
+    return glm::vec3(p[0], p[1], p[2]);
+  };
+  return std::ranges::any_of(scene.triangles, [&](const Triangle& t) {
+    const glm::vec3 a = corner(t.vertex[0]), b = corner(t.vertex[1]), c = corner(t.vertex[2]);
+    return glm::all(glm::lessThan(glm::min(a, glm::min(b, c)), upper)) &&
+           glm::all(glm::greaterThan(glm::max(a, glm::max(b, c)), lower));
+  });
+}
+
+bool reaches(const ClpvGrid& grid, const glm::dvec3& position) {
+  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
+  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
+}
+
+std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
+  if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
+    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,
+                coarser.cell);
+  }
+  const int most = static_cast<int>(finer.n) + 1;
+  std::array<int, 3> offset{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = (double{finer.origin[axis]} - coarser.origin[axis]) / finer.cell;
+    const double whole = std::round(cells);
+    if (std::abs(cells - whole) > kAligned || whole < -1 || whole > most) {
+      throw Error(ExitCode::run_time,
+                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
+                  "numbers -1..{} allowed",
+                  axis, cells, most);
+    }
+    offset[axis] = whole;
+  }
+  return offset;
+}
+
+}  // namespace clpv

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// A frame: runs all pipeline stages in order, for one scene and one set of options (docs/method.md, 'The frame').
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "device/session.hpp"
+#include "image/image.hpp"
+#include "options/render_options.hpp"
+#include "pipeline/frame/cached.hpp"
+#include "pipeline/frame/cascade.hpp"
+#include "pipeline/frame/frame_cascades.hpp"
+#include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/gather/gather.hpp"
+#include "pipeline/gather/medium.hpp"
+#include "pipeline/gather/near.hpp"
+#include "pipeline/raster/rasterize.hpp"
+#include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/raster/shade.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv {
+
+/// Holds all device memory of a frame. Call render() any number of times, for one or several cameras.
+class Frame {
+ public:
+  /// Throws Error(run_time) if device memory does not suffice.
+  Frame(Session& session, const Scene& scene, const RenderOptions& options);
+  Frame(const Frame&) = delete;  // stages hold references to other members
+  Frame& operator=(const Frame&) = delete;
+
+  /// Call when the scene may have changed its time (MovingScene). The next frame shows the new time.
+  void scene_moved();
+
+  /// Enqueues the stages whose results are not cached. Clears the session's timeline and records the stages on it.
+  /// Shaded views are complete once the queue has finished. The result is bit-identical whatever was rendered before.
+  /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
+  void render(const SceneCamera& camera, const CascadeObserver& observer = {});
+
+  /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps. After
+  /// invalidate() it recomputes everything, including blockers and visibility.
+  void invalidate_light() { lights_.invalidate(); }
+  void invalidate();
+
+  /// Light of the last render; empty before the first one.
+  GatheredLight light() const { return cascades_.light(); }
+
+  /// G-buffer of the last render's camera. Undefined before the first render.
+  const Surface& seen() const { return *camera_surface_; }
+
+  /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of Gatherer, without the near field.
+  std::vector<float> irradiance_on(const SurfaceImage& surfaces);
+  /// The same at points: position [m] and unit normal of each; one value per point. Throws Error(usage) before the first render.
+  std::vector<glm::vec4> irradiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> normals);
+  /// Radiance [W/m^2/sr] at positions [m], of light that travels along the unit vector of each; may be negative. Throws
+  /// Error(usage) before the first render, without a sweep, and if gathering reads images.
+  std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> directions);
+
+  /// RSMs of a cascade of the last render, flux in W.
+  std::vector<SurfaceImage> read_rsms(int cascade);
+
+  /// One view of the last render as RGBA float, top row first.
+  std::vector<float> read(Show view);
+
+  const RenderOptions& options() const { return options_; }
+  const Basis& basis() const { return *basis_; }  ///< basis of injected light
+  /// Basis of gathered light: the swept basis, or without a sweep that of injected light.
+  const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
+
+ private:
+  void rasterize_camera(const SceneCamera& camera);
+  void require_light(const char* what) const;
+  void gather(const Surface& surface, Buffer& irradiance);
+  void show(Show view);
+  void draw_cells(std::vector<float>& image);
+
+  Session& session_;
+  const Scene& scene_;
+  std::unique_ptr<Basis> basis_, swept_;  ///< swept_: null without a sweep
+  RenderOptions options_;
+  Transport transport_;
+  SceneBuffers buffers_;
+  Rasterizer rasterizer_;
+  Gatherer gatherer_;
+  Shader shader_;
+  std::optional<NearField> near_;      ///< none: Near::off
+  std::optional<MediumLight> medium_;  ///< none: no medium
+  FrameLights lights_;
+  FrameCascades cascades_;
+  std::optional<Surface> camera_surface_;
+  std::optional<Kernel> radiance_;  ///< of radiance_at(), built when it is first called
+  std::vector<Cached> packed_;      ///< accumulated light as packed by the gatherer
+  Buffer irradiance_;               ///< float4 per pixel, like image_
+  Buffer image_;
+  Show shown_ = Show::full;
+};
+
+/// Returns a view of the last render as a linear image.
+Image view_image(Frame& frame, Show view);
+
+}  // namespace clpv

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame/frame_cascades.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/frame/frame_volumes.hpp"
+#include "support/fingerprint.hpp"
+
+namespace clpv {
+
+FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
+                             const RenderOptions& options, const Basis& basis, const Basis* swept,
+                             const Transport& transport, FrameLights& lights) try
+    : session_(session),
+      scene_(scene),
+      buffers_(buffers),
+      options_(options),
+      lights_(lights),
+      injector_(session, basis, inject_options(options, transport.unit_flux_lobes)),
+      injected_(volumes(injected_volumes(options), light_shape(options, basis), "injected light")),
+      accumulated_(
+          volumes(options.cascades, light_shape(options, swept ? *swept : basis), "accumulated light")),
+      geometry_(volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
+      links_(options.cascades),
+      visible_cells_(options.cascades),
+      reflected_(options.cascades),
+      keys_(options.cascades) {
+  if (swept) {
+    sweeper_.emplace(session, basis, transport, sweep_options(options, scene.medium));
+    if (scene.sky) sweeper_->set_sky(*scene.sky);
+  } else {
+    propagator_.emplace(session, basis, transport, propagate_options(options));
+  }
+  if (!geometry_.empty() && !blocked_by_view(options))
+    blocker_.emplace(session, buffers, options.grid, options.cascades, options.format());
+  if (options.bounces != Bounces::one)
+    reflector_.emplace(session, buffers, options.grid, options.cascades, options.format());
+  if (options.gather == Gathering::visible)
+    visibility_.emplace(session, buffers, options.grid, options.cascades);
+} catch (const TooLarge& error) {
+  throw Error(
+      error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), options.grid,
+      static_cast<int>(options.grid * std::cbrt(error.share)));  // all that cascades have grows with its cube
+}
+
+std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,
+                                                                const char* what) const {
+  std::vector<CachedVolume> made(count);
+  for (CachedVolume& each : made)
+    each.volume = std::make_unique<Volume>(session_, shape, what, options_.format());
+  return made;
+}
+
+FrameCascades::CachedVolume& FrameCascades::of_cascade(std::vector<CachedVolume>& volumes, int cascade) {
+  return volumes[std::min<std::size_t>(cascade, volumes.size() - 1)];
+}
+
+const Volume* FrameCascades::geometry(int cascade) {
+  return geometry_.empty() ? nullptr : of_cascade(geometry_, cascade).volume.get();
+}
+
+void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface& camera) {
+  grids_ = grids;
+  camera_ = &camera;
+  if (scene_.sky) sweeper_->scale_sky(lights_.scale());
+  for (int cascade = options_.cascades; cascade-- > 0;) keys_[cascade] = keys_of(cascade);
+}
+
+FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
+  const ClpvGrid& grid = grids_[cascade];
+  // The eye's position inside a cascade affects only gathering.
+  const CacheKey place = Fingerprint().add(grid.origin).add(grid.cell).value();
+  Keys keys;
+  keys.triangles = Fingerprint().add(place).add(buffers_.clusters->instant()).value();
+  keys.injected = Fingerprint().add(place).add(lights_.sources_key(cascade)).value();
+  if (!geometry_.empty()) keys.geometry = keys.triangles;
+  if (!geometry_.empty() && !blocker_)
+    keys.geometry =
+        Fingerprint().add(keys.triangles).add(lights_.rsms_key(cascade)).add(camera_->view).value();
+  // All bounces depend on the blockers.
+  keys.reflected = Fingerprint().add(keys.triangles).add(keys.geometry).value();
+  Fingerprint accumulated;
+  accumulated.add(keys.injected).add(keys.geometry);
+  if (reflector_) accumulated.add(keys.reflected);
+  // A sweep reads border light from the next coarser cascade, and stores the halo of the next finer one.
+  if (sweeper_) accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
+  if (sweeper_ && cascade + 1 < options_.cascades) accumulated.add(keys_[cascade + 1].accumulated);
+  keys.accumulated = accumulated.value();
+  return keys;
+}
+
+void FrameCascades::inject(int cascade) {
+  CachedVolume& injected = of_cascade(injected_, cascade);
+  injected.cached.update(keys_[cascade].injected, [&] {
+    lights_.update_sources(cascade);
+    const StageScope scope(session_, {Pass::inject_light, cascade});
+    injected.volume->clear(session_);
+    for (const Surface* source : lights_.sources(cascade))
+      injector_.inject_light(*source, grids_[cascade], *injected.volume);
+  });
+}
+
+void FrameCascades::update_blockers(int cascade) {
+  if (geometry_.empty()) return;
+  CachedVolume& geometry = of_cascade(geometry_, cascade);
+  geometry.cached.update(keys_[cascade].geometry, [&] {
+    if (!blocker_) return inject_geometry(cascade, *geometry.volume);
+    const StageScope scope(session_, {Pass::blockers, cascade});
+    blocker_->voxelize(cascade, grids_[cascade], *geometry.volume);
+  });
+}
+
+void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
+  lights_.rasterize_rsms(cascade);
+  const StageScope scope(session_, {Pass::inject_geometry, cascade});
+  geometry.clear(session_);
+  for (const Surface* rsm : lights_.rsms(cascade)) injector_.inject_geometry(*rsm, grids_[cascade], geometry);
+  injector_.inject_geometry(*camera_, grids_[cascade], geometry, options_.blocker_stride);
+}
+
+void FrameCascades::update_links(int cascade) {
+  if (const Volume* blockers = geometry(cascade))
+    links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->set_blockers(cascade, *blockers); });
+}
+
+void FrameCascades::update_reflectors(int cascade) {
+  if (!reflector_) return;
+  reflected_[cascade].update(keys_[cascade].reflected, [&] {
+    const StageScope scope(session_, {Pass::reflectors, cascade});
+    update_links(cascade);
+    reflector_->voxelize(cascade, grids_[cascade]);
+    sweeper_->set_reflectors(cascade, reflector_->reflectors(cascade));
+  });
+}
+
+void FrameCascades::update_visibility(int cascade) {
+  if (!visibility_) return;
+  visible_cells_[cascade].update(keys_[cascade].triangles, [&] {
+    const StageScope scope(session_, {Pass::visibility, cascade});
+    visibility_->update(cascade, grids_[cascade]);
+  });
+}
+
+void FrameCascades::scatter(int cascade) {
+  if (!scene_.medium) return;
+  const StageScope scope(session_, {Pass::medium, cascade});
+  sweeper_->set_medium(cascade, grids_[cascade], lights_.shadowed(), lights_.scale());
+}
+
+void FrameCascades::propagate(int cascade) {
+  Volume& accumulated = *accumulated_[cascade].volume;
+  accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
+    inject(cascade);
+    update_blockers(cascade);
+    scatter(cascade);
+    update_reflectors(cascade);
+    const Volume& injected = *of_cascade(injected_, cascade).volume;
+    const StageScope scope(session_, {Pass::propagate, cascade});
+    if (propagator_)
+      return propagator_->propagate({injected, geometry(cascade), accumulated}, options_.iterations);
+    update_links(cascade);
+    sweeper_->sweep(cascade, grids_, injected, accumulated);
+  });
+}
+
+void FrameCascades::update(int cascade, const CascadeObserver& observer) {
+  propagate(cascade);
+  update_visibility(cascade);
+  if (!observer) return;
+  inject(cascade);  // a shared volume may hold another cascade
+  update_blockers(cascade);
+  observer({cascade, grids_[cascade], *of_cascade(injected_, cascade).volume, geometry(cascade),
+            *accumulated_[cascade].volume, lights_.scale()});
+}
+
+GatheredLight FrameCascades::light() const {
+  GatheredLight light{grids_, {}, visibility_ ? &visibility_->occluded() : nullptr, lights_.scale()};
+  for (const CachedVolume& accumulated : accumulated_) light.accumulated.push_back(accumulated.volume.get());
+  return light;
+}
+
+}  // namespace clpv

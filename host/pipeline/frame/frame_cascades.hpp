@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Cascades of a frame: their volumes, and the stages that compute them. Each result is cached with a key over its
+// inputs and recomputed only when the key changes.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "device/session.hpp"
+#include "options/render_options.hpp"
+#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/frame/cached.hpp"
+#include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/inject/inject.hpp"
+#include "pipeline/steps/propagate.hpp"
+#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/sweep/sweep.hpp"
+#include "pipeline/voxels/visibility.hpp"
+#include "scene/scene.hpp"
+
+namespace clpv {
+
+/// Volumes of one cascade after its propagation. Accumulated light uses the basis Frame::gathered().
+struct CascadeVolumes {
+  int cascade;
+  const ClpvGrid& grid;
+  const Volume& injected;
+  const Volume* geometry;  ///< null without occlusion
+  const Volume& accumulated;
+  float light_scale;  ///< factor by which the volumes scale the light
+};
+using CascadeObserver = std::function<void(const CascadeVolumes&)>;
+
+/// Accumulated light of a render, ready to be gathered; finest cascade first.
+struct GatheredLight {
+  std::vector<ClpvGrid> grids;
+  std::vector<const Volume*> accumulated;
+  const Buffer* occluded;  ///< CellVisibility::occluded(); null where all cells light a surface
+  float scale;             ///< factor by which the volumes scale the light
+};
+
+class FrameCascades {
+ public:
+  /// All arguments must outlive this object. `swept`: basis of swept light; null without a sweep.
+  FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
+                const RenderOptions& options, const Basis& basis, const Basis* swept,
+                const Transport& transport, FrameLights& lights);
+
+  /// Sets the cascade grids and the camera's G-buffer. Call for each frame, after preparing its lights.
+  void prepare(const std::vector<ClpvGrid>& grids, const Surface& camera);
+
+  /// Updates the light of a cascade. Call for the coarsest cascade first.
+  void update(int cascade, const CascadeObserver& observer);
+
+  /// Key of a cascade's accumulated light.
+  CacheKey key(int cascade) const { return keys_[cascade].accumulated; }
+  GatheredLight light() const;
+
+ private:
+  /// A volume and the key of its contents. There is one per cascade, or one that all cascades share in turn.
+  struct CachedVolume {
+    std::unique_ptr<Volume> volume;
+    Cached cached;
+  };
+  /// Keys of a cascade's results.
+  struct Keys {
+    CacheKey triangles = 0, injected = 0, geometry = 0, reflected = 0, accumulated = 0;
+  };
+  std::vector<CachedVolume> volumes(int count, const VolumeShape& shape, const char* what) const;
+  static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, int cascade);
+  Keys keys_of(int cascade) const;
+
+  /// Each function updates one result of a cascade, and first the inputs it depends on.
+  void inject(int cascade);
+  void update_blockers(int cascade);
+  void update_links(int cascade);
+  void update_reflectors(int cascade);
+  void scatter(int cascade);
+  void propagate(int cascade);
+  void update_visibility(int cascade);
+  void inject_geometry(int cascade, Volume& geometry);
+  const Volume* geometry(int cascade);
+
+  Session& session_;
+  const Scene& scene_;
+  const SceneBuffers& buffers_;
+  const RenderOptions& options_;
+  FrameLights& lights_;
+  Injector injector_;
+  std::optional<BlockerVoxelizer> blocker_;      ///< none: surfaces in the RSMs and the G-buffer block
+  std::optional<ReflectorVoxelizer> reflector_;  ///< none with one bounce
+  std::optional<Propagator> propagator_;         ///< one of the two
+  std::optional<Sweeper> sweeper_;
+  std::optional<CellVisibility> visibility_;  ///< none: all cells light a surface
+  std::vector<CachedVolume> injected_, accumulated_;
+  std::vector<CachedVolume> geometry_;  ///< none without occlusion
+  /// Contents of the sweeper (links and face albedos) and of `visibility_`, per cascade.
+  std::vector<Cached> links_, visible_cells_, reflected_;
+  std::vector<ClpvGrid> grids_;
+  std::vector<Keys> keys_;
+  const Surface* camera_ = nullptr;
+};
+
+}  // namespace clpv

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame/frame_lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/frame/frame_volumes.hpp"
+#include "pipeline/raster/view.hpp"
+#include "support/fingerprint.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kFull = 256;        // [W/sr] stored in a full cell
+constexpr double kMaxDoubling = 60;  // for a light so weak that float32 would overflow
+
+/// Returns the upper bound of the flux that a light sends through a cell [W].
+double max_flux(const ClpvLight& light, double cell) {
+  const double brightest = *std::max_element(light.intensity, light.intensity + 3);
+  return brightest * (rsm_follows_cascade(light) ? cell * cell : 4 * std::numbers::pi);
+}
+
+}  // namespace
+
+FrameLights::FrameLights(Session& session, const Scene& scene, const SceneBuffers& buffers,
+                         Rasterizer& rasterizer, const RenderOptions& options)
+    : session_(session),
+      scene_(scene),
+      buffers_(buffers),
+      rasterizer_(rasterizer),
+      options_(options),
+      brightest_sky_(scene.sky ? scene.sky->max_radiance() : 0) {
+  if (emits(scene)) emission_.emplace(session, scene, buffers);
+}
+
+void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids) {
+  find_lights(camera);
+  find_scale(grids.back());
+  for (Lit& lit : lights_) {
+    lit.shadow.light = lit.light;
+    lit.shadow.views = shadow_views(lit.light, buffers_.bounds, options_.shadow_size);
+    lit.rsms.resize(injected_volumes(options_));
+    lit.wanted.clear();
+    for (const ClpvGrid& grid : grids) {
+      std::vector<ClpvView> views = rsm_views(lit.light, grid, buffers_.bounds, options_.rsm_size);
+      const CacheKey key = key_of(scaled(lit.light, scale_), views);
+      lit.wanted.push_back({std::move(views), key});
+    }
+  }
+  if (emission_) emission_->prepare(grids, scale_, epoch_);
+}
+
+/// Keeps the buffers while the set of lights is unchanged.
+void FrameLights::find_lights(const SceneCamera& camera) {
+  const std::vector<SceneLight> shining = scene_.lights_for(camera);
+  if (lights_.size() != shining.size() || lit_by_ != camera.light) lights_.clear();
+  lit_by_ = camera.light;
+  lights_.resize(shining.size());
+  for (std::size_t i = 0; i < shining.size(); ++i) {
+    const auto found = std::ranges::find(scene_.lights, shining[i].name, &SceneLight::name);
+    lights_[i].light = shining[i].data;
+    lights_[i].index = found - scene_.lights.begin();
+  }
+}
+
+void FrameLights::find_scale(const ClpvGrid& coarsest) {
+  const double cell = double{coarsest.cell};
+  double other = emission_ ? emission_->most(cell) : 0;
+  other += std::numbers::pi * double{brightest_sky_} * cell * cell;
+  std::vector<ClpvLight> all;
+  for (const Lit& lit : lights_) all.push_back(lit.light);
+  scale_ = light_scale(options_.format(), all, coarsest.cell, other);
+}
+
+CacheKey FrameLights::key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const {
+  return Fingerprint().add(light).add(views).add(buffers_.clusters->instant()).add(epoch_).value();
+}
+
+void FrameLights::rasterize_shadows() {
+  const std::size_t texels = std::size_t(options_.shadow_size) * options_.shadow_size;
+  for (Lit& lit : lights_) {
+    // Shadow maps depend only on the views, not on intensity.
+    lit.shadow_cached.update(key_of({}, lit.shadow.views), [&] {
+      const StageScope scope(session_, {Pass::rasterize_shadow, {}, lit.index});
+      lit.shadow.depths.resize(lit.shadow.views.size());
+      for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
+        session_.reserve(lit.shadow.depths[v], texels * sizeof(float), "shadow map");
+        rasterizer_.rasterize_shadow(lit.shadow.views[v], lit.shadow.depths[v]);
+      }
+    });
+  }
+}
+
+void FrameLights::rasterize(const Lit& lit, const std::vector<ClpvView>& views,
+                            std::vector<Surface>& surfaces) {
+  surfaces.resize(views.size());
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (!surfaces[v].depth.exists())
+      surfaces[v] = make_surface(session_, views[v], options_.rsm_format, false);
+    surfaces[v].view = views[v];
+    rasterizer_.rasterize_rsm(scaled(lit.light, scale_), surfaces[v]);
+  }
+}
+
+std::size_t FrameLights::slot(const Lit& lit, int cascade) {
+  return rsm_follows_cascade(lit.light) && lit.rsms.size() > 1 ? cascade : 0;
+}
+
+void FrameLights::rasterize_rsms(int cascade) {
+  for (Lit& lit : lights_) {
+    Rsms& rsms = lit.rsms[slot(lit, cascade)];
+    rsms.cached.update(lit.wanted[cascade].key, [&] {
+      const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
+      rasterize(lit, lit.wanted[cascade].views, rsms.surfaces);
+    });
+  }
+}
+
+void FrameLights::update_sources(int cascade) {
+  rasterize_rsms(cascade);
+  if (emission_) emission_->emit();
+}
+
+CacheKey FrameLights::rsms_key(int cascade) const {
+  Fingerprint all;
+  for (const Lit& lit : lights_) all.add(lit.wanted[cascade].key);
+  return all.value();
+}
+
+CacheKey FrameLights::sources_key(int cascade) const {
+  return Fingerprint().add(rsms_key(cascade)).add(emission_ ? emission_->key() : 0).value();
+}
+
+std::vector<const Surface*> FrameLights::rsms(int cascade) const {
+  std::vector<const Surface*> all;
+  for (const Lit& lit : lights_) {
+    for (const Surface& rsm : lit.rsms[slot(lit, cascade)].surfaces) all.push_back(&rsm);
+  }
+  return all;
+}
+
+std::vector<const Surface*> FrameLights::sources(int cascade) const {
+  std::vector<const Surface*> all = rsms(cascade);
+  if (emission_) all.push_back(&emission_->points());
+  return all;
+}
+
+std::vector<ShadowedLight> FrameLights::shadowed() const {
+  std::vector<ShadowedLight> all;
+  for (const Lit& lit : lights_) all.push_back(lit.shadow);
+  return all;
+}
+
+float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
+                  double other) {
+  double flux = other;
+  for (const ClpvLight& light : lights) flux += max_flux(light, static_cast<double>(coarsest_cell));
+  if (format.storage != Storage::float16 || !(flux > 0)) return 1;
+  const double doublings = std::floor(std::log2(kFull * std::numbers::pi / flux));
+  return std::exp2(std::clamp(doublings, -kMaxDoubling, kMaxDoubling));
+}
+
+ClpvLight scaled(ClpvLight light, float scale) {
+  for (float& component : light.intensity) component *= scale;
+  return light;
+}
+
+}  // namespace clpv

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame/frame_stats.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "support/json_optional.hpp"
+#include "support/median.hpp"
+
+namespace clpv {
+namespace {
+
+/// Returns the stages of one frame, each with the median of its times over all frames.
+std::vector<StageTime> median_times(const std::vector<std::vector<StageTime>>& frames) {
+  if (frames.empty()) return {};
+  std::vector<StageTime> result = frames.front();
+  for (std::size_t stage = 0; stage < result.size(); ++stage) {
+    std::vector<double> ms;
+    for (const auto& frame : frames) ms.push_back(frame.at(stage).ms);
+    result[stage].ms = median(std::move(ms));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume) {
+  const std::vector<float> values = volume.read(session);
+  const auto plane = values.size() / 3 / static_cast<std::size_t>(basis.size());
+  std::array<double, 3> energy{};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (std::size_t i = 0; i < basis.integrals().size(); ++i) {
+      double sum = 0;
+      for (std::size_t p = 0; p < plane; ++p)
+        sum += values[(channel * basis.integrals().size() + i) * plane + p];
+      energy[channel] += sum * basis.integrals()[i];
+    }
+  }
+  return energy;
+}
+
+nlohmann::json to_json(const std::vector<StageTime>& times) {
+  nlohmann::json stages = nlohmann::json::array();
+  for (const StageTime& time : times) {
+    stages.push_back({{"stage", name_of(time.mark.pass)},
+                      {"cascade", time.mark.cascade},
+                      {"light", time.mark.light},
+                      {"ms", time.ms},
+                      {"timer", time.from_events ? "event" : "wall"}});
+  }
+  return stages;
+}
+
+void FrameStats::end_startup(const Session&) {
+  startup_ms_ = since_mark();
+  mark_ = Clock::now();
+}
+
+void FrameStats::end_first_frame(Session& session) {
+  session.queue().finish();
+  first_frame_ms_ = since_mark();
+}
+
+void FrameStats::end_frame(Session& session) {
+  session.queue().finish();
+  frame_ms_.push_back(since_mark());
+  stages_.push_back(session.timeline().times());
+}
+
+void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes) {
+  const auto energy = [&](const Volume& volume, const Basis& basis) {
+    std::array<double, 3> stored = volume_energy(session, basis, volume);
+    for (double& watts : stored) watts /= volumes.light_scale;
+    return stored;
+  };
+  // Sort finest first, independent of the order of computation.
+  energies_.insert(energies_.begin(), {volumes.cascade, energy(volumes.injected, frame.basis()),
+                                       energy(volumes.accumulated, frame.gathered())});
+}
+
+nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {
+  nlohmann::json energy = nlohmann::json::array();
+  for (const Energy& e : energies_) {
+    energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
+  }
+  const Device& device = session.device();
+  const double frame_ms = median(frame_ms_);
+  return {{"schema", 1},
+          {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
+          {"options", options},
+          {"frames", frame_ms_.size()},
+          {"stages", clpv::to_json(median_times(stages_))},
+          {"frame_ms", frame_ms},
+          {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
+          {"build_ms", session.build_ms()},
+          {"startup_ms", startup_ms_},
+          {"device_bytes", session.peak_device_bytes()},
+          {"energy", energy}};
+}
+
+}  // namespace clpv

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/gather/gather.hpp"
+
+#include "codegen/gather_source.hpp"
+#include "pipeline/raster/surface.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+/// Cosine gathering evaluates no basis function.
+LobeOptions looked_up(TransportKind transport, const GatherOptions& options) {
+  LobeOptions lobes = options.lobes;
+  lobes.table_functions = lobes.table_functions && has_faces(transport);
+  return lobes;
+}
+
+std::string cascade_macro(std::size_t cascades) {
+  std::string text = "#define CLPV_EACH_CASCADE(DO)";
+  for (std::size_t c = 0; c < cascades; ++c) text += fmt::format(" DO({})", c);
+  return text + "\n";
+}
+
+void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed) {
+  literals.integer("CLPV_GRID", options.grid)
+      .flag("CLPV_PACKED", packed)
+      .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
+      .integer("CLPV_PAIRS", packed_pairs(basis))
+      .real("CLPV_GATHER_OFFSET", options.gather_offset)
+      .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
+}
+
+ProgramSource source_of(const Basis& basis, TransportKind transport, const GatherOptions& options,
+                        bool packed, const LookupTable& table) {
+  ProgramSource source{"gather/gather.cl", {}, {}};
+  add_literals(source.literals, basis, options, packed);
+  if (!packed) {
+    add_format_literals(source.literals, options.format);
+    source.literals.flag("CLPV_FILTERED", options.filtered);
+  }
+  source.generated = table.macros() + gather_source(basis, transport, options.lobes, table.exists());
+  return source;
+}
+
+}  // namespace
+
+ProgramSource with_radiance(ProgramSource source, const Basis& swept, const GatherOptions& options) {
+  add_literals(source.literals, swept, options, true);
+  source.generated = radiance_source(swept);
+  return source;
+}
+
+Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport,
+                   const GatherOptions& options)
+    : session_(session),
+      options_(options),
+      coefficients_(basis.size()),
+      pairs_(packed_pairs(basis)),
+      table_(session, basis, looked_up(transport, options), options.table, TableUse::functions),
+      source_(source_of(basis, transport, options, packs(), table_)),
+      stencil_(session.device(), {.grid = options.grid,
+                                  .format = options.format,
+                                  .lanes = preferred_row_lanes(session.device(), options.format)}) {
+  if (!packs()) return;
+  ProgramSource pack{"gather/pack.cl", stencil_.literals(), pack_source(basis)};
+  pack.literals.integer("CLPV_PAIRS", pairs_);
+  pack_.emplace(session, pack, "pack");
+  gather_kernel(0, false);
+}
+
+Kernel& Gatherer::gather_kernel(std::size_t cascades, bool points) {
+  const std::pair key(packs() ? 0 : cascades, points);
+  if (const auto found = gather_.find(key); found != gather_.end()) return found->second;
+  ProgramSource source = source_;
+  if (points) source.literals.flag("CLPV_POINTS", true);
+  if (!packs()) source.generated += cascade_macro(cascades);
+  return gather_.try_emplace(key, session_, source, "gather").first->second;
+}
+
+void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
+                           const std::vector<const Volume*>& volumes) const {
+  if (camera.format != RsmFormat::float32)
+    throw Error(ExitCode::run_time, "gather: the camera's view is not float32");
+  if (volumes.size() != grids.size()) {
+    throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades", volumes.size(), grids.size());
+  }
+  for (const Volume* volume : volumes)
+    clpv::require_fit(*volume, {options_.grid, coefficients_, 3}, options_.format, "gathering");
+}
+
+void Gatherer::reserve(std::size_t cascades) {
+  session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
+  if (!packs()) return;
+  const std::size_t n = options_.grid, pairs = pairs_;
+  session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
+}
+
+void Gatherer::pack(const Volume& volume, std::size_t slot) {
+  const std::size_t n = options_.grid;
+  pack_->set(volume.memory(), packed_, static_cast<cl_uint>(slot * n * n * n));
+  stencil_.launch(*pack_, 1);
+}
+
+void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
+                      const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale,
+                      const Buffer* occluded, const std::vector<bool>& changed) {
+  require_fit(camera, grids, accumulated);
+  if (sees() && occluded == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is occluded");
+  reserve(grids.size());
+  cascades_ = grids.size();
+  session_.write(grids_, grids);
+  const bool points = camera.position.exists();
+  Kernel& kernel = gather_kernel(grids.size(), points);
+  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_,
+             static_cast<cl_uint>(grids.size()), 1 / scale, irradiance);
+  if (packs()) {
+    for (std::size_t c = 0; c < grids.size(); ++c) {
+      if (changed.empty() || changed[c]) pack(*accumulated[c], c);
+    }
+    kernel.add(packed_);
+    if (sees()) kernel.add(*occluded);
+  } else {
+    for (const Volume* volume : accumulated) kernel.add(volume->memory());
+  }
+  table_.add_to(kernel);
+  kernel.launch(rows_of_tiles(camera.view), kTileRow);
+}
+
+void Gatherer::add_radiance(Kernel& kernel, float scale, const Buffer* occluded) const {
+  kernel.add(grids_, cascades_, 1 / scale, packed_);
+  if (sees()) kernel.add(*occluded);
+}
+
+}  // namespace clpv

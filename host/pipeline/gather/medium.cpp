@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/gather/medium.hpp"
+
+#include <algorithm>
+
+#include "kernels/shared/near.h"
+
+namespace clpv {
+namespace {
+
+constexpr int kMediumStep = 2;  // traces one of 2 x 2 pixels
+
+unsigned medium_pixels(unsigned pixels) {
+  return (pixels + kMediumStep - 1) / kMediumStep;
+}
+
+ProgramSource medium_source(const Basis& basis, const MediumOptions& options) {
+  ProgramSource source = with_radiance({"gather/medium.cl", {}, {}}, basis, options.gather);
+  source.literals.integer("CLPV_NEAR_STEP", kMediumStep)
+      .number("CLPV_NEAR_RAYS", 1)
+      .integer("CLPV_LIGHT_STEPS", options.light_steps)
+      .integer("CLPV_VOLUME_STEPS", options.volume_steps)
+      .flag("CLPV_MEDIUM", true);
+  return source;
+}
+
+}  // namespace
+
+MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium,
+                         const MediumOptions& options)
+    : session_(session),
+      medium_(medium),
+      options_(options),
+      light_(session, medium_source(basis, options), "medium_light"),
+      volumes_(session, medium_source(basis, options), "medium_volumes"),
+      blur_(session, medium_source(basis, options), "medium_blur"),
+      add_(session, medium_source(basis, options), "medium_add") {}
+
+void MediumLight::reserve(const ClpvView& view) {
+  const std::size_t plane =
+      CLPV_NEAR_PLANE_OF(std::size_t{medium_pixels(view.width)}, medium_pixels(view.height));
+  if (plane == plane_) return;
+  plane_ = plane;
+  session_.reserve(ends_, plane * sizeof(cl_float), "ends of rays in the medium");
+  session_.reserve(scattered_, 3 * plane * sizeof(cl_float), "light scattered by the medium");
+  session_.reserve(blurred_, 3 * plane * sizeof(cl_float), "blurred light of the medium");
+  session_.fill_zero(ends_, plane * sizeof(cl_float));  // borders stay 0
+  session_.fill_zero(scattered_, 3 * plane * sizeof(cl_float));
+  session_.fill_zero(blurred_, 3 * plane * sizeof(cl_float));
+}
+
+void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer,
+                          const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
+  const ClpvView& view = camera.view;
+  reserve(view);
+  const cl::NDRange rows(tiles_along(medium_pixels(view.width)), medium_pixels(view.height));
+  volumes_.set(view, camera.depth, medium_, ends_, scattered_);
+  gatherer.add_radiance(volumes_, scale, occluded);
+  volumes_.launch(rows, kTileRow);
+  for (const ShadowedLight& shadowed : lights) {
+    const cl_uint count = shadowed.views.size();
+    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView),
+                     "views of a light in the medium");
+    session_.write(views_, shadowed.views);
+    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
+      light_
+          .set(view, camera.depth, shadowed.light, views_, count, which,
+               count > 0 ? shadowed.depths[which] : Buffer(), scattered_)
+          .launch(rows, kTileRow);
+    }
+  }
+  blur_.set(view, ends_, scattered_, blurred_).launch(rows, kTileRow);
+}
+
+void MediumLight::add(const Surface& camera, bool alone, Buffer& image) {
+  add_.set(camera.view, camera.depth, medium_, ends_, blurred_, cl_uint{alone}, image)
+      .launch(rows_of_tiles(camera.view), kTileRow);
+}
+
+}  // namespace clpv

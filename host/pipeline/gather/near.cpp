@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/gather/near.hpp"
+
+#include <algorithm>
+
+#include "basis/near_directions.hpp"
+#include "kernels/shared/near.h"
+
+namespace clpv {
+namespace {
+
+unsigned near_pixels(unsigned pixels, int step) {
+  return (pixels + step - 1) / step;
+}
+
+unsigned tiles_down(unsigned rows) {
+  return (rows + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE;
+}
+
+ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
+  ProgramSource source{file, {}, {}};
+  source.literals.integer("CLPV_NEAR_STEP", options.step)
+      .number("CLPV_NEAR_RAYS", options.rays)
+      .real("CLPV_NEAR_CONE", near_cone(options.rays))
+      .flag("CLPV_TEXTURED", buffers.textured)
+      .flag("CLPV_COLOURED", buffers.coloured)
+      .flag("CLPV_EMISSIVE", buffers.emissive)
+      .flag("CLPV_MEDIUM", options.medium);
+  return source;
+}
+
+ProgramSource reflecting(ProgramSource source) {
+  source.literals.flag("CLPV_NEAR_REFLECT", true);
+  return source;
+}
+
+/// Directions in the order of near_layout.h.
+std::vector<cl_float8> direction_rows(int rays) {
+  const std::vector<std::vector<glm::vec3>> directions = near_directions(rays);
+  std::vector<cl_float8> rows;
+  for (int y = 0; y < CLPV_NEAR_TILE; ++y) {
+    for (int ray = 0; ray < rays; ++ray) {
+      for (int axis = 0; axis < 3; ++axis) {
+        cl_float8& row = rows.emplace_back();
+        for (int lane = 0; lane < 8; ++lane)
+          row.s[lane] = directions[CLPV_NEAR_TILE * y + lane % CLPV_NEAR_TILE][ray][axis];
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+NearField::NearField(Session& session, const Basis& basis, const Scene& scene, const SceneBuffers& buffers,
+                     const NearOptions& options)
+    : session_(session),
+      scene_(scene),
+      buffers_(buffers),
+      options_(options),
+      tree_(scene),
+      points_kernel_(session, with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather),
+                     "near_points"),
+      trace_(session, near_source("gather/near_trace.cl", buffers, options), "near_trace"),
+      light_(session, near_source("gather/near_light.cl", buffers, options), "near_light"),
+      emit_(session, near_source("gather/near_light.cl", buffers, options), "near_emit"),
+      near_(session, with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather), "near"),
+      blur_(session, near_source("gather/near_filter.cl", buffers, options), "near_blur"),
+      widen_(session, near_source("gather/near_filter.cl", buffers, options), "near_widen"),
+      add_(session, near_source("gather/near_filter.cl", buffers, options), "near_add") {
+  if (options.reflects) {
+    reflect_.emplace(
+        session,
+        reflecting(with_radiance(near_source("gather/near_light.cl", buffers, options), basis, options.gather)),
+        "near_reflect");
+  }
+  directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
+  upload_tree();
+}
+
+void NearField::move() {
+  tree_.move(scene_);
+  upload_tree();
+}
+
+void NearField::upload_tree() {
+  session_.reserve(nodes_, tree_.nodes().size() * sizeof(TreeRow), "tree of triangles");
+  session_.reserve(leaves_, tree_.leaves().size() * sizeof(TreeRow), "leaves of the tree of triangles");
+  session_.write(nodes_, tree_.nodes());
+  session_.write(leaves_, tree_.leaves());
+}
+
+void NearField::reserve(const ClpvView& view) {
+  const std::size_t width = near_pixels(view.width, options_.step),
+                    height = near_pixels(view.height, options_.step);
+  const std::size_t plane = CLPV_NEAR_PLANE_OF(width, height), numbers = plane * sizeof(cl_float);
+  if (plane == plane_) return;
+  plane_ = plane;
+  session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
+  session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
+  const std::size_t tiles = tiles_along(width) * tiles_down(height);
+  session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
+  session_.reserve(hits_, tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float),
+                   "hits of the near field");
+  session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
+  session_.reserve(differences_, 3 * numbers, "near field");
+  session_.reserve(blurred_, 3 * numbers, "blurred near field");
+  session_.fill_zero(radiances_, 3 * options_.rays * numbers);  // read, but not used, where there is no hit
+  session_.fill_zero(differences_, 3 * numbers);                // borders stay 0
+  session_.fill_zero(blurred_, 3 * numbers);
+}
+
+Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
+  return kernel.set(view, points_, counts_, hits_, buffers_.vertices, buffers_.triangles, buffers_.materials,
+                    buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
+}
+
+void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
+                           const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
+  const ClpvView& view = camera.view;
+  const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
+                         tiles_down(near_pixels(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
+  const cl::NDRange group(8, 1, 1);
+  bool fresh = true;
+  if (buffers_.emissive || lights.empty()) {
+    set_hits(emit_, view, fresh).launch(rays, group);
+    fresh = false;
+  }
+  for (const ShadowedLight& shadowed : lights) {
+    const cl_uint count = shadowed.views.size();
+    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView), "views of a light");
+    session_.write(views_, shadowed.views);
+    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
+      set_hits(light_, view, fresh)
+          .add(shadowed.light, views_, count, which, count > 0 ? shadowed.depths[which] : Buffer())
+          .launch(rays, group);
+      fresh = false;
+    }
+  }
+  if (!reflect_) return;
+  set_hits(*reflect_, view, fresh);
+  gatherer.add_radiance(*reflect_, scale, occluded);
+  reflect_->launch(rays, group);
+}
+
+void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
+                    float scale, const Buffer* occluded, Buffer& irradiance) {
+  const ClpvView& view = camera.view;
+  reserve(view);
+  const unsigned width = near_pixels(view.width, options_.step),
+                 height = near_pixels(view.height, options_.step);
+  const cl::NDRange rows(tiles_along(width), height);
+  const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
+  points_kernel_.set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
+      .launch(with_border, kTileRow);
+  // A work-item alone in its group: the lists of several would not fit into the first-level cache.
+  trace_
+      .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
+           buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
+      .launch(cl::NDRange(tiles_along(width), tiles_down(height)), cl::NDRange(1, 1));
+  light_hits(camera, gatherer, lights, scale, occluded);
+  near_.set(view, points_, directions_, distances_, radiances_, differences_);
+  gatherer.add_radiance(near_, scale, occluded);
+  near_.launch(rows, kTileRow);
+  blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
+  widen_.set(view, points_, blurred_, differences_).launch(rows, kTileRow);
+  add_.set(view, camera.depth, camera.normal, points_, differences_, irradiance)
+      .launch(rows_of_tiles(view), kTileRow);
+}
+
+}  // namespace clpv

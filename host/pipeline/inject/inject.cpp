@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/inject/inject.hpp"
+
+#include "codegen/inject_source.hpp"
+#include "kernels/shared/sort.h"
+#include "kernels/shared/thinned.h"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+// Short segments give many work-items even if one wall fills the view. There are still few enough for one work-item to
+// join the segments of a cell.
+constexpr std::size_t kMinSegment = 32, kMaxBlocks = 16384;
+constexpr std::size_t kCpuStrip = 32;  // texels that a work-item assigns to cells; a CPU vectorises over them
+const cl::NDRange kSegments(16);  // few, long work-items: small groups spread them over all compute units
+
+std::size_t segment_length(std::size_t texels) {
+  std::size_t length = kMinSegment;
+  while (length * kMaxBlocks < texels) length *= 2;
+  return length;
+}
+
+std::size_t block_count(std::size_t texels) {
+  const std::size_t length = segment_length(texels);
+  return (texels + length - 1) / length;
+}
+
+}  // namespace
+
+Injector::Injector(Session& session, const Basis& basis, const InjectOptions& options)
+    : session_(session),
+      basis_(basis),
+      options_(options),
+      table_(session, basis, options.lobes, options.table, TableUse::lobes),
+      sorter_(session),
+      strip_(session.device().type == "cpu" ? kCpuStrip : 1),
+      accumulator_(session) {}
+
+bool Injector::looks_up(Kind kind) const {
+  return kind == Kind::light || blocks_by_lobes(options_.blocking);
+}
+
+Injector::Kernels Injector::make_kernels(const Variant& variant) const {
+  const Kind kind = variant.kind;
+  const bool light = kind == Kind::light;
+  const Literals both =
+      Literals().flag("CLPV_GEOMETRY", !light).flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
+  ProgramSource find{"inject/find_cells.cl", both, {}}, sum{"inject/inject.cl", both, {}};
+  find.literals.number("CLPV_STRIP", strip_).flag("CLPV_POINTS", variant.points);
+  sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
+  add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
+  sum.generated = (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
+                  (light ? inject_source(basis_, options_.lobes)
+                         : blocker_source(basis_, options_.lobes, options_.blocking));
+  return {Kernel(session_, find, "find_cells"), Kernel(session_, sum, "sum_segments"),
+          Kernel(session_, sum, "join_segments")};
+}
+
+Injector::Kernels& Injector::kernels(const Variant& variant) {
+  auto found = kernels_.find(variant);
+  if (found == kernels_.end()) found = kernels_.emplace(variant, make_kernels(variant)).first;
+  return found->second;
+}
+
+void Injector::reserve(std::size_t texels) {
+  sorter_.reserve(texels);
+  const std::size_t coefficients = basis_.size();
+  const std::size_t blocks = block_count(texels);
+  session_.reserve(shares_, texels * sizeof(cl_float), "injection, texels");
+  session_.reserve(partials_, 2 * blocks * 3 * coefficients * sizeof(cl_float), "injection, partial sums");
+  session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
+}
+
+void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume) {
+  accumulator_.add_to_cells(volume,
+                            [&](const Volume& cells) { inject_cells(kind, surface, grid, stride, cells); });
+}
+
+void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                            const Volume& volume) {
+  const bool light = kind == Kind::light;
+  const unsigned step = stride;
+  const std::size_t width = CLPV_TAKEN(surface.view.width, step),
+                    height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
+  if (texels == 0) return;
+  reserve(texels);
+  const bool points = surface.position.exists();
+  Kernels& kernel = kernels({kind, surface.format, points});
+  kernel.find_cells.set(surface.view, grid, points ? surface.position : surface.depth, surface.normal,
+                        surface.colour, surface.colour_scale, sorter_.keys());
+  if (!light) kernel.find_cells.add(shares_, step);
+  kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
+                           strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
+  const std::size_t keys = options_.grid + (light ? 0 : 1);
+  sorter_.sort(texels, keys * keys * keys);
+
+  const cl_uint length = segment_length(texels), blocks = block_count(texels);
+  kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, surface.normal);
+  if (light) {
+    kernel.sum_segments.add(surface.colour, surface.colour_scale);
+  } else {
+    kernel.sum_segments.add(shares_, surface.view.width, step);
+  }
+  kernel.sum_segments.add(volume.memory(), partials_, firsts_);
+  if (looks_up(kind)) table_.add_to(kernel.sum_segments);
+  kernel.sum_segments.launch(cl::NDRange(blocks), kSegments);
+  kernel.join_segments
+      .set(sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(), partials_, firsts_)
+      .launch(cl::NDRange(blocks), kSegments);
+}
+
+void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
+  require_fit(light, {options_.grid, basis_.size(), 3}, options_.format, "injection of light");
+  inject(Kind::light, rsm, grid, 1, light);
+}
+
+void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride) {
+  if (stride < 1) throw Error(ExitCode::usage, "inject: stride {} is not at least 1", stride);
+  require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1}, options_.format,
+              "injection of blockers");
+  inject(Kind::geometry, surface, grid, stride, geometry);
+}
+
+}  // namespace clpv

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/raster/rasterize.hpp"
+
+#include <algorithm>
+
+#include "kernels/shared/raster.h"
+#include "kernels/shared/region.h"
+#include "pipeline/raster/surface.hpp"
+#include "pipeline/raster/view.hpp"
+
+namespace clpv {
+namespace {
+
+static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
+
+constexpr std::size_t kRasterGroup = 64;
+constexpr std::size_t kItemsARun = CLPV_CLUSTER / 8;  // a work-item sets up eight triangles
+constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
+constexpr std::size_t kSpare = 4;        // lists grow by an extra 1/4, since cameras move
+constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
+const ProgramSource kSetUp{"raster/rasterize.cl", {}, {}}, kBin{"raster/bin_tiles.cl", {}, {}},
+    kDraw{"raster/draw_tiles.cl", {}, {}};
+
+unsigned tile_count(const ClpvView& view) {
+  return tiles_along(view.width) * tiles_along(view.height);
+}
+unsigned slice_count(const ClpvView& view) {
+  return tile_count(view) * CLPV_SLICES;
+}
+unsigned padded_pixels(const ClpvView& view) {
+  return tile_count(view) * CLPV_TILE * CLPV_TILE;
+}
+
+/// Returns the largest possible flux of a texel of `view` [W]: albedo 1, at the centre, where texels subtend most.
+float largest_flux(const ClpvLight& light, const ClpvView& view) {
+  const double texel =
+      4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
+  const double flux = texel * *std::max_element(light.intensity, light.intensity + 3);
+  return flux > 0 ? static_cast<float>(flux) : 1.0f;
+}
+
+}  // namespace
+
+Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed)
+    : session_(session),
+      scene_(scene),
+      max_listed_(max_listed),
+      set_up_(session, kSetUp, "set_up"),
+      set_up_clipped_(session, kSetUp, "set_up_clipped"),
+      sum_slices_(session, kBin, "sum_slices"),
+      scan_slices_(session, kBin, "scan_slices"),
+      bin_entries_(session, kBin, "bin_entries"),
+      draw_tiles_(session, kDraw, "draw_tiles"),
+      resolve_depth_(session, kDraw, "resolve_depth") {
+  session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
+  session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
+  session_.reserve(clusters_, scene.clusters->bounds().size() * sizeof(cl_uint),
+                   "clusters of triangles in sight");
+  reserve_list(scene.triangle_count / 2 + kRasterGroup);
+  reserve_entries(scene.triangle_count + kRasterGroup);
+}
+
+void Rasterizer::reserve_list(std::size_t count) {
+  if (count <= list_room()) return;
+  session_.reserve(listed_, (count + count / kSpare) * sizeof(ClpvRasterTriangle), "triangles to draw");
+}
+
+cl_uint Rasterizer::list_room() const {
+  return listed_.bytes() / sizeof(ClpvRasterTriangle);
+}
+
+cl_uint Rasterizer::entry_room() const {
+  return entries_.bytes() / kEntryBytes;
+}
+
+void Rasterizer::reserve_entries(std::size_t count) {
+  if (count <= entry_room()) return;
+  count += count / kSpare;
+  session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
+  session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
+}
+
+Kernel& Rasterizer::resolve(const Resolving& wanted) {
+  if (const auto found = resolve_.find(wanted); found != resolve_.end()) return found->second;
+  const ProgramSource source{"raster/resolve.cl",
+                             Literals()
+                                 .flag("CLPV_ORTHOGRAPHIC", wanted.orthographic)
+                                 .flag("CLPV_SURFACE_PAPER", wanted.paper)
+                                 .flag("CLPV_FROM_LIGHT", wanted.from_light)
+                                 .flag("CLPV_TEXTURED", scene_.textured)
+                                 .flag("CLPV_COLOURED", scene_.coloured)
+                                 .flag("CLPV_EMISSIVE", wanted.emissive)
+                                 .flag("CLPV_MEDIUM", wanted.from_light && scene_.medium),
+                             {}};
+  const char* name = wanted.from_light ? "resolve_rsm" : "resolve_camera";
+  return resolve_.try_emplace(wanted, session_, source, name).first->second;
+}
+
+void Rasterizer::find_visible(const Pass& pass) {
+  const std::size_t pixels = padded_pixels(pass.view), slices = slice_count(pass.view);
+  session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
+  session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
+  session_.reserve(slice_counts_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
+  session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
+  draw(pass, 0, list_clusters(pass.view), true);
+}
+
+/// Lists the triangle clusters that may be visible and returns their number.
+unsigned Rasterizer::list_clusters(const ClpvView& view) {
+  const std::vector<cl_uint> visible =
+      scene_.clusters->which([&](const Bounds& cluster) { return may_be_visible(view, cluster); });
+  session_.write(clusters_, visible);
+  return visible.size();
+}
+
+/// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
+void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
+  const cl_uint cull = pass.cull_back_faces ? 1 : 0;
+  session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
+  session_.fill_zero(slice_counts_, slice_count(pass.view) * sizeof(cl_uint));
+  if (count == 0) return;
+  set_up_
+      .set(pass.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
+           scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, slice_counts_, to_clip_)
+      .launch(count * kItemsARun, kRasterGroup);
+  set_up_clipped_
+      .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
+           listed_, entry_room(), entries_, slice_counts_, to_clip_)
+      .launch(kClippers, kRasterGroup);
+}
+
+/// Sorts the entries of set_up() by tile.
+void Rasterizer::bin(const ClpvView& view) {
+  const unsigned slices = slice_count(view);
+  const std::size_t chunks = (slices + CLPV_SLICE_CHUNK - 1) / CLPV_SLICE_CHUNK;
+  sum_slices_.set(slices, slice_counts_, totals_).launch(chunks, kRasterGroup);
+  scan_slices_.set(slices, slice_counts_, totals_).launch(chunks, kRasterGroup);
+  const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
+  bin_entries_.set(counts_, list_room(), entry_room(), entries_, slice_counts_, binned_)
+      .launch(groups * kRasterGroup, kRasterGroup);
+}
+
+/// Lists the triangles of a range of clusters by tile, and grows lists that are too short. Returns false if a list
+/// would exceed its limit.
+bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
+  for (;;) {
+    set_up(pass, first, count);
+    bin(pass.view);
+    const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
+    const std::size_t listed = counts[CLPV_LISTED], entered = counts[CLPV_ENTERED];
+    if (count > 1 && (counts[CLPV_ENTERED_TOO_MANY] > 0 || entered > max_listed_)) return false;
+    if (listed <= list_room() && entered <= entry_room()) return true;
+    reserve_list(listed);
+    reserve_entries(entered);
+  }
+}
+
+/// Draws a range of clusters. `fresh`: starts from an empty surface, else adds to it. Halves the range if the tile
+/// lists would exceed their limit.
+void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
+  if (list(pass, first, count)) return draw_tiles(pass.view, fresh);
+  draw(pass, first, count / 2, fresh);
+  draw(pass, first + count / 2, count - count / 2, false);
+}
+
+void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
+  draw_tiles_
+      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, scene_.vertices, scene_.triangles,
+           scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
+      .launch(cl::NDRange(tiles_along(view.width), tiles_along(view.height)), kTileRow);
+}
+
+void Rasterizer::clear(Surface& surface) {
+  const std::size_t texel = surface.format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
+  const std::size_t count = std::size_t{surface.view.width} * surface.view.height;
+  session_.fill_zero(surface.depth, count * sizeof(cl_float));
+  session_.fill_zero(surface.normal, count * texel);
+  session_.fill_zero(surface.colour, count * texel);
+}
+
+void Rasterizer::rasterize_camera(Surface& surface) {
+  const ClpvView& view = surface.view;
+  const bool has_emissive = surface.emissive.exists();
+  if (has_emissive && !scene_.emissive) {
+    session_.fill_zero(surface.emissive, std::size_t{view.width} * view.height * sizeof(cl_float4));
+  }
+  if (scene_.triangle_count == 0) return clear(surface);
+  find_visible({view, true});
+  const bool emissive = has_emissive && scene_.emissive;
+  Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
+                            .from_light = false,
+                            .paper = surface.format == RsmFormat::paper,
+                            .emissive = emissive});
+  kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
+             scene_.texels, surface.depth, surface.normal, surface.colour);
+  if (emissive) kernel.add(surface.emissive);
+  kernel.launch(rows_of_tiles(view), kTileRow);
+}
+
+void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
+  const ClpvView& view = surface.view;
+  if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
+  if (scene_.triangle_count == 0) return clear(surface);
+  find_visible({view, false});
+  resolve({.orthographic = view.orthographic != 0,
+           .from_light = true,
+           .paper = surface.format == RsmFormat::paper,
+           .emissive = false})
+      .set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
+           scene_.texels, surface.depth, surface.normal, surface.colour, surface.colour_scale)
+      .launch(rows_of_tiles(view), kTileRow);
+}
+
+void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
+  find_visible({view, false});
+  resolve_depth_.set(view, keys_, depth).launch(rows_of_tiles(view), kTileRow);
+}
+
+}  // namespace clpv

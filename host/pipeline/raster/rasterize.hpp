@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Rasterises a scene into reflective shadow maps, the camera's G-buffer and shadow maps.
+//
+// Vertices snap to 1/256 pixel, so edges are exact in integers and follow the top-left rule. Triangles that share an
+// edge therefore neither skip a pixel nor draw one twice. At equal depth the triangle that comes first in the scene
+// wins. Results are deterministic to the byte.
+#pragma once
+
+#include <compare>
+#include <map>
+
+#include "device/kernel.hpp"
+#include "device/session.hpp"
+#include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/raster/surface.hpp"
+
+namespace clpv {
+
+class Rasterizer {
+ public:
+  /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of screen-filling
+  /// layers) are drawn in several passes of at least one triangle cluster each; the result is the same.
+  static constexpr std::size_t kMaxListed = std::size_t{1} << 25;
+
+  /// `scene` must not change while the rasteriser exists. Its handles are copied, not its contents.
+  Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed = kMaxListed);
+
+  /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface has it, emission.
+  /// Culls back faces unless their material is double-sided. Filters textures trilinearly.
+  void rasterize_camera(Surface& surface);
+
+  /// Renders a reflective shadow map of `light` from `surface.view`: depth, normal, colour. Colour is the flux [W] of
+  /// the virtual point light of each texel: albedo x irradiance x footprint (kernels/raster/lighting.h). Both sides of every
+  /// triangle are lit. In format paper it sets Surface::colour_scale to the largest possible flux of a texel.
+  void rasterize_rsm(const ClpvLight& light, Surface& surface);
+
+  /// Renders only depth [m], 0 without a surface, into view.width x view.height floats. Both sides cast shadows.
+  void rasterize_shadow(const ClpvView& view, Buffer& depth);
+
+ private:
+  struct Pass {
+    ClpvView view;
+    bool cull_back_faces;
+  };
+
+  /// Variant of the resolve kernel.
+  struct Resolving {
+    bool orthographic, from_light, paper, emissive;
+    auto operator<=>(const Resolving&) const = default;
+  };
+  Kernel& resolve(const Resolving& wanted);
+
+  void reserve_list(std::size_t count);
+  void reserve_entries(std::size_t count);
+  cl_uint list_room() const;   ///< capacity in triangles
+  cl_uint entry_room() const;  ///< capacity in entries
+  void clear(Surface& surface);
+  void find_visible(const Pass& pass);
+  unsigned list_clusters(const ClpvView& view);
+  void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
+  bool list(const Pass& pass, unsigned first, unsigned count);
+  void set_up(const Pass& pass, unsigned first, unsigned count);
+  void bin(const ClpvView& view);
+  void draw_tiles(const ClpvView& view, bool fresh);
+
+  Session& session_;
+  SceneBuffers scene_;
+  std::size_t max_listed_;
+  Kernel set_up_, set_up_clipped_;
+  std::map<Resolving, Kernel> resolve_;
+  Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;
+  Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_, seen_;
+};
+
+}  // namespace clpv

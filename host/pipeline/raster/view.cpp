@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/raster/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/light_kind.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be this close
+constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
+constexpr double kRelativeMargin = 1e-3;  // the same, relative to the scene's depth
+constexpr double kRounding = 1e-5;        // relative rounding of distances from the eye in kernels
+
+struct Axes {
+  glm::dvec3 right, up, forward;
+};
+
+/// Axes with right x up = -forward; `up` is the direction nearest to `upwards`.
+Axes axes(const glm::dvec3& forward, const glm::dvec3& upwards) {
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, upwards));
+  return {right, glm::cross(right, forward), forward};
+}
+
+/// Axes across a light's direction; `upwards` is the world axis least aligned with it.
+Axes light_axes(const glm::dvec3& direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  glm::dvec3 upwards(0, 0, 1);
+  if (size.y <= size.x && size.y <= size.z) upwards = {0, 1, 0};
+  if (size.x < size.y && size.x < size.z) upwards = {1, 0, 0};
+  return axes(direction, upwards);
+}
+
+void store(float out[3], const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) out[i] = v[i];
+}
+
+ClpvView make_view(const Axes& axes, const glm::dvec3& eye, int width, int height) {
+  ClpvView view{};
+  store(view.eye, eye);
+  store(view.right, axes.right);
+  store(view.up, axes.up);
+  store(view.forward, axes.forward);
+  view.width = width;
+  view.height = height;
+  return view;
+}
+
+/// Returns the range of depths of a box along `forward`.
+glm::dvec2 span_along(const Bounds& bounds, const glm::dvec3& axis) {
+  const glm::dvec3 centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper));
+  const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
+  const double middle = glm::dot(centre, axis), reach = glm::dot(half, glm::abs(axis));
+  return {middle - reach, middle + reach};
+}
+
+/// Returns an orthographic view centred at (x, y) of the plane across the light, with the depths of `bounds`.
+ClpvView orthographic_view(const Axes& axes, double x, double y, double half_width, double half_height,
+                           const Bounds& bounds, int size) {
+  const glm::dvec2 depths = span_along(bounds, axes.forward);
+  const double margin = kSmallestMargin + kRelativeMargin * (depths.y - depths.x);
+  ClpvView view =
+      make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward, size, size);
+  view.orthographic = 1;
+  view.half_width = half_width;
+  view.half_height = half_height;
+  view.near_depth = 0.5 * margin;
+  view.far_depth = depths.y - depths.x + 2 * margin;
+  return view;
+}
+
+ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double tangent, int size,
+                                const Bounds& bounds) {
+  const glm::dvec3 eye = vector(light.position);
+  const glm::dvec3 reach =
+      glm::max(glm::abs(glm::dvec3(bounds.lower) - eye), glm::abs(glm::dvec3(bounds.upper) - eye));
+  double farthest = glm::length(reach);
+  if (light.range > 0) farthest = std::min(farthest, static_cast<double>(light.range));
+  ClpvView view = make_view(axes, eye, size, size);
+  view.half_width = view.half_height = tangent;
+  view.near_depth = kLightNear;
+  view.far_depth = std::max(farthest * (1 + kRelativeMargin), 2 * kLightNear);
+  return view;
+}
+
+/// Outer half-angle [rad] of a spot light: where cos(angle) * cone_scale + cone_offset is 0.
+double outer_angle(const ClpvLight& light) {
+  if (light.cone_scale <= 0) return 3.14159265358979;  // no cone: lit in all directions
+  return std::acos(std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
+}
+
+bool too_wide_for_one_view(const ClpvLight& spot) {
+  return outer_angle(spot) > kWidestSpotView * (1 + 1e-4);
+}
+
+ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, int size) {
+  const Axes frame = light_axes(glm::normalize(vector(light.direction)));
+  const glm::dvec2 across = span_along(bounds, frame.right), along = span_along(bounds, frame.up);
+  const double spare = 1 + 2.0 / size;  // one texel around the scene, for filters that read neighbours
+  return orthographic_view(frame, 0.5 * (across.x + across.y), 0.5 * (along.x + along.y),
+                           std::max(0.5 * spare * (across.y - across.x), kSmallestMargin),
+                           std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size);
+}
+
+}  // namespace
+
+ClpvView camera_view(const SceneCamera& camera, int width, int height) {
+  ClpvView view = make_view(axes(glm::normalize(glm::dvec3(camera.forward)), glm::dvec3(camera.up)),
+                            glm::dvec3(camera.eye), width, height);
+  const double tangent = std::tan(0.5 * camera.vertical_fov);
+  view.half_height = tangent;
+  view.half_width = tangent * width / height;
+  view.near_depth = camera.near_depth;
+  view.far_depth = std::numeric_limits<float>::max();
+  return view;
+}
+
+ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
+                              int size) {
+  if (size < 2)
+    throw Error(ExitCode::usage, "an RSM of {} texels along each side; allowed: 2 and more", size);
+  const Axes frame = light_axes(glm::normalize(vector(light.direction)));
+  const double half = 0.5 * (static_cast<double>(cascade.n) + 1) * cascade.cell;
+  const glm::dvec3 centre = vector(cascade.origin) + 0.5 * static_cast<double>(cascade.n) * cascade.cell;
+  double middle[2], half_extent[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
+    const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube along this axis
+    const double texel = 2 * reach / (size - 1);  // one spare texel: snapping moves the window by up to one
+    const double first = std::floor((glm::dot(centre, along) - reach) / texel);
+    middle[axis] = (first + 0.5 * size) * texel;
+    half_extent[axis] = 0.5 * size * texel;
+  }
+  return orthographic_view(frame, middle[0], middle[1], half_extent[0], half_extent[1], bounds, size);
+}
+
+ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
+  if (too_wide_for_one_view(light)) {
+    throw Error(ExitCode::run_time,
+                "a spot light with an outer half-angle of {:.4f} rad in one view; allowed: {:.4f}",
+                outer_angle(light), kWidestSpotView);
+  }
+  const double tangent = std::max(std::tan(outer_angle(light)), 1e-3);
+  return perspective_light_view(light_axes(glm::normalize(vector(light.direction))), light, tangent, size,
+                                bounds);
+}
+
+std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds& bounds) {
+  std::vector<ClpvView> views;
+  for (int side = 0; side < 6; ++side) {
+    glm::dvec3 forward(0);
+    forward[side / 2] = side % 2 == 0 ? 1 : -1;
+    views.push_back(perspective_light_view(light_axes(forward), light, 1, size, bounds));
+  }
+  return views;
+}
+
+bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
+  const glm::dvec3 lower(bounds.lower), upper(bounds.upper), half = 0.5 * (upper - lower);
+  const glm::dvec3 centre = 0.5 * (lower + upper) - vector(view.eye);
+  const double margin = kRounding * (glm::length(centre) + glm::length(half));
+  // Tests if part of the box is inside a border: along . p + offset >= 0, with p relative to the eye.
+  const auto reaches = [&](const glm::dvec3& along, double offset) {
+    return glm::dot(along, centre) + glm::dot(glm::abs(along), half) + offset >= -margin * glm::length(along);
+  };
+  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
+  const bool parallel = view.orthographic != 0;
+  const double width = view.half_width, height = view.half_height;
+  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
+                   higher = parallel ? glm::dvec3(0) : height * forward;
+  const double beside = parallel ? width : 0, above = parallel ? height : 0;
+  return reaches(wider + right, beside) && reaches(wider - right, beside) && reaches(higher + up, above) &&
+         reaches(higher - up, above) && reaches(-forward, view.far_depth) &&
+         (parallel || reaches(forward, -double{view.near_depth}));
+}
+
+bool rsm_follows_cascade(const ClpvLight& light) {
+  return kind_of(light) == LightKind::directional;
+}
+
+std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
+                                int size) {
+  if (rsm_follows_cascade(light)) return {directional_rsm_view(light, cascade, bounds, size)};
+  return shadow_views(light, bounds, size);
+}
+
+std::vector<ClpvView> shadow_views(const ClpvLight& light, const Bounds& bounds, int size) {
+  switch (kind_of(light)) {
+    case LightKind::directional:
+      return {directional_shadow_view(light, bounds, size)};
+    case LightKind::spot:
+      if (!too_wide_for_one_view(light)) return {spot_view(light, size, bounds)};
+      break;
+    case LightKind::point:
+      break;
+  }
+  return point_views(light, size, bounds);
+}
+
+}  // namespace clpv

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Propagation: moves injected light through the cells of a cascade in n steps (docs/method.md, 'Propagation'; Kaplanyan
+// & Dachsbacher 2010).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "codegen/transport_source.hpp"
+#include "device/session.hpp"
+#include "options/stage_options.hpp"
+#include "pipeline/steps/run_time_lobes.hpp"
+#include "pipeline/steps/stencil.hpp"
+#include "pipeline/steps/transmittance.hpp"
+#include "volume/accumulator.hpp"
+#include "volume/volume.hpp"
+
+namespace clpv {
+
+/// Volumes that a propagation reads and writes. The caller owns them. All have `grid` cells along each axis, and the
+/// geometry volume grid + 1 samples.
+struct PropagateVolumes {
+  const Volume& injected;            ///< [W/sr], step 0
+  const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
+  Volume& accumulated;               ///< output: injected field plus the output of every step [W/sr]
+};
+
+/// Runs the propagation steps of one basis and transport, for volumes of one grid size.
+class Propagator {
+ public:
+  Propagator(Session& session, const Basis& basis, const Transport& transport,
+             const PropagateOptions& options);
+
+  /// Called after each step with its number, from 1, and the propagated light: N coefficients per cell, or six fluxes.
+  using Observer = std::function<void(int step, const Volume& travelling)>;
+
+  /// The first step does not block light, since light starts on the surfaces that it was injected at.
+  void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
+
+  /// Kernel of the later steps.
+  const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
+  /// Returns true if a step reads the transmittance of links. The first step may read it without using it.
+  bool reads_transmittance(int step) { return step > 1 || (transmitter_ && form(false, true).first_too); }
+  /// Transmittance; null until something has blocked.
+  const LinkTransmittance* transmitter() const { return transmitter_.get(); }
+
+ private:
+  struct Form {
+    TransportSource source;
+    bool blocking;
+    int channels;    ///< channels per work-item of `step`
+    bool first_too;  ///< `step` also runs the first step, with blocking off
+    Kernel step, expand;
+  };
+  Form make_form(bool first, bool blocking);
+  Form& form(bool first, bool blocking);
+  void transmit(const Volume& geometry);
+  void run_step(Form& form, bool first, const Volume& source, const Volume& target, const Volume& sum_so_far,
+                const Volume& sum);
+
+  Session& session_;
+  const Basis& basis_;
+  const Transport& transport_;
+  PropagateOptions options_;
+  Stencil stencil_;
+  std::optional<RunTimeLobes> lobes_;      ///< none: lobes are constants
+  std::optional<Form> forms_[2][2];        ///< [first step][blocking]
+  std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
+  std::unique_ptr<LinkTransmittance> transmitter_;
+  std::unique_ptr<Volume>
+      sum_;  ///< sum of the six fluxes, source of the light; none if coefficients propagate
+  Accumulator accumulator_;
+};
+
+}  // namespace clpv

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Transmittance of a cascade's links, computed from its geometry volume.
+#pragma once
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "codegen/transmittance_source.hpp"
+#include "device/session.hpp"
+#include "pipeline/steps/stencil.hpp"
+#include "volume/volume.hpp"
+
+namespace clpv {
+
+/// Evaluates 1 - B of every link once. Propagation steps then read numbers and evaluate no basis, so their time does
+/// not depend on the blockers.
+class LinkTransmittance {
+ public:
+  LinkTransmittance(Session& session, const Basis& basis, const Transport& transport,
+                    const StencilOptions& options);
+
+  void transmit(const Volume& geometry);  ///< (grid + 1)^3 corners, one channel
+
+  /// grid^3 cells, one number in [0, 1] per link, one channel.
+  const Volume& transmittance() const { return transmittance_; }
+  const OperationCount& operations() const { return operations_; }
+
+ private:
+  LinkTransmittance(Session& session, const TransmittanceSource& source, const StencilOptions& options);
+
+  Stencil stencil_;
+  OperationCount operations_;
+  Kernel kernel_;
+  Volume transmittance_;
+};
+
+}  // namespace clpv

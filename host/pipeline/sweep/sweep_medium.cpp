@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/sweep/sweep_medium.hpp"
+
+#include <algorithm>
+
+#include "basis/sweep.hpp"
+#include "codegen/sweep_source.hpp"
+#include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/sweep/sweep_tables.hpp"
+
+namespace clpv {
+namespace {
+
+constexpr std::size_t kSourceVolumes = 3 * kSweepBins;
+
+ProgramSource scattering_program(const SweepVolumes& volumes, const ClpvMedium& medium) {
+  ProgramSource source = volumes.program("sweep/sweep_medium.cl", scatter_source_text(double{medium.anisotropy}));
+  source.literals.flag("CLPV_MEDIUM", true);
+  return source;
+}
+
+std::vector<cl_float4> mean_directions() {
+  std::vector<cl_float4> directions;
+  for (const SweepBin& bin : sweep_bins(1)) {
+    const glm::vec3 w(bin.directions.front().w);
+    directions.push_back({{w.x, w.y, w.z, 0}});
+  }
+  return directions;
+}
+
+}  // namespace
+
+SweepMedium::SweepMedium(Session& session, const SweepVolumes& volumes, const ClpvMedium& medium, int grid,
+                         std::size_t cascades)
+    : session_(session),
+      volumes_(volumes),
+      medium_(medium),
+      scatter_lights_(session, scattering_program(volumes, medium), "scatter_lights"),
+      scatter_swept_(session, scattering_program(volumes, medium), "scatter_swept"),
+      bins_(session.upload(mean_directions(), "mean directions of bins")),
+      of_lights_(volumes.make(kSourceVolumes, "light of lights that the medium scatters")) {
+  const std::size_t numbers = 3 * CLPV_SWEEP_PITCH_OF(std::size_t(grid)) + CLPV_SWEEP_FIRST;
+  for (std::size_t c = 0; c < cascades; ++c)
+    inside_.push_back(zeroed_buffer(session, numbers * sizeof(float), "cells in the medium"));
+}
+
+bool SweepMedium::scatters() const {
+  return std::ranges::any_of(medium_.scattering, [](float sigma) { return sigma > 0; });
+}
+
+void SweepMedium::place(std::size_t cascade, const ClpvGrid& grid) {
+  session_.write(inside_[cascade], cells_in_medium(medium_, grid));
+}
+
+void SweepMedium::scatter_lights(const ClpvGrid& grid, const std::vector<ShadowedLight>& lights,
+                                 float scale) {
+  if (!scatters()) return;
+  session_.fill_zero(of_lights_, of_lights_.bytes());
+  for (const ShadowedLight& shadowed : lights) {
+    const cl_uint count = shadowed.views.size();
+    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView),
+                     "views of a light in the medium");
+    session_.write(views_, shadowed.views);
+    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
+      scatter_lights_.set(grid, scaled(shadowed.light, scale), views_, count, which,
+                          count > 0 ? shadowed.depths[which] : Buffer(), bins_, of_lights_);
+      volumes_.launch(scatter_lights_, 1);
+    }
+  }
+}
+
+void SweepMedium::scatter_swept(const Buffer& swept) {
+  if (!of_swept_.exists()) of_swept_ = volumes_.make(kSourceVolumes, "light that the medium scatters");
+  scatter_swept_.set(medium_, of_lights_, swept, of_swept_);
+  volumes_.launch(scatter_swept_, 3);
+}
+
+void SweepMedium::add_to(Kernel& sweep, std::size_t cascade, bool swept) const {
+  sweep.add(inside_[cascade], swept ? of_swept_ : of_lights_);
+}
+
+}  // namespace clpv

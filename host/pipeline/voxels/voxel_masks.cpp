@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/voxels/voxel_masks.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace clpv {
+namespace {
+
+// Reach of triangles beyond a box of cells [cells]. Lit points, corner cells and cubes between centres are offset by
+// half a cell; the rest is a margin for rounding.
+constexpr double kReach = 0.51;
+// Bases are this many grids apart; the base is constant while a cascade moves within that distance.
+constexpr int kGridsApart = 4;
+
+/// Returns the position of a grid. Its first cell is at least two grids from the base along each axis, so that cell
+/// indices nearby are not negative.
+ClpvRegion place_of(const ClpvGrid& grid) {
+  ClpvRegion place{};
+  place.cell = grid.cell;
+  const double n = grid.n, apart = kGridsApart * n, cell = grid.cell;
+  for (int a = 0; a < 3; ++a) {
+    const double first = std::round(grid.origin[a] / cell);
+    const double base = apart * std::floor((first - 2 * n) / apart);
+    place.base[a] = base * cell;
+    place.first[a] = first - base;
+  }
+  return place;
+}
+
+bool same_base(const ClpvRegion& a, const ClpvRegion& b) {
+  return a.cell == b.cell && std::equal(a.base, a.base + 3, b.base);
+}
+
+/// Returns the bounds of `box` extended by the reach of triangles [m].
+Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
+  Bounds reach;
+  for (int a = 0; a < 3; ++a) {
+    const double low = region.first[a] + box.low[a] - kReach,
+                 high = region.first[a] + box.high[a] + 1 + kReach;
+    reach.lower[a] = region.base[a] + region.cell * low;
+    reach.upper[a] = region.base[a] + region.cell * high;
+  }
+  return reach;
+}
+
+/// Returns the part of a box within cells [0, valid) along each axis; none if they do not intersect.
+std::optional<ClpvBox> within(ClpvBox box, int valid) {
+  for (int a = 0; a < 3; ++a) {
+    box.low[a] = std::max(box.low[a], 0);
+    box.high[a] = std::min(box.high[a], valid - 1);
+    if (box.low[a] > box.high[a]) return std::nullopt;
+  }
+  return box;
+}
+
+const ProgramSource kMasks{"voxels/voxel_masks.cl", {}, {}};
+
+bool meet(const Bounds& a, const Bounds& b) {
+  return glm::all(glm::lessThanEqual(a.lower, b.upper)) && glm::all(glm::lessThanEqual(b.lower, a.upper));
+}
+
+}  // namespace
+
+std::size_t VoxelMaskShape::words_a_cascade() const {
+  const std::size_t along = cells;
+  return along * along * along * words;
+}
+
+VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape,
+                       unsigned max_triangles, const std::string& what)
+    : session_(session),
+      scene_(scene),
+      shape_(shape),
+      max_triangles_(max_triangles),
+      states_(shape.cascades),
+      masks_(session.buffer(shape.bytes(), what)),
+      clusters_(session.buffer(std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
+                               what + ": clusters")),
+      move_(session, kMasks, "move_masks"),
+      clear_(session, kMasks, "clear_masks") {
+  if (shape.valid == 0) session_.fill_zero(masks_, shape.bytes());  // no other code writes them
+  if (shape.cascades > 1)
+    spare_ = session.buffer(shape.words_a_cascade() * sizeof(cl_uint), what + ": moved");
+}
+
+cl_uint VoxelMasks::slot(std::size_t cascade) const {
+  return std::min(cascade, states_.size() - 1);
+}
+
+/// Clears the stale masks and returns their region; none if all masks are current.
+std::optional<ClpvRegion> VoxelMasks::prepare(std::size_t cascade, const ClpvGrid& grid) {
+  std::optional<State>& state = states_[slot(cascade)];
+  const ClpvRegion place = place_of(grid);
+  const ClpvRegion region = state ? stale_cells(*state, place) : whole(place);
+  state.reset();  // in case the code below throws
+  if (region.boxes > 0) {
+    clear(cascade, region);
+    list_clusters(region);
+  }
+  state = State{place, scene_.clusters->instant()};
+  return region.boxes > 0 ? std::optional(region) : std::nullopt;
+}
+
+ClpvRegion VoxelMasks::whole(ClpvRegion place) const {
+  const int last = shape_.cells - 1;
+  add_box(place, {{0, 0, 0}, {last, last, last}});
+  return place;
+}
+
+/// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if a grid moved
+/// and only one cascade is stored, or if more than one time step passed.
+ClpvRegion VoxelMasks::stale_cells(const State& state, ClpvRegion place) const {
+  if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
+  for (int a = 0; a < 3; ++a) {
+    place.moved[a] = place.first[a] - state.place.first[a];
+    const bool movable = spare_.exists() && std::abs(place.moved[a]) < shape_.valid;
+    if (place.moved[a] != 0 && !movable) return whole(place);
+  }
+  add_new_cells(place);
+  if (scene_.clusters->instant() != state.instant) add_moved(place);
+  return place;
+}
+
+void VoxelMasks::add_new_cells(ClpvRegion& region) const {
+  const int last = shape_.valid - 1;
+  for (int a = 0; a < 3; ++a) {
+    const int moved = region.moved[a];
+    ClpvBox slab{{0, 0, 0}, {last, last, last}};
+    (moved > 0 ? slab.low : slab.high)[a] = moved > 0 ? last + 1 - moved : -moved - 1;
+    if (moved != 0) add_box(region, slab);
+  }
+}
+
+void VoxelMasks::add_moved(ClpvRegion& region) const {
+  for (const Bounds& moved : scene_.clusters->moved()) {
+    ClpvBox box;
+    const double most = 2.0 * shape_.cells;
+    for (int a = 0; a < 3; ++a) {
+      const auto cell = [&](float at, double reach) -> int {
+        const double from_first = (double{at} - region.base[a]) / region.cell - region.first[a];
+        return std::clamp(std::floor(from_first + reach), -most, most);
+      };
+      box.low[a] = cell(moved.lower[a], -kReach);
+      box.high[a] = cell(moved.upper[a], kReach);
+    }
+    add_box(region, box);
+  }
+}
+
+/// Adds a box to a region; if there are too many boxes, merges all into one.
+void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
+  const std::optional<ClpvBox> inside = within(box, shape_.valid);
+  if (!inside) return;
+  ClpvBox& all = region.all;
+  if (region.boxes == 0) all = *inside;
+  for (int a = 0; a < 3; ++a) {
+    all.low[a] = std::min(all.low[a], inside->low[a]);
+    all.high[a] = std::max(all.high[a], inside->high[a]);
+  }
+  if (region.boxes < CLPV_REGION_BOXES) {
+    region.box[region.boxes++] = *inside;
+  } else {
+    region.box[0] = all, region.boxes = 1;
+  }
+}
+
+/// Moves the masks that stay valid, and clears those to recompute.
+void VoxelMasks::clear(std::size_t cascade, const ClpvRegion& region) {
+  const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
+  const std::size_t along = shape_.cells;
+  const auto words = static_cast<cl_int>(shape_.words);
+  const cl::NDRange cells(along, along, along), group(kMaskGroup, 1, 1);
+  if (is_whole(region)) return session_.fill_zero(masks_, bytes, from);
+  if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
+    move_.set(region, shape_.cells, shape_.valid, words, masks_, slot(cascade), spare_).launch(cells, group);
+    session_.copy(spare_, masks_, bytes, from);
+  }
+  clear_.set(region, shape_.cells, words, masks_, slot(cascade)).launch(cells, group);
+}
+
+bool VoxelMasks::is_whole(const ClpvRegion& region) const {
+  return region.boxes == 1 &&
+         std::all_of(region.all.low, region.all.low + 3, [](int low) { return low == 0; }) &&
+         std::all_of(region.all.high, region.all.high + 3,
+                     [&](int high) { return high == shape_.valid - 1; });
+}
+
+/// Lists the clusters of triangles in or near the region.
+void VoxelMasks::list_clusters(const ClpvRegion& region) {
+  std::vector<Bounds> reaches;
+  for (unsigned b = 0; b < region.boxes; ++b) reaches.push_back(reach_of(region, region.box[b]));
+  const std::vector<cl_uint> near = scene_.clusters->which([&](const Bounds& cluster) {
+    return std::any_of(reaches.begin(), reaches.end(),
+                       [&](const Bounds& reach) { return meet(cluster, reach); });
+  });
+  near_ = near.size();
+  session_.write(clusters_, near);
+}
+
+}  // namespace clpv

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Weights of cascades at eight points, and the points in their cells (docs/method.md, 'Gathering').
+//
+// A cascade has the weight min(1, d / CLPV_BLEND), d the distance [cells] of p from the boundary of the cube about the
+// eye; a coarser cascade gets the weight that finer ones leave. Light is therefore continuous, also when a grid moves by
+// a cell, and 0 outside all cascades.
+//
+// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET.
+#ifndef CLPV_CASCADES_H
+#define CLPV_CASCADES_H
+
+#include "volume/coefficients.h"
+#include "lanes.h"
+#include "shared/grid.h"
+#include "vec.h"
+
+#ifndef CLPV_VISIBLE
+#define CLPV_VISIBLE 0  // 1: occluded cells do not light a surface (visibility.cl)
+#endif
+
+// Clamps to [0, maximum]; NaN becomes 0.
+CLPV_INLINE float8 clpv_clamp(const float8 v, const float maximum) {
+  const float8 zero = (float8)(0.0f), upper = (float8)(maximum);
+  return v > zero ? (v < upper ? v : upper) : zero;
+}
+
+#if CLPV_PACKED
+#include "gather/gather_packed.h"
+#else
+#include "gather/gather_image.h"
+#endif
+
+// Share of a cascade in the weight that finer ones leave, in [0, 1].
+CLPV_INLINE float8 clpv_cascade_share(const ClpvGrid grid, const Vec position) {
+  const Vec from_eye = vec_minus(position, vec_of(grid.middle));
+  const float8 x = fabs(from_eye.x), y = fabs(from_eye.y), z = fabs(from_eye.z), xy = x > y ? x : y;
+  const float8 farthest = xy > z ? xy : z;
+  const float8 inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * (1.0f / grid.cell);
+  return clpv_clamp(inside * CLPV_INVERSE_BLEND, 1.0f);
+}
+
+// The points position + offset * s * lift [m] in a cascade, s its cell.
+CLPV_INLINE void clpv_cascade_points(const ClpvGrid grid, const Vec position, const float8 offset, const Vec lift,
+                                     SamplePoints* points) {
+  const Vec at = vec_times(vec_minus(position, vec_of(grid.origin)), (float8)(1.0f / grid.cell));
+  const Vec lifted = vec_add_scaled(at, offset, lift);
+  clpv_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), points);
+}
+
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Computes the radiance of swept light at points, one direction for each (radiance.h has the formula).
+//
+// In:   view                 only its size: the points fill an image
+//       places               positions [m]
+//       directions           unit vectors along which light travels
+//       CLPV_RADIANCE        grids and packed volumes
+// Out:  radiances            L [W/m^2/sr] for each channel, and 0; may be negative
+// A work-item processes eight points of a row.
+#include "gather/radiance.h"
+#include "raster/surface_row.h"
+
+__kernel void radiance(const ClpvView view, __global const float4* places, __global const float4* directions,
+                       __global float4* radiances, CLPV_RADIANCE) {
+  const PixelRow p = this_row(view);
+  if (p.count == 0) return;
+  Surfaces s;
+  points(view, p, places, directions, &s);
+  RadianceField field;
+  clpv_radiance_field(CLPV_PASS_RADIANCE, s.position, (float8)(0.0f), s.normal, (int8)(-1), &field);
+  const VecLanes w = unpack((int8)(-1), s.normal);
+  for (uint i = 0; i < p.count; ++i)
+    radiances[s.first + i] = clpv_radiance(&field.at[i], w.x[i], w.y[i], w.z[i]);
+}

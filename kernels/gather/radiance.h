@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Radiance from the packed volumes of swept light.
+//
+//   L(p, w) = sum_i Y_i(w) C_i(p)      [W/m^2/sr], light that travels along w
+//   C(p)    = sum over cascades of share c(p) / s^2, c interpolated trilinearly, cells that p cannot see left out
+//   E(p, n) = max(0, alpha(-n) . C(p))   [W/m^2]
+//
+// L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The sweep', 'Gathering'.
+#ifndef CLPV_RADIANCE_H
+#define CLPV_RADIANCE_H
+
+#include "gather/cascades.h"
+
+// Parameters: grids and packed volumes of all cascades, and the unit [W/sr] of a stored 1.
+#define CLPV_RADIANCE \
+  __global const ClpvGrid *grids, const uint cascades, const float unit CLPV_GATHERED_VOLUMES
+#if CLPV_VISIBLE
+#define CLPV_PASS_RADIANCE grids, cascades, unit, packed, occluded
+#else
+#define CLPV_PASS_RADIANCE grids, cascades, unit, packed
+#endif
+
+// C at eight points.
+typedef struct {
+  Sampled at[CLPV_ABREAST];
+} RadianceField;
+
+CLPV_INLINE void clpv_add_field(const PackedCascade cascade, const SamplePoints* points, const float8 weight,
+                                RadianceField* field) {
+  float weights[CLPV_ABREAST];
+  vstore8(weight, 0, weights);
+  for (int i = 0; i < CLPV_ABREAST; ++i) {
+    if (!(weights[i] > 0.0f)) continue;
+    Sampled sampled;
+    const float scale = weights[i] * clpv_sample(cascade, points, i, &sampled);
+#define CLPV_DO(j, even, odd) field->at[i].p##j += scale * sampled.p##j;
+    CLPV_EACH_PAIR(CLPV_DO)
+#undef CLPV_DO
+  }
+}
+
+// C at the points position + offset * s * lift of each cascade, s its cell; cascades have their shares at `position`. 0
+// outside the mask `wanted`.
+CLPV_INLINE void clpv_radiance_field(CLPV_RADIANCE, const Vec position, const float8 offset, const Vec lift,
+                                     const int8 wanted, RadianceField* field) {
+  float8 remaining = wanted ? (float8)(unit) : (float8)(0.0f);
+  for (int i = 0; i < CLPV_ABREAST; ++i) {
+#define CLPV_DO(j, even, odd) field->at[i].p##j = 0.0f;
+    CLPV_EACH_PAIR(CLPV_DO)
+#undef CLPV_DO
+  }
+  for (uint c = 0; c < cascades; ++c) {
+    const ClpvGrid grid = grids[c];
+    const float8 share = clpv_cascade_share(grid, position);
+    const float8 weight = share * remaining * (1.0f / (grid.cell * grid.cell));
+    remaining *= 1.0f - share;
+    if (none(weight > (float8)(0.0f))) continue;
+    SamplePoints points;
+    clpv_cascade_points(grid, position, offset, lift, &points);
+    const PackedCascade cascade = CLPV_PACKED_CASCADE(c);
+    clpv_add_field(cascade, &points, weight, field);
+  }
+}
+
+// L(p, w) for each channel, and 0; (x, y, z) = w.
+CLPV_INLINE float4 clpv_radiance(const Sampled* field, const float x, const float y, const float z) {
+  return clpv_weigh(clpv_basis(x, y, z), *field);
+}
+
+// E(p, n) for each channel, and 0; (x, y, z) = n.
+CLPV_INLINE float4 clpv_field_irradiance(const Sampled* field, const float x, const float y, const float z) {
+  return max(clpv_weigh(clpv_cosine_integrals(-x, -y, -z), *field), 0.0f);
+}
+
+#endif

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Places virtual point lights on emissive surfaces (docs/method.md, 'Emissive surfaces').
+//
+//   P = pi L A,   L the mean emitted radiance and A the area of a sub-triangle
+//
+// An emitter is cut into congruent sub-triangles (shared/emit.h), with a point at the centroid of each.
+//
+// In:   emitters   `count` ClpvEmitter, `points` points in all
+//       scale      number that volumes store for 1 W/sr
+//       white      texture of materials without one
+//       vertices, triangles, materials, textures, texels   the scene
+// Out:  positions  [m]; normals: unit, on the emitting side; fluxes: P [W] times scale. `capacity` of each, for
+//                  injection (find_cells.cl); those after the last point are empty.
+// A work-item places a point. From the host: CLPV_TEXTURED, CLPV_MASKED.
+#include "lanes.h"
+#include "shared/emit.h"
+#include "raster/texture.h"
+#include "vec.h"
+
+#define CLPV_EIGHT ((float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f))
+
+// Index of the emitter of a point: the last one whose first point is at or before it.
+static inline uint clpv_emitter_of(__global const ClpvEmitter* emitters, const uint count, const uint point) {
+  uint low = 0, high = count - 1;
+  while (low < high) {
+    const uint middle = high - (high - low) / 2;
+    if (emitters[middle].first <= point) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+// Sub-triangle: its first corner and the length of its edges, in weights of the second and third corner of the
+// triangle. Row r has 2 r + 1 of them; every second one is inverted and has negative edges.
+typedef struct {
+  float u, v, size;
+} SubTriangle;
+
+static inline SubTriangle clpv_sub_triangle(const ClpvEmitter emitter, const uint i) {
+  uint row = (uint)sqrt((float)i);
+  row -= row * row > i ? 1u : 0u;
+  row += (row + 1u) * (row + 1u) <= i ? 1u : 0u;
+  const uint along = i - row * row, column = along / 2, inverted = along % 2;
+  const float step = emitter.size / (float)emitter.rows;
+  const SubTriangle sub = {emitter.u + step * (float)(row - column), emitter.v + step * (float)(column + inverted),
+                           inverted != 0 ? -step : step};
+  return sub;
+}
+
+static inline float clpv_total(const float8 a) {
+  const float4 four = a.lo + a.hi;
+  return (four.x + four.y) + (four.z + four.w);
+}
+
+#if CLPV_TEXTURED || CLPV_MASKED
+
+#define CLPV_BLEND(w1, w2, corner, field) \
+  ((1.0f - (w1) - (w2)) * (corner)[0]->field + (w1) * (corner)[1]->field + (w2) * (corner)[2]->field)
+
+// Mean emission of a material over a sub-triangle, relative to its emissive factor: from CLPV_EMIT_SAMPLES^2 samples of
+// its texture and, if masked, its alpha.
+CLPV_INLINE void clpv_mean_emission(const SubTriangle sub, __global const ClpvVertex* const corner[3],
+                           __global const ClpvMaterial* material, const uint white, __global const float4* textures,
+                           __global const uint* texels, float mean[3]) {
+  mean[0] = mean[1] = mean[2] = 1.0f;
+#if CLPV_MASKED
+  const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
+#else
+  const bool masked = false;
+#endif
+  if (material->emissive_texture == white && !masked) return;
+  const float step = sub.size * (1.0f / CLPV_EMIT_SAMPLES), reach = CLPV_EMIT_FOOTPRINT * step;
+  const float u1 = corner[1]->uv[0] - corner[0]->uv[0], v1 = corner[1]->uv[1] - corner[0]->uv[1];
+  const float u2 = corner[2]->uv[0] - corner[0]->uv[0], v2 = corner[2]->uv[1] - corner[0]->uv[1];
+  const Uv to_second = {(float8)(reach * u1), (float8)(reach * v1)};
+  const Uv to_third = {(float8)(reach * u2), (float8)(reach * v2)};
+  float8 red = 0.0f, green = 0.0f, blue = 0.0f;
+  for (int i = 0; i < CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES; i += 8) {
+    const float8 at = (float)i + CLPV_EIGHT;
+    const float8 row = convert_float8(convert_int8(sqrt(at + 0.5f)));
+    const float8 along = at - row * row;
+    const float8 column = convert_float8(convert_int8(0.5f * along)), inverted = along - 2.0f * column;
+    const float8 middle = (1.0f / 3.0f) * (1.0f - 2.0f * inverted);
+    const float8 w1 = sub.u + step * (row - column + middle), w2 = sub.v + step * (column + inverted + middle);
+    const Uv uv = {CLPV_BLEND(w1, w2, corner, uv[0]), CLPV_BLEND(w1, w2, corner, uv[1])};
+    Vec sample = vec((float8)(1.0f), (float8)(1.0f), (float8)(1.0f));
+    if (material->emissive_texture != white)
+      clpv_trilinear(textures, texels, (uint8)(material->emissive_texture), uv, to_second, to_third, &sample);
+#if CLPV_MASKED
+    if (masked) {
+      const float8 alpha =
+          material->base_colour[3] * CLPV_BLEND(w1, w2, corner, colour[3]) *
+          clpv_bilinear_alpha(textures, texels, (uint8)(material->texture * CLPV_TEXTURE_LEVELS), uv);
+      const float8 none = (float8)(0.0f), all = (float8)(1.0f);
+      sample = vec_times(sample, alpha >= (float8)(material->alpha_cutoff) ? all : none);
+    }
+#endif
+    red += sample.x, green += sample.y, blue += sample.z;
+  }
+  const float each = 1.0f / (CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES);
+  mean[0] = each * clpv_total(red), mean[1] = each * clpv_total(green), mean[2] = each * clpv_total(blue);
+}
+
+#endif
+
+__kernel void emit(__global const ClpvEmitter* emitters, const uint count, const uint points, const uint capacity,
+                   const float scale, __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
+                   __global const ClpvMaterial* materials, const uint white, __global const float4* textures,
+                   __global const uint* texels, __global float4* positions, __global float4* normals,
+                   __global float4* fluxes) {
+  const uint i = get_global_id(0);
+  if (i >= capacity) return;
+  positions[i] = normals[i] = fluxes[i] = (float4)(0.0f);
+  if (i >= points) return;
+  const ClpvEmitter emitter = emitters[clpv_emitter_of(emitters, count, i)];
+  const ClpvTriangle triangle = triangles[emitter.triangle];
+  __global const ClpvVertex* const corner[3] = {vertices + triangle.vertex[0], vertices + triangle.vertex[1],
+                                                vertices + triangle.vertex[2]};
+  __global const ClpvMaterial* material = materials + triangle.material;
+  const SubTriangle sub = clpv_sub_triangle(emitter, i - emitter.first);
+  const float w1 = sub.u + sub.size * (1.0f / 3.0f), w2 = sub.v + sub.size * (1.0f / 3.0f);
+  float e1[3], e2[3], at[3];
+  for (int a = 0; a < 3; ++a) {
+    e1[a] = corner[1]->position[a] - corner[0]->position[a];
+    e2[a] = corner[2]->position[a] - corner[0]->position[a];
+    at[a] = corner[0]->position[a] + w1 * e1[a] + w2 * e2[a];
+  }
+  const float x = e1[1] * e2[2] - e1[2] * e2[1], y = e1[2] * e2[0] - e1[0] * e2[2], z = e1[0] * e2[1] - e1[1] * e2[0];
+  const float twice = sqrt(x * x + y * y + z * z);  // twice the triangle's area
+  if (!(twice > 0.0f)) return;
+  float mean[3] = {1.0f, 1.0f, 1.0f};
+#if CLPV_TEXTURED || CLPV_MASKED
+  clpv_mean_emission(sub, corner, material, white, textures, texels, mean);
+#endif
+  const float flux = scale * (M_PI_F * 0.5f) * twice * (sub.size * sub.size), facing = emitter.side / twice;
+  positions[i] = (float4)(at[0], at[1], at[2], 1.0f);
+  normals[i] = (float4)(facing * x, facing * y, facing * z, 0.0f);
+  fluxes[i] = (float4)(flux * mean[0] * material->emissive[0], flux * mean[1] * material->emissive[1],
+                       flux * mean[2] * material->emissive[2], 1.0f);
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Projects points of the scene to the screen, eight at a time (lanes.h).
+//
+// Two triangles that share a corner must project it to the same place, to the bit, in any lane: FP_CONTRACT is off.
+#ifndef CLPV_PROJECT_H
+#define CLPV_PROJECT_H
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#include "lanes.h"
+#include "shared/raster.h"
+#include "raster/triangle.h"
+
+// Points in the coordinates of a view.
+typedef struct {
+  float8 x, y, z;  // along right, up and forward [m]
+  float8 w;        // divisor of x and y: the depth z in perspective, 1 in orthographic views
+} ViewPoint;
+
+static inline ViewPoint view_point(const ClpvView view, const Vec position) {
+  const Vec p = vec_minus(position, vec_of(view.eye));
+  ViewPoint point;
+  point.x = vec_dot(p, vec_of(view.right));
+  point.y = vec_dot(p, vec_of(view.up));
+  point.z = vec_dot(p, vec_of(view.forward));
+  point.w = CLPV_PARALLEL(view) ? (float8)(1.0f) : point.z;
+  return point;
+}
+
+// Extent of the guard band on the screen, in units of clpv_screen().
+static inline float2 clpv_guard(const ClpvView view) {
+  return (float2)(view.half_width / (float)view.width, view.half_height / (float)view.height) *
+         (2.0f * CLPV_GUARD_PIXELS);
+}
+
+// Outcodes of the points: CLPV_LEFT and so on.
+static inline int8 where_is(const ClpvView view, const ViewPoint p) {
+  const float2 guard = clpv_guard(view);
+  const float8 width = view.half_width * p.w, height = view.half_height * p.w;
+  int8 where = ((p.x < -width) & CLPV_LEFT) | ((p.x > width) & CLPV_RIGHT) | ((p.y > height) & CLPV_ABOVE) |
+               ((p.y < -height) & CLPV_BELOW) | ((p.z > view.far_depth) & CLPV_BEYOND);
+  if (!CLPV_PARALLEL(view)) where |= (p.z < view.near_depth) & CLPV_BEHIND;
+  const int8 in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
+  return where | (~in_guard & CLPV_OUT_OF_GUARD);
+}
+
+// One corner of eight triangles on the screen.
+typedef struct {
+  int8 x, y;   // [1/CLPV_SUBPIXELS pixel] from the left and top border
+  float8 key;  // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
+} ScreenCorner;
+
+static inline int8 subpixel(const float8 screen, const float half_extent, const float pixels) {
+  return convert_int8_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
+}
+
+static inline ScreenCorner project(const ClpvView view, const ViewPoint p) {
+  ScreenCorner corner;
+  corner.x = subpixel(p.x / p.w, view.half_width, (float)view.width);
+  corner.y = subpixel(-p.y / p.w, view.half_height, (float)view.height);
+  corner.key = CLPV_PARALLEL(view) ? p.z : -1.0f / p.z;
+  return corner;
+}
+
+#endif

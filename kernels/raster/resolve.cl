@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// Evaluates the surface of each pixel from the triangle that draw_tiles.cl found: depth, normal, albedo and emission
+// for the camera, flux for a reflective shadow map.
+//
+//   P = albedo E A      [W]   E the light's irradiance across the ray, A the texel's footprint      (docs/method.md,
+//                                                                                                   'Rasterize')
+//
+// Reflective shadow maps: Dachsbacher and Stamminger 2005.
+//
+// In:   keys, seen    depth key and triangle of each pixel, eight per row of a tile (draw_tiles.cl)
+//       vertices, triangles, materials, textures, texels   the scene, in rows of float4 (shared/mesh.h)
+//       colour_scale  Surface::colour_scale: flux [W] of a stored 1
+// Out:  depths        [m] along the view's forward axis, 0 for empty pixels
+//       normals       unit, towards the viewer; colours: albedo; emissives: radiance [W/m^2/sr]; fluxes: P [W]
+// A work-item evaluates a row of a tile, eight pixels. It selects instead of branching: empty pixels evaluate triangle
+// 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER,
+// CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (emissive
+// materials), CLPV_FROM_LIGHT (1: resolve_rsm, 0: resolve_camera).
+#include "lanes.h"
+#include "raster/lighting.h"
+#include "raster/scene_triangles.h"
+#include "raster/surface_row.h"
+#include "raster/tile_row.h"
+#include "raster/triangle.h"
+
+#ifndef CLPV_FROM_LIGHT
+#define CLPV_FROM_LIGHT 0
+#endif
+
+typedef struct {
+  Vec normal;  // unit, towards the viewer
+  Vec albedo;
+  Vec emissive;  // [W/m^2/sr]
+} PixelSurface;
+
+// Change of uv on a face for a step of `by` [m] across the view, from pixel to pixel.
+static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by, const Uv uv1,
+                         const Uv uv2) {
+  const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
+  const float8 w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
+  const Uv step = {w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
+  return step;
+}
+
+// Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
+CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const float8 depth, const uint8 triangle,
+                                  CLPV_SCENE, PixelSurface* surface) {
+  Rows indices;
+  gather_rows(triangles, triangle, &indices);
+  VertexAttributes a, b, c;
+  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, x)), &a);
+  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, y)), &b);
+  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, z)), &c);
+  MaterialLanes material;
+  material_of(materials, as_uint8(CLPV_COLUMN(indices, w)), &material);
+  const Face face = clpv_face(view, a.position, b.position, c.position);
+  const Weights weights = clpv_weights(face);
+  const Vec w = clpv_weights_at(view, face, weights, p.x, p.y, depth);
+  const Vec ray = clpv_along(view, p.x, p.y);
+  const float8 facing = vec_dot(face.normal, ray);
+
+  const float8 towards_viewer = facing > (float8)(0.0f) ? (float8)(-1.0f) : (float8)(1.0f);
+  surface->normal = normal_towards(vec_times(face.normal, towards_viewer), vec_blend(w, a.normal, b.normal, c.normal));
+  surface->albedo = material.base_colour;
+#if CLPV_EMISSIVE
+  surface->emissive = material.emissive;
+#endif
+#if CLPV_COLOURED
+  surface->albedo = vec_product(surface->albedo, vec_blend(w, a.colour, b.colour, c.colour));
+#endif
+#if CLPV_TEXTURED
+  const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
+  const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
+  const float8 scale = CLPV_PARALLEL(view) ? (float8)(1.0f) : depth;
+  const Vec along = vec_times(ray, 1.0f / facing);
+  const Vec right = vec_times(vec_of(view.right), scale * clpv_step_x(view));
+  const Vec down = vec_times(vec_of(view.up), scale * clpv_step_y(view));
+  const Uv step_x = uv_step(face, weights, along, right, uv1, uv2);
+  const Uv step_y = uv_step(face, weights, along, down, uv1, uv2);
+  apply_texture(textures, texels, material.texture, uv, step_x, step_y, &surface->albedo);
+#if CLPV_EMISSIVE
+  apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &surface->emissive);
+#endif
+#endif
+}
+
+// Evaluates the surfaces of eight pixels and stores their depths. `hit`: mask of the pixels that are not empty.
+CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const float8* keys, __global const uint8* seen,
+                         CLPV_SCENE, __global float* depths, int8* hit, PixelSurface* surface) {
+  const float8 key = keys[p.row];
+  *hit = key < (float8)(INFINITY);
+  evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, surface);
+  store_depth(view, p, key, depths);
+}
+
+#if !CLPV_FROM_LIGHT
+
+__kernel void resolve_camera(const ClpvView view, __global const float8* keys,
+                             __global const uint8* seen, __global const float4* vertices,
+                             __global const float4* triangles, __global const float4* materials,
+                             __global const float4* textures, __global const uint* texels, __global float* depths,
+                             __global SurfaceTexel* normals, __global SurfaceTexel* colours
+#if CLPV_EMISSIVE
+                             ,
+                             __global float4* emissives
+#endif
+) {
+  const PixelRow p = this_row(view);
+  if (p.count == 0) return;
+  int8 hit;
+  PixelSurface surface;
+  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
+  const uint first = p.py * view.width + p.px;
+  store_normals(p, vec_masked(hit, surface.normal), normals + first);
+  store_colours(p, vec_masked(hit, surface.albedo), 1.0f, colours + first);
+#if CLPV_EMISSIVE
+  const VecLanes emissive = unpack(hit, surface.emissive);
+  for (uint i = 0; i < p.count; ++i)
+    emissives[first + i] = (float4)(emissive.x[i], emissive.y[i], emissive.z[i], 0.0f);
+#endif
+}
+
+#else
+
+__kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const float8* keys,
+                          __global const uint8* seen, __global const float4* vertices,
+                          __global const float4* triangles, __global const float4* materials,
+                          __global const float4* textures, __global const uint* texels, __global float* depths,
+                          __global SurfaceTexel* normals, __global SurfaceTexel* fluxes,
+                          const float colour_scale) {
+  const PixelRow p = this_row(view);
+  if (p.count == 0) return;
+  int8 hit;
+  PixelSurface surface;
+  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
+  const float8 depth = stored_depth(view, keys[p.row]);
+  Vec towards;
+  const Vec incident = vec_times(clpv_light_irradiance(light, positions(view, p, depth), &towards),
+                             footprints(view, p, depth));
+  const uint first = p.py * view.width + p.px;
+  store_normals(p, vec_masked(hit, surface.normal), normals + first);
+  store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale, fluxes + first);
+}
+
+#endif

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Attributes of eight triangles of the scene in lanes: corners, materials and textures (shared/mesh.h).
+//
+// From the host: CLPV_COLOURED (vertex colours other than 1) and CLPV_EMISSIVE (emissive materials).
+#ifndef CLPV_SCENE_TRIANGLES_H
+#define CLPV_SCENE_TRIANGLES_H
+
+#include "lanes.h"
+#include "raster/texture.h"
+#include "vec.h"
+
+#ifndef CLPV_TEXTURED
+#define CLPV_TEXTURED 1
+#define CLPV_COLOURED 1
+#define CLPV_EMISSIVE 1
+#endif
+
+// Parameters of the scene's buffers, in rows of float4.
+#define CLPV_SCENE                                                                                     \
+  __global const float4 *vertices, __global const float4 *triangles, __global const float4 *materials, \
+      __global const float4 *textures, __global const uint *texels
+#define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
+
+// Attributes of one corner of each lane's triangle.
+typedef struct {
+  Vec position, normal;
+  Uv uv;
+  Vec colour;
+} VertexAttributes;
+
+CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, VertexAttributes* corner) {
+  Rows first, second;
+  gather_rows(vertices, 3u * index, &first);
+  gather_rows(vertices + 1, 3u * index, &second);
+  corner->position = vec(CLPV_COLUMN(first, x), CLPV_COLUMN(first, y), CLPV_COLUMN(first, z));
+  corner->normal = vec(CLPV_COLUMN(first, w), CLPV_COLUMN(second, x), CLPV_COLUMN(second, y));
+  corner->uv.u = CLPV_COLUMN(second, z);
+  corner->uv.v = CLPV_COLUMN(second, w);
+#if CLPV_COLOURED
+  Rows third;
+  gather_rows(vertices + 2, 3u * index, &third);
+  corner->colour = vec(CLPV_COLUMN(third, x), CLPV_COLUMN(third, y), CLPV_COLUMN(third, z));
+#endif
+}
+
+typedef struct {
+  Vec base_colour, emissive;
+  uint8 texture, emissive_texture, flags;
+} MaterialLanes;
+
+CLPV_INLINE void material_of(__global const float4* materials, const uint8 index, MaterialLanes* material) {
+  Rows base, textures;
+  gather_rows(materials, 3u * index, &base);
+  gather_rows(materials + 2, 3u * index, &textures);
+  material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
+  material->texture = as_uint8(CLPV_COLUMN(textures, x));
+  material->flags = as_uint8(CLPV_COLUMN(textures, z));
+#if CLPV_EMISSIVE
+  Rows emissive;
+  gather_rows(materials + 1, 3u * index, &emissive);
+  material->emissive = vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
+  material->emissive_texture = as_uint8(CLPV_COLUMN(textures, y));
+#endif
+}
+
+// Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the interpolated normal itself may
+// point to the other side.
+static inline Vec normal_towards(const Vec front, const Vec interpolated) {
+  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
+  const int8 usable = vec_dot(interpolated, interpolated) > none;
+  const Vec normal = vec(usable ? interpolated.x : front.x, usable ? interpolated.y : front.y,
+                         usable ? interpolated.z : front.z);
+  return vec_times(normal, (vec_dot(normal, front) < none ? -one : one) / sqrt(vec_dot(normal, normal)));
+}
+
+CLPV_INLINE void apply_texture(__global const float4* textures, __global const uint* texels,
+                               const uint8 texture, const Uv uv, const Uv step_x, const Uv step_y,
+                               Vec* colour) {
+  Vec factor;
+  clpv_trilinear(textures, texels, texture, uv, step_x, step_y, &factor);
+  *colour = vec_product(*colour, factor);
+}
+
+#endif

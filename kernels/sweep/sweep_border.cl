@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Sets the boundary condition of a cascade from the next coarser cascade: light along each direction in the cells just
+// outside the grid, interpolated trilinearly.
+//
+//   D = from_coarser D_coarser      (radiance is equal in both: D = L s^2 |w_m|)
+//
+// docs/method.md, 'The sweep'; from_coarser is in ClpvSweepDirection.
+//
+// In:   halo_light    D_coarser [W/sr] in the cells of `halo` (sweep_border.h)
+//       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells (coarse_to_fine.h)
+// Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
+//       border        D [W/sr] in the rows and columns upstream of each plane
+// A work-item computes eight cells of a row of one face, from the cell before the grid on.
+#include "sweep/coarse_to_fine.h"
+#include "shared/sweep.h"
+#include "sweep/sweep_layout.h"
+#include "sweep/sweep_border.h"
+
+__kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
+                           CLPV_BUFFER_IN halo_light, const ClpvSweepHalo halo, const int dx, const int dy,
+                           const int dz, __global float* plane_buffer, const int upstream, CLPV_BUFFER_OUT border) {
+  const int column = 8 * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1, face = (int)get_global_id(2) % 3;
+  const int ordinate = (int)get_global_id(2) / 3, b = ordinate / (3 * CLPV_PARTS);
+  if (column > CLPV_GRID || row > CLPV_GRID) return;
+  const ClpvSweepBin bin = bins[b];
+  __constant const ClpvSweepDirection* direction = directions + b * CLPV_PARTS + ordinate % CLPV_PARTS;
+  const bool plane_face = face == CLPV_BORDER_PLANE, row_face = face == CLPV_BORDER_ROW;
+  const int across = plane_face ? bin.plane_axis : (row_face ? bin.row_axis : bin.column_axis);
+  const int sign = plane_face ? bin.plane_sign : (row_face ? bin.row_sign : bin.column_sign);
+  const int row_axis = plane_face ? bin.row_axis : bin.plane_axis;
+  const int column_axis = face == CLPV_BORDER_COLUMN ? bin.row_axis : bin.column_axis;
+#define CLPV_OFFSET(axis) ((axis) == 0 ? dx : ((axis) == 1 ? dy : dz))
+  const int layer = (sign > 0 ? -1 : CLPV_GRID) + CLPV_OFFSET(across);
+  const int r = row + CLPV_OFFSET(row_axis), c = column + CLPV_OFFSET(column_axis);
+  const int pitch = CLPV_SWEEP_HALO_PITCH_OF(halo.side), next = halo.side * pitch;
+  const int coarser = ordinate / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
+  CLPV_BUFFER_IN light =
+      halo_light + clpv_halo_at(halo, coarser, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
+                                CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
+  const float tl = CLPV_UPPER_WEIGHT(layer), tr = CLPV_UPPER_WEIGHT(r);
+  const float8 lower = (1.0f - tr) * CLPV_READ_ROW(light, 0) + tr * CLPV_READ_ROW(light, pitch);
+  const float8 upper = (1.0f - tr) * CLPV_READ_ROW(light, next) + tr * CLPV_READ_ROW(light, next + pitch);
+  const float8 v = direction->from_coarser * ((1.0f - tl) * lower + tl * upper);
+  const float8 in = c & 1 ? CLPV_ODD(v) : CLPV_EVEN(v);
+  if (plane_face) {
+    vstore8(in, 0, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, column));
+  } else {
+    CLPV_WRITE_ROW(border, clpv_border_at(ordinate, face, row, column), in);
+  }
+}

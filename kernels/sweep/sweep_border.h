@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Memory layout of the boundary condition of a sweep: the border of a cascade, and the halo that a coarser cascade
+// stores for a finer one.
+//
+// An ordinate is a direction and channel. Each has three upstream faces: the plane before the first one, which goes
+// into the plane buffer, and per plane the row and the column upstream, which go into `border`. `border` stores the
+// rows and columns of a bin's ordinates plane by plane, in the order in which sweep_bin reads them.
+#ifndef CLPV_SWEEP_BORDER_H
+#define CLPV_SWEEP_BORDER_H
+
+#include "shared/sweep.h"
+#include "sweep/sweep_layout.h"
+
+// Number of an ordinate.
+#define CLPV_ORDINATE(bin, channel, part) ((((bin)*3) + (channel)) * CLPV_PARTS + (part))
+
+#define CLPV_BORDER_PLANE 0
+#define CLPV_BORDER_ROW 1
+#define CLPV_BORDER_COLUMN 2
+
+// Index in `border` of cell `at` (-1 to CLPV_GRID) of the row or column upstream of a plane. Groups of eight start at
+// cell -1.
+CLPV_INLINE int clpv_border_at(const int ordinate, const int face, const int plane, const int at) {
+  const int per_bin = 3 * CLPV_PARTS, planes = ordinate / per_bin * (CLPV_GRID + 2) + plane + 1;
+  const int side = 2 * (planes * per_bin + ordinate % per_bin) + face - CLPV_BORDER_ROW;
+  return side * CLPV_SWEEP_PITCH + 1 + at;
+}
+
+// First cell of the halo along an axis. A halo is passed by value, and its arrays are indexed by literals alone
+// (region.h).
+#define CLPV_HALO_FIRST(halo, axis) \
+  ((axis) == 0 ? (halo).first[0] : ((axis) == 1 ? (halo).first[1] : (halo).first[2]))
+
+// Index in a halo. (i, j) is (row, column) in CLPV_BORDER_PLANE, (plane, column) in CLPV_BORDER_ROW and (plane, row) in
+// CLPV_BORDER_COLUMN.
+CLPV_INLINE int clpv_halo_at(const ClpvSweepHalo halo, const int ordinate, const int face, const int layer, const int i,
+                             const int j) {
+  return (ordinate * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
+         (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
+}
+
+#endif

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+// One step of a sweep: CLPV_LANES cells of a plane, all channels and all directions of a bin. Both forms of the sweep
+// use it (sweep_bins.cl, sweep_planes.cl).
+//
+//   D = I + sum_k t_k T_k D_k            k: the four cells of the previous plane that light comes from
+//   L s^2 = sum_d share_d D_d            d: the directions of the bin
+//
+// Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light along a direction, I
+// [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k in [0, 1] the transmittance of the link from cell k; t_k and share_d are in
+// ClpvSweepDirection.
+//
+// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium scatters light into it:
+//
+//   D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2,   a = 1 - exp(-sigma_t s / |w_m|)
+//
+// f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin (sweep_medium.cl); f and f J are
+// means of the cell and its neighbour upstream along m.
+#ifndef CLPV_SWEEP_CELL_H
+#define CLPV_SWEEP_CELL_H
+
+#include "shared/sweep.h"
+#include "sweep/sweep_border.h"
+#include "sweep/sweep_layout.h"
+
+// The bin that a work-item sweeps, and its buffers.
+typedef struct {
+  int number;  // of the bin, 0 to CLPV_SWEEP_BINS - 1
+  ClpvSweepBin bin;
+  __constant const ClpvSweepDirection* directions;  // CLPV_PARTS of them
+  __constant const int* coefficients;               // the CLPV_EMITTING coefficients that the bin's light depends on
+  __constant const float* means;                    // of their functions, CLPV_EMITTING for each direction
+  CLPV_BUFFER_IN sources;                           // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
+  __global const uchar* lit;                        // 1 for each CLPV_SOURCE_LANES cells that hold sources
+  CLPV_BUFFER_IN links;                             // T, a volume for each axis and link
+  CLPV_BUFFER_IN border;                            // D in the cells beside the grid (sweep_border.h)
+  CLPV_BUFFER_OUT sums;                             // L s^2, a volume for each channel and bin
+  CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
+#if CLPV_MEDIUM
+  __global const float* inside;                     // part in the medium of each cell along x, y and z, rows with border
+  CLPV_BUFFER_IN scattered;                         // J s^2, a volume for each channel and bin
+#endif
+} BinSweep;
+
+#if CLPV_MEDIUM
+#define CLPV_MEDIUM_PARAMETER , __global const float *inside, CLPV_BUFFER_IN scattered
+#define CLPV_MEDIUM_MEMBER , inside, scattered
+#else
+#define CLPV_MEDIUM_PARAMETER
+#define CLPV_MEDIUM_MEMBER
+#endif
+
+#define CLPV_BIN_SWEEP(b)                                                                                     \
+  {b,                                                                                                         \
+   bin,                                                                                                       \
+   directions + (b)*CLPV_PARTS,                                                                               \
+   coefficients + (b)*CLPV_EMITTING,                                                                          \
+   means + (b)*CLPV_PARTS * CLPV_EMITTING,                                                                    \
+   sources + bin.transposed * 3 * CLPV_SOURCES * CLPV_SWEEP_VOLUME,                                           \
+   lit + bin.transposed * CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES,                                              \
+   links,                                                                                                     \
+   border,                                                                                                    \
+   sums,                                                                                                      \
+   halo_light CLPV_MEDIUM_MEMBER}
+
+// Nonzero if CLPV_LANES cells hold sources.
+#if CLPV_SOURCE_LANES >= CLPV_LANES
+#define CLPV_LIT(lit, source) ((lit)[(source) / CLPV_SOURCE_LANES])
+#else
+#define CLPV_LIT(lit, source) as_ulong(vload8(0, (lit) + (source)))
+#endif
+
+// Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in these cells.
+CLPV_INLINE void clpv_add_sources(const BinSweep* s, const int source, __global float* planes, CLPV_REAL* sum) {
+  for (int channel = 0; channel < 3; ++channel) {
+    CLPV_REAL injected[CLPV_PARTS];
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
+    for (int j = 0; j < CLPV_EMITTING; ++j) {
+      const int volume = channel * CLPV_SOURCES + s->coefficients[j];
+      const CLPV_REAL c = CLPV_SWEEP_LOAD(s->sources + volume * CLPV_SWEEP_VOLUME, source);
+#pragma unroll
+      for (int part = 0; part < CLPV_PARTS; ++part)
+        injected[part] = fma((CLPV_REAL)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
+    }
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part) {
+      const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
+      CLPV_PLANE_STORE(planes, ordinate, CLPV_PLANE_LOAD(planes, ordinate) + injected[part]);
+      sum[channel] = fma((CLPV_REAL)(s->directions[part].share), injected[part], sum[channel]);
+    }
+  }
+}
+
+// `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the same.
+CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from, __global float* to, const int plane,
+                                  const int row, const int column) {
+  const ClpvSweepBin bin = s->bin;
+  const int at = clpv_sweep_at(plane, row, column);
+  const int here = CLPV_ORDINATE(s->number, 0, 0) * CLPV_BORDERED_PLANE + clpv_plane_at(row, column);
+  __global const float* from0 = from + here;
+  __global const float* from1 = from0 - bin.column_sign;
+  __global const float* from2 = from0 - bin.row_sign * CLPV_SWEEP_PITCH;
+  __global const float* from3 = from2 - bin.column_sign;
+#if CLPV_BLOCKING
+#define CLPV_LINK(k) const CLPV_REAL t##k = CLPV_SWEEP_LOAD(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at)
+  CLPV_LINK(0);
+  CLPV_LINK(1);
+  CLPV_LINK(2);
+  CLPV_LINK(3);
+#define CLPV_TAP(k) (s->directions[part].taps[k] * t##k)
+#else
+#define CLPV_TAP(k) ((CLPV_REAL)(s->directions[part].taps[k]))
+#endif
+#if CLPV_MEDIUM
+#define CLPV_INSIDE(axis, i) ((axis)*CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + (i))
+  const int upstream = plane - bin.plane_sign;
+  const int scattered_upstream = upstream < 0 || upstream >= CLPV_GRID ? at : clpv_sweep_at(upstream, row, column);
+  const CLPV_REAL across = 0.5f * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
+                           CLPV_PLANE_LOAD(s->inside, CLPV_INSIDE(bin.column_axis, column));
+  const CLPV_REAL inside = across * s->inside[CLPV_INSIDE(bin.plane_axis, plane)],
+                  inside_upstream = across * s->inside[CLPV_INSIDE(bin.plane_axis, upstream)];
+  CLPV_REAL scattered[3];
+#pragma unroll
+  for (int channel = 0; channel < 3; ++channel) {
+    CLPV_BUFFER_IN volume = s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME;
+    scattered[channel] =
+        inside * CLPV_SWEEP_LOAD(volume, at) + inside_upstream * CLPV_SWEEP_LOAD(volume, scattered_upstream);
+  }
+#endif
+  CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
+#pragma unroll
+  for (int part = 0; part < CLPV_PARTS; ++part) {
+    const CLPV_REAL w0 = CLPV_TAP(0), w1 = CLPV_TAP(1), w2 = CLPV_TAP(2), w3 = CLPV_TAP(3);
+#pragma unroll
+    for (int channel = 0; channel < 3; ++channel) {
+      const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
+      CLPV_REAL d = w0 * CLPV_PLANE_LOAD(from0, ordinate);
+      d = fma(w1, CLPV_PLANE_LOAD(from1, ordinate), d);
+      d = fma(w2, CLPV_PLANE_LOAD(from2, ordinate), d);
+      d = fma(w3, CLPV_PLANE_LOAD(from3, ordinate), d);
+#if CLPV_MEDIUM
+      const CLPV_REAL lost = 1.0f - s->directions[part].attenuation[channel];
+      d = fma(lost, s->directions[part].flux * scattered[channel] - (inside + inside_upstream) * d, d);
+#endif
+      CLPV_PLANE_STORE(to + here, ordinate, d);
+      sum[channel] = fma((CLPV_REAL)(s->directions[part].share), d, sum[channel]);
+    }
+  }
+  const int source = plane * bin.plane + row * bin.row + column;
+  if (CLPV_LIT(s->lit, source)) clpv_add_sources(s, source, to + here, sum);
+#pragma unroll
+  for (int channel = 0; channel < 3; ++channel)
+    CLPV_SWEEP_STORE(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at, sum[channel]);
+}
+
+// Row or column upstream of the grid.
+#define CLPV_UPSTREAM(sign) ((sign) > 0 ? -1 : CLPV_GRID)
+
+// Copy the boundary condition of a plane from the border into the plane buffer, where the next plane reads it:
+// CLPV_LANES cells of the row upstream, and of the column upstream (one cell with one lane).
+CLPV_INLINE void clpv_copy_border_row(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
+                                      const int column) {
+  CLPV_PLANE_STORE(planes, ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(CLPV_UPSTREAM(s->bin.row_sign), column),
+                   CLPV_SWEEP_LOAD(s->border, clpv_border_at(ordinate, CLPV_BORDER_ROW, plane, column)));
+}
+CLPV_INLINE void clpv_copy_border_column(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
+                                         const int row) {
+  const CLPV_REAL light = CLPV_SWEEP_LOAD(s->border, clpv_border_at(ordinate, CLPV_BORDER_COLUMN, plane, row));
+  planes += ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, CLPV_UPSTREAM(s->bin.column_sign));
+#if CLPV_LANES == 8
+#define CLPV_DO(lane) \
+  if (row + 0x##lane <= CLPV_GRID) planes[0x##lane * CLPV_SWEEP_PITCH] = light.s##lane;
+  CLPV_DO(0) CLPV_DO(1) CLPV_DO(2) CLPV_DO(3) CLPV_DO(4) CLPV_DO(5) CLPV_DO(6) CLPV_DO(7)
+#undef CLPV_DO
+#else
+  *planes = light;
+#endif
+}
+
+// Lower one of the two halo layers across an axis, for light along `sign`.
+#define CLPV_HALO_LAYER(halo, axis, sign)                                                                   \
+  ((axis) == 0 ? ((sign) > 0 ? (halo).layers[0] : (halo).layers[1])                                         \
+               : ((axis) == 1 ? ((sign) > 0 ? (halo).layers[2] : (halo).layers[3])                          \
+                              : ((sign) > 0 ? (halo).layers[4] : (halo).layers[5])))
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Voxelises blockers: for each corner of the light cells and each axis, marks the part of a square that triangles
+// cover.
+//
+//   B_a = share of the square s x s across a, about the corner, that triangles inside the cube s^3 about the corner
+//   cover
+//
+// (docs/method.md, 'Blockers'.) 8 x 8 lines along the axis sample the square. Bit 8 row + column is set if a triangle
+// intersects the line inside the cube. Bits are set by atomic_or: overlapping triangles count once, and results do not
+// depend on their order. blocked_areas.cl counts the bits.
+//
+// In:   triangles of the scene in `clusters` (region.h); region: the corners to voxelise; textures, texels (texture.h)
+// Out:  masks    CLPV_BLOCKER_WORDS uint32 words per corner (shared/blockers.h), cleared in the region before
+//       cascade  number of the cascade whose masks to write
+// A work-item voxelises a triangle. The integer part of w (voxelize_triangle.h) is the number of the corner.
+// From the host: CLPV_GRID, CLPV_MASKED.
+#include "voxels/voxelize_triangle.h"
+#include "shared/blockers.h"
+
+// Index of the words of a corner, CLPV_NO_WORD outside the region. `corner`: along u, v and the axis, from the base.
+#define CLPV_NO_WORD 0xffffffffu
+static inline uint clpv_blocker_word(const ClpvRegion* region, const uint axis, const int3 corner) {
+  int at[3];
+  at[(axis + 1) % 3] = corner.x;
+  at[(axis + 2) % 3] = corner.y;
+  at[axis] = corner.z;
+  const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
+  if (!clpv_in_region(region, x, y, z)) return CLPV_NO_WORD;
+  const int n = CLPV_GRID + 1;
+  return (uint)((z * n + y) * n + x) * CLPV_BLOCKER_WORDS + axis * 2u;
+}
+
+// Sets the bits of eight samples of row v in column i, one word for each corner that they lie at.
+CLPV_INLINE void clpv_set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int i,
+                              const int v, const int8 covered, const float8 w) {
+  const int2 cells = clpv_cells_along(region, axis);
+  const int8 cell = convert_int8(w + 1.0f) - 1;  // floor(w); a negative number for w below 0
+  const int8 lowest = covered ? cell : (int8)(cells.y + 1), highest = covered ? cell : (int8)(-1);
+  const int4 low4 = min(lowest.lo, lowest.hi), high4 = max(highest.lo, highest.hi);
+  const int first = max(min(min(low4.x, low4.y), min(low4.z, low4.w)), cells.x);
+  const int last = min(max(max(high4.x, high4.y), max(high4.z, high4.w)), cells.y);
+  const int row = v % CLPV_VOXEL_SAMPLES;
+  for (int k = first; k <= last; ++k) {
+    const uint bits = clpv_bits(covered & (cell == k));
+    if (bits == 0) continue;
+    const uint word = clpv_blocker_word(region, axis, (int3)(i, v / CLPV_VOXEL_SAMPLES, k));
+    if (word != CLPV_NO_WORD) atomic_or(masks + word + row / 4, bits << (8 * (row % 4)));
+  }
+}
+
+__kernel void voxelize_blockers(const ClpvRegion region, __global const uint* clusters, const uint first_cluster,
+                                const uint cluster_count, const uint triangle_count,
+                                __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
+                                __global const ClpvMaterial* materials, __global const float4* textures,
+                                __global const uint* texels, __global uint* masks, const uint cascade) {
+  const uint number = clpv_triangle_number(clusters, first_cluster, cluster_count, triangle_count);
+  if (number >= triangle_count) return;
+  const ClpvTriangle triangle = triangles[number];
+  __global uint* mine = masks + (size_t)cascade * CLPV_BLOCKER_MASKS;
+  __global const ClpvVertex* const corner[3] = {vertices + triangle.vertex[0], vertices + triangle.vertex[1],
+                                                vertices + triangle.vertex[2]};
+#if CLPV_MASKED
+  __global const ClpvMaterial* material = materials + triangle.material;
+  const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
+#endif
+  GridCorners corners;
+  if (!clpv_grid_corners(&region, corner, &corners)) return;
+  int2 samples[3];  // range of samples along each axis that the triangle may cover
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* at = corners.at[axis];
+    const int2 cells = clpv_cells_along(&region, axis);
+    samples[axis] = clpv_voxel_range(cells.x, cells.y, at[0], at[1], at[2]);
+  }
+  for (uint axis = 0; axis < 3; ++axis) {
+    const int2 columns = samples[(axis + 1) % 3], rows = samples[(axis + 2) % 3];
+    ProjectedTriangle t;
+    if (columns.x > columns.y || rows.x > rows.y || !clpv_project_triangle(&corners, axis, &t)) continue;
+    for (int v = rows.x; v <= rows.y; ++v) {
+      for (int i = columns.x / CLPV_VOXEL_SAMPLES; i <= columns.y / CLPV_VOXEL_SAMPLES; ++i) {
+        const float u = (float)(i * CLPV_VOXEL_SAMPLES);
+        int8 covered = clpv_voxel_covered(&t, u, (float)v);
+        if (clpv_bits(covered) == 0) continue;
+#if CLPV_MASKED
+        if (masked) covered &= clpv_voxel_solid(&t, corner, material, textures, texels, u, (float)v);
+#endif
+        clpv_set_row(&region, mine, axis, i, v, covered, clpv_voxel_depth(&t, u, (float)v));
+      }
+    }
+  }
+}

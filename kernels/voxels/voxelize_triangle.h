@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Projects a triangle along an axis of a cascade's grid and samples it, 8 x 8 samples per cell (blockers.cl,
+// reflectors.cl).
+//
+// Coordinates: u and v along the two axes after the axis of projection, in samples; w along the axis, in cells. All
+// three count from half a cell before the region's base. A sample within CLPV_VOXEL_TOLERANCE outside an edge is
+// covered, so that triangles that share an edge leave no gap despite rounding.
+#ifndef CLPV_VOXELIZE_TRIANGLE_H
+#define CLPV_VOXELIZE_TRIANGLE_H
+
+#include "lanes.h"
+#include "voxels/region.h"
+#include "raster/texture.h"
+#include "vec.h"
+
+#define CLPV_VOXEL_SAMPLES 8
+#define CLPV_VOXEL_TOLERANCE (1.0f / 256.0f)  // [samples]
+#define CLPV_VOXEL_LIMIT 8e6f  // [samples] coordinates are clamped to it, so that floats hold them as integers
+
+#ifndef CLPV_MASKED
+#define CLPV_MASKED 1  // 0: no material of the scene is masked
+#endif
+
+// A triangle projected along an axis.
+typedef struct {
+  float u[3], v[3];
+  float w, w_u, w_v;         // at the first vertex; change per sample along u and v
+  float nearest, farthest;   // smallest and largest w
+  float e_u[3], e_v[3], tolerance[3];  // edge functions, positive inside, and the tolerance of each
+  float inverse_area;
+} ProjectedTriangle;
+
+// Corners of a triangle, in samples along each axis.
+typedef struct {
+  float at[3][3];  // [axis][corner]
+} GridCorners;
+
+// Returns false for a triangle outside the region, extended by half a cell on every side.
+static inline bool clpv_grid_corners(const ClpvRegion* region, __global const ClpvVertex* const corner[3],
+                                      GridCorners* corners) {
+  const float per_sample = CLPV_VOXEL_SAMPLES / region->cell;
+  bool within = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    float* at = corners->at[axis];
+    for (int i = 0; i < 3; ++i) {
+      at[i] = (corner[i]->position[axis] - region->base[axis]) * per_sample + CLPV_VOXEL_SAMPLES / 2;
+      at[i] = clamp(at[i], -CLPV_VOXEL_LIMIT, CLPV_VOXEL_LIMIT);
+    }
+    const int first = region->first[axis] + region->all.low[axis], end = region->first[axis] + region->all.high[axis] + 2;
+    within = within && fmax(at[0], fmax(at[1], at[2])) >= (float)(CLPV_VOXEL_SAMPLES * first) &&
+             fmin(at[0], fmin(at[1], at[2])) < (float)(CLPV_VOXEL_SAMPLES * end);
+  }
+  return within;
+}
+
+// Returns false for a triangle that is seen edge-on or has no area.
+static inline bool clpv_project_triangle(const GridCorners* corners, const uint axis, ProjectedTriangle* t) {
+  float w[3];
+  for (int i = 0; i < 3; ++i) {
+    t->u[i] = corners->at[(axis + 1) % 3][i];
+    t->v[i] = corners->at[(axis + 2) % 3][i];
+    w[i] = corners->at[axis][i] * (1.0f / CLPV_VOXEL_SAMPLES);
+  }
+  const float u1 = t->u[1] - t->u[0], v1 = t->v[1] - t->v[0], w1 = w[1] - w[0];
+  const float u2 = t->u[2] - t->u[0], v2 = t->v[2] - t->v[0], w2 = w[2] - w[0];
+  const float area = u1 * v2 - u2 * v1;
+  t->inverse_area = 1.0f / area;
+  t->w = w[0];
+  t->w_u = (w1 * v2 - w2 * v1) * t->inverse_area;
+  t->w_v = (w2 * u1 - w1 * u2) * t->inverse_area;
+  t->nearest = fmin(w[0], fmin(w[1], w[2]));
+  t->farthest = fmax(w[0], fmax(w[1], w[2]));
+  const float side = area < 0.0f ? -1.0f : 1.0f;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    t->e_u[i] = side * (t->v[i] - t->v[j]);
+    t->e_v[i] = side * (t->u[j] - t->u[i]);
+    t->tolerance[i] = CLPV_VOXEL_TOLERANCE * (fabs(t->e_u[i]) + fabs(t->e_v[i]));
+  }
+  return fabs(area) > 0.0f && fabs(t->w_u) <= CLPV_VOXEL_LIMIT && fabs(t->w_v) <= CLPV_VOXEL_LIMIT;
+}
+
+// First and last sample between three coordinates, within cells `first` to `last`, counted from the base.
+static inline int2 clpv_voxel_range(const int first, const int last, const float a, const float b, const float c) {
+  const float from = ceil(fmin(a, fmin(b, c)) - 0.5f - CLPV_VOXEL_TOLERANCE);
+  const float to = floor(fmax(a, fmax(b, c)) - 0.5f + CLPV_VOXEL_TOLERANCE);
+  return (int2)((int)fmax(from, (float)(CLPV_VOXEL_SAMPLES * first)),
+                (int)fmin(to, (float)(CLPV_VOXEL_SAMPLES * (last + 1) - 1)));
+}
+
+// First and last cell of the region along an axis, counted from the base.
+static inline int2 clpv_cells_along(const ClpvRegion* region, const uint axis) {
+  return clpv_of_axis(region->first, axis) +
+         (int2)(clpv_of_axis(region->all.low, axis), clpv_of_axis(region->all.high, axis));
+}
+
+#define CLPV_EIGHT ((float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f))
+
+// Mask of the eight samples from (u, v) on along a row that the triangle covers.
+CLPV_INLINE int8 clpv_voxel_covered(const ProjectedTriangle* t, const float u, const float v) {
+  const float8 at = u + 0.5f + CLPV_EIGHT;
+  const float row = v + 0.5f;
+#define CLPV_EDGE(i) (t->e_u[i] * (at - t->u[i]) + t->e_v[i] * (row - t->v[i]) >= -t->tolerance[i])
+  return CLPV_EDGE(0) & CLPV_EDGE(1) & CLPV_EDGE(2);
+#undef CLPV_EDGE
+}
+
+// Depth w of the triangle's plane at those samples, clamped to the range of its vertices.
+CLPV_INLINE float8 clpv_voxel_depth(const ProjectedTriangle* t, const float u, const float v) {
+  const float8 at = u + 0.5f + CLPV_EIGHT;
+  const float8 w = t->w + t->w_u * (at - t->u[0]) + t->w_v * (v + 0.5f - t->v[0]);
+  const float8 nearest = (float8)(t->nearest), farthest = (float8)(t->farthest);
+  const float8 not_before = w > nearest ? w : nearest;
+  return not_before < farthest ? not_before : farthest;
+}
+
+// Barycentric weights of the second and third corner, clamped to the triangle.
+typedef struct {
+  float8 w1, w2;
+} BarycentricWeights;
+
+static inline BarycentricWeights clpv_voxel_weights(const ProjectedTriangle* t, const float8 u, const float8 v) {
+  const float8 from = u - t->u[0], row = v - t->v[0];
+  const float8 zero = (float8)(0.0f), one = (float8)(1.0f);
+  float8 w1 = (from * (t->v[2] - t->v[0]) - row * (t->u[2] - t->u[0])) * t->inverse_area;
+  float8 w2 = (row * (t->u[1] - t->u[0]) - from * (t->v[1] - t->v[0])) * t->inverse_area;
+  w1 = w1 > zero ? w1 : zero;
+  w1 = w1 < one ? w1 : one;
+  w2 = w2 > zero ? w2 : zero;
+  w2 = w2 < one - w1 ? w2 : one - w1;
+  const BarycentricWeights weights = {w1, w2};
+  return weights;
+}
+
+// Vertex attribute `field`, interpolated between corners.
+#define CLPV_BLEND(weights, corner, field)                                                          \
+  ((1.0f - (weights).w1 - (weights).w2) * (corner)[0]->field + (weights).w1 * (corner)[1]->field + \
+   (weights).w2 * (corner)[2]->field)
+
+#if CLPV_MASKED
+// Mask of those samples where the alpha of a masked material reaches its cutoff: no hole.
+CLPV_INLINE int8 clpv_voxel_solid(const ProjectedTriangle* t, __global const ClpvVertex* const corner[3],
+                                  __global const ClpvMaterial* material, __global const float4* textures,
+                                  __global const uint* texels, const float u, const float v) {
+  const BarycentricWeights w = clpv_voxel_weights(t, u + 0.5f + CLPV_EIGHT, (float8)(v + 0.5f));
+  const Uv uv = {CLPV_BLEND(w, corner, uv[0]), CLPV_BLEND(w, corner, uv[1])};
+  const uint8 finest = (uint8)(material->texture * CLPV_TEXTURE_LEVELS);
+  const float8 alpha = material->base_colour[3] * CLPV_BLEND(w, corner, colour[3]) *
+                       clpv_bilinear_alpha(textures, texels, finest, uv);
+  return alpha >= material->alpha_cutoff;
+}
+#endif
+
+#endif
