@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Prefetches memory that hardware prefetch cannot predict, on CPUs; a no-op elsewhere.
 //
-// OpenCL's prefetch() does nothing on PoCL 3.1. Clang's builtin takes private pointers alone, which on a CPU address
+// OpenCL's prefetch() does nothing on PoCL 3.1. Clang's builtin takes only private pointers, which on a CPU address
 // the same memory as global ones; compilers to SPIR-V reject it.
 #ifndef CLPV_PREFETCH_H
 #define CLPV_PREFETCH_H

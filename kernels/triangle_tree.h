@@ -125,7 +125,8 @@ CLPV_INLINE void clpv_take_masked(const MaskedHits* masked, const uint count, CL
   }
 }
 
-// Takes the nearest triangle of a leaf, if it is nearer than the hit of ray i; of equals the first.
+// Takes the nearest triangle of a leaf if it is nearer than the hit of ray i. On a tie, the first
+// triangle wins.
 CLPV_INLINE void clpv_leaf_hit(__global const float8* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
                                uint* masked_count) {
   const Vec along = vec((float8)(rays->along[0][i]), (float8)(rays->along[1][i]), (float8)(rays->along[2][i]));

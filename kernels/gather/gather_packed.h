@@ -120,8 +120,8 @@ CLPV_INLINE float clpv_sample(const PackedCascade cascade, const SamplePoints* p
   return scale;
 }
 
-// Element by element: Oclgrind 21.10 crashes on a float8 built from two float4, since some lanes are undefined for a
-// while.
+// Element by element: Oclgrind 21.10 crashes on a float8 built from two float4, because lanes are
+// uninitialised while it is built.
 #define CLPV_PAIR(a, b) ((float8)(a, a, a, a, b, b, b, b))
 
 CLPV_INLINE float4 clpv_weigh(const Coefficients weights, const Sampled sampled) {

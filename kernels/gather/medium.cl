@@ -6,8 +6,8 @@
 //     + sigma_s max(0, sum_l g^l sum_m C_lm Y_lm(w))     medium_volumes: light of the volumes (radiance.h)
 //
 // w: direction of light that travels towards the camera. t_k have the density of the mean extinction; the 16 pixels of a
-// tile have different ones, and a mean over a tile's size joins them. Rays are those of every second pixel along both
-// axes; planes are those of near_layout.h.
+// tile have different ones, and a mean over a tile's size joins them. Every second pixel along both axes has a ray.
+// near_layout.h defines the planes.
 //
 // medium_light
 //   In:      view, depths [m]      the camera's surface
@@ -32,7 +32,7 @@
 #include "raster/surface_row.h"
 
 #define CLPV_SAME_END 0.1f   // relative difference of ends from which pixels do not count
-#define CLPV_UNLIKE 1e-3f     // weight of a pixel's own ray where no end is similar
+#define CLPV_UNLIKE 1e-3f     // fallback weight if no neighbour has similar depth
 #define CLPV_THIN 1e-3f       // optical depth below which points are spread evenly
 
 // Parts of the rays of eight pixels in the medium.

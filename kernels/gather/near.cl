@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Near field: light from surfaces nearer than R replaces what the volumes hold of it (docs/method.md, 'Near field').
+// Near field: rays find light from surfaces nearer than R, which replaces the volumes' (docs/method.md, 'Near field').
 //
 //   D = (pi / K) sum_k (X(w_k) - v(w_k))     [W/m^2], w_k cosine-distributed about the normal n
 //   X(w) = L_hit if a surface is met along w within R, else L(p + offset s n + R w, -w)
@@ -23,10 +23,11 @@
 #include "gather/radiance.h"
 #include "raster/surface_row.h"
 
-#define CLPV_LEAST_ARRIVING 0.5f  // of the irradiance that leaves, where rays without a hit count fully
+#define CLPV_LEAST_ARRIVING 0.5f  // minimum ratio of arriving to leaving irradiance at which misses get full weight
 
-// Share of the difference of rays without a hit, in [0, 1]. Nine harmonics of light that leaves a bright surface are not
-// 0 towards it. Where more leaves than arrives, the difference of two such errors is left out; (x, y, z) = n.
+// Weight in [0, 1] of the correction for rays that miss. Nine harmonics of light that leaves a bright surface are
+// not 0 towards it: where more leaves than arrives, the correction would be the difference of two such errors.
+// (x, y, z) = n.
 CLPV_INLINE float clpv_trust(const Sampled* field, const float x, const float y, const float z) {
   const float4 arriving = clpv_field_irradiance(field, x, y, z), leaving = clpv_field_irradiance(field, -x, -y, -z);
   const float in = arriving.x + arriving.y + arriving.z, out = leaving.x + leaving.y + leaving.z;

@@ -5,7 +5,7 @@
 //
 // All surfaces reflect on both sides; emissive ones emit from the front, and from the back if double sided. Textures are
 // filtered over the width of a ray's cone, CLPV_NEAR_CONE times its length. A ray that leaves below the plane of its own
-// triangle, where the interpolated normal differs from the triangle's, carries no light.
+// triangle (the interpolated normal differs from the triangle's) carries no light.
 //
 // In:      points, counts, hits   near_layout.h, near_trace.cl
 //          CLPV_SCENE          the scene

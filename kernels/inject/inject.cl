@@ -14,7 +14,7 @@
 //   sum_segments     sums of segments: up to `length` texels of a cell, counted from the cell's first texel
 //   join_segments    sums of the cells that have several segments
 //
-// A cell's sum depends on its own texels alone, to the bit.
+// A cell's sum depends only on its own texels, bit by bit.
 //
 // In:      sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
 //          normals, colours, colour_scale   surface texels, flux [W] (surface.h); blocking: normals and shares

@@ -207,7 +207,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   }
 }
 
-// Depths alone: a shadow map. One work-item a row of a tile.
+// Only depths: a shadow map. One work-item a row of a tile.
 __kernel void resolve_depth(const ClpvView view, __global const float8* keys, __global float* depths) {
   const PixelRow p = this_row(view);
   if (p.count == 0) return;

@@ -90,7 +90,7 @@ static inline uint take_entries(volatile __global uint* counts, const uint wante
   return at;
 }
 
-// Appends the triangles of the lanes in `mask`, with their entries. Beyond the capacity it counts them alone.
+// Appends the triangles of the lanes in `mask`, with their entries. Beyond the capacity it only counts them.
 CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const int8 mask,
                             volatile __global uint* counts, const Capacity capacity,
                             __global ClpvRasterTriangle* list, __global uint* entries,

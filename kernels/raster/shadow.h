@@ -127,8 +127,8 @@ CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, 
   return all > (float8)(0.0f) ? one - vload8(0, blocked) / all : one;
 }
 
-// Mask of the points that view `which` covers: of several views from one eye the one that looks most along `offset`,
-// the first of equals.
+// Mask of the points that view `which` covers: among views sharing an eye, the one facing `offset` most
+// directly; on a tie, the first.
 CLPV_INLINE int8 sees(__global const ClpvView* views, const uint count, const uint which, const Vec offset) {
   const ClpvView mine = views[which];
   const float8 along = vec_dot_unfused(offset, vec_of(mine.forward));

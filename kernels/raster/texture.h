@@ -171,7 +171,7 @@ CLPV_INLINE void clpv_trilinear(__global const float4* table, __global const uin
   Vec a, b;
   clpv_bilinear(table, texels, finest + as_uint8(fine), uv, &a);
   *colour = a;
-  if (none(weight > (float8)(0.0f))) return;  // magnified: level 0 alone
+  if (none(weight > (float8)(0.0f))) return;  // magnified: only level 0
   clpv_bilinear(table, texels, finest + as_uint8(coarse), uv, &b);
   colour->x = clpv_mix(a.x, b.x, weight);
   colour->y = clpv_mix(a.y, b.y, weight);

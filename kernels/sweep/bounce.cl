@@ -2,7 +2,7 @@
 // Reflects swept light off the surfaces in a cascade's cells: one more bounce, or all bounces as a truncated Neumann
 // series.
 //
-//   B = I + R D               inject_reflected       one bounce; R D alone with `injected_share` 0
+//   B = I + R D               inject_reflected       one bounce; only R D with `injected_share` 0
 //   B = I + R D_1 + S D_2     inject_series          all bounces in the coarsest cascade; D_2: incident flux of R D_1
 //   S = R (1 + E)             extend_series          E: flux that other surfaces return of 1 W leaving a face
 //   B = I + R D_coarser / 4   inject_interpolated    all bounces in a finer cascade
@@ -11,7 +11,7 @@
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance of a face per
 // channel, I the injected light, B the sources of the next sweep. By reciprocity E is the incident flux while every face
 // emits what it reflects of 1 W: inject_unit, a sweep along 24 directions and extend_series add one term of the series.
-// E depends on geometry alone. Of light L_b in bins b (w_b, Omega_b) a face of normal a receives
+// E depends only on geometry. Of light L_b in bins b (w_b, Omega_b) a face of normal a receives
 //   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2
 // and it emits a flux Phi as the lobe Phi max(0, w.a) / pi, projected on the basis.
 //

@@ -26,7 +26,7 @@ CLPV_INLINE int clpv_border_at(const int ordinate, const int face, const int pla
   return side * CLPV_SWEEP_PITCH + 1 + at;
 }
 
-// First cell of the halo along an axis. A halo is passed by value, and its arrays are indexed by literals alone
+// First cell of the halo along an axis. A halo is passed by value, and its arrays are indexed only by literals
 // (region.h).
 #define CLPV_HALO_FIRST(halo, axis) \
   ((axis) == 0 ? (halo).first[0] : ((axis) == 1 ? (halo).first[1] : (halo).first[2]))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Copies injected light into the layout of a sweep (sweep_layout.h) and marks the rows of cells that hold any: few do,
-// and a sweep reads sources in those rows alone (sweep_cell.h).
+// and a sweep reads sources only in those rows (sweep_cell.h).
 //
 // In:   injected  light volume [W/sr], any basis and layout
 // Out:  sources   coefficients [W/sr], CLPV_N volumes of each of 3 channels across z, then the same across x. A volume

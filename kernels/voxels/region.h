@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Tests whether a cell must be voxelised again (shared/region.h), and numbers the triangles of the work-items that do
-// so.
+// Tests whether a cell must be voxelised again (shared/region.h), and assigns each re-voxelising
+// work-item its triangle.
 #ifndef CLPV_REGION_H
 #define CLPV_REGION_H
 
 #include "shared/mesh.h"
 #include "shared/region.h"
 
-// Regions are passed by value, and their arrays are indexed by literals alone: an index known only at run time crashes
+// Regions are passed by value, and their arrays are indexed only by literals: an index known only at run time crashes
 // the compiler of Mesa's rusticl 22.3.
 
 // Component of a vector along an axis.
