@@ -306,7 +306,7 @@ void compute_transmittances(const Impl& p) {
   }
 }
 
-// Operations of the code above, per cell; those of a step per cell and channel.
+// Operations of the code above, per cell; a step's per cell and channel.
 constexpr double kFluxFlops = 6 * (3 + 3 + 4 * 2 + 5), kSumFlops = 24, kLobeFlops = 5 + 1 + 3 * 2,
                  kAddFlops = 4;
 constexpr double kTransmittanceFlops = kN * 6 * 3 + kLinks * (1 + 3 * 2 + 3);

@@ -29,8 +29,8 @@ struct PointLight {
 std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned count);
 
 /// Irradiance from VPLs with a shadow ray each. `interleave` n: pixel (x, y) takes only lights (x mod n) + n (y mod n) of each
-/// n^2, for all of them (Keller and Heidrich, 'Interleaved Sampling', EGWR 2001). A light is a disc seen from afar, which bounds
-/// it at corners: flux cos cos' / (pi d^2 + area) (Wallace et al., SIGGRAPH 1989).
+/// n^2, weighted to represent all (Keller and Heidrich, 'Interleaved Sampling', EGWR 2001). VPLs are treated as
+/// discs, which clamps the singularity: flux cos cos' / (pi d^2 + area) (Wallace et al., SIGGRAPH 1989).
 Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave);
 
 /// Irradiance probes with visibility at the centres of cascades' cells (DDGI; Majercik et al., 'Dynamic Diffuse Global
@@ -47,7 +47,7 @@ class Probes {
   std::size_t count() const { return positions_.size(); }  ///< probes of the last frame
 
  private:
-  struct Corner {  ///< the probes about a pixel
+  struct Corner {  ///< the probes around a pixel
     std::uint32_t first = 0;
     glm::vec3 fraction{0};  ///< position between them
     int grid = -1;          ///< none: no cascade encloses the pixel

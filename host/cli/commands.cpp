@@ -78,8 +78,8 @@ void reject_misspelt_command(const CLI::App& app) {
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
   if (edits(*word, *nearest) <= kMaxEdits)
-    throw Error(ExitCode::usage, "'{}' is no command; did you mean {}?", *word, *nearest);
-  throw Error(ExitCode::usage, "'{}' is no command; allowed: {}", *word, fmt::join(names, ", "));
+    throw Error(ExitCode::usage, "unknown command '{}'; did you mean {}?", *word, *nearest);
+  throw Error(ExitCode::usage, "unknown command '{}'; allowed: {}", *word, fmt::join(names, ", "));
 }
 
 /// Throws Error(usage) that suggests the closest option for an unknown one of the command.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Baselines of a quality run: other methods at the time of a frame's indirect light.
+// Baselines of a quality run: other GI methods, given the time of the frame's indirect light.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -30,7 +30,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kPacketFloats = std::size_t{1} << 22;  // 16 MiB: far below the length's 4 GiB
-constexpr timeval kTimeout{5, 0};                            // of a viewer that takes no data
+constexpr timeval kTimeout{5, 0};                            // for a viewer that stopped reading
 constexpr std::uint8_t kCloseImage = 2, kCreateImage = 4, kUpdateImage = 6;
 
 class Packet {
@@ -128,7 +128,7 @@ void Tev::send(const std::vector<char>& packet) {
     if (count > 0) {
       sent += static_cast<std::size_t>(count);  // may be a part
     } else if (errno != EINTR) {
-      close(errno == EAGAIN ? "tev takes no data" : std::strerror(errno));
+      close(errno == EAGAIN ? "tev stopped reading" : std::strerror(errno));
     }
   }
 }

@@ -2,9 +2,9 @@
 // Generates straight-line OpenCL C: structs of a cell's numbers, and products with constant matrices that use
 // symmetries.
 //
-// A mirror of the grid maps each basis function to plus or minus another one. In coordinates that mirrors change in
-// sign alone (sums and differences of mirrored inputs) most entries of a step's matrices are zero, and rows that
-// mirror each other differ in signs alone: a step of sh2 takes 36 multiply-adds instead of 110.
+// A reflection of the grid maps each basis function to plus or minus another one. In sum and difference coordinates,
+// reflections only flip signs: most entries of a step's matrices are zero, and rows that mirror each other differ
+// only in signs: a step of sh2 takes 36 multiply-adds instead of 110.
 #pragma once
 
 #include <map>

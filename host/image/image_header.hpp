@@ -34,11 +34,11 @@ std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes
 /// for the declared size of compressed ones.
 std::vector<std::uint8_t> strip_png(std::span<const std::uint8_t> bytes);
 
-/// The claim of an OpenEXR file's first part, after a walk through the headers of all (OpenEXR's documentation, "File Layout"). Each attribute must have
-/// its type's size, and it and each part's table of chunks must fit into the file: then headers and tables take no more memory
-/// than the file has bytes. Each of several parts must be of a type that OpenEXR checks. What is missing, or has values that
-/// mean nothing, is OpenEXR's to reject. Throws Error(bad_input) that names the file, the part and the attribute, what was
-/// found, and what is allowed.
+/// Validates all part headers of an OpenEXR file; returns the first part's size (OpenEXR's documentation,
+/// "File Layout"). Each attribute must have its type's size, and it and each part's table of chunks must fit into
+/// the file, so headers and tables take no more memory than the file has bytes. Each of several parts must be of a
+/// type that OpenEXR checks. OpenEXR itself rejects missing attributes and meaningless values. Throws
+/// Error(bad_input) that names the file, part, attribute, value found and value allowed.
 DeclaredImage read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes);
 
 }  // namespace clpv

@@ -92,7 +92,7 @@ constexpr double usual_gather_offset(Gathering gathering) {
 
 /// Final gather of light from surfaces nearer than a cell.
 enum class Near {
-  off,     ///< volumes alone
+  off,     ///< only volumes
   traced,  ///< rays against the scene's triangles
 };
 

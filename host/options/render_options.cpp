@@ -45,7 +45,7 @@ std::string preset_help() {
     text += fmt::format("\n{}:", preset);
     for (const auto& [name, value] : options) text += fmt::format(" --{} {}", name, value);
   };
-  add("fine: for who has time", fine_options());
+  add("fine: higher quality, slower", fine_options());
   add("paper: the published scheme", paper_options());
   return text;
 }

@@ -101,9 +101,9 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
   return sum;
 }
 
-/// Radiance towards `origin` of light of spots and points that a ray's first `distance` [m] scatters once. Points are drawn with
-/// the density D / (angle (D^2 + (t - t_0)^2)): D is the light's distance from the ray, t_0 its foot, `angle` what it sees of
-/// the ray.
+/// Radiance towards `origin` of light from spots and points, scattered once in a ray's first `distance` [m].
+/// Equi-angular sampling (Kulla and Fajardo 2012): points have the density D / (angle (D^2 + (t - t_0)^2)), where D is
+/// the light's distance from the ray, t_0 its foot and `angle` the angle subtended by the ray at the light.
 glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
                                    double random) {
   glm::dvec3 sum(0);

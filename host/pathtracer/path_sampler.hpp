@@ -19,7 +19,7 @@ class PathSampler {
  public:
   /// Point of a path.
   struct Vertex {
-    Hit hit;  ///< of a point in the medium: its position alone
+    Hit hit;  ///< of a point in the medium: only its position
     bool in_medium = false;
     glm::dvec3 arrived{0};  ///< in the medium: unit direction in which the path reached it
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Baselines: other methods at the time of a frame's indirect light, calibrated by short runs.
+// Baselines: other GI methods, given the time of the frame's indirect light; short runs calibrate them.
 #pragma once
 
 #include <map>
@@ -20,8 +20,8 @@ enum class Baseline {
   paths,            ///< path tracing
   paths_filtered,   ///< the same with a joint bilateral filter
   vpl,              ///< virtual point lights, the same for all pixels
-  vpl_interleaved,  ///< other ones in each pixel of a block of 4 x 4, with a joint bilateral filter
-  ddgi_first,       ///< irradiance probes, a frame from nothing
+  vpl_interleaved,  ///< different ones in each pixel of a 4 x 4 block, with a joint bilateral filter
+  ddgi_first,       ///< irradiance probes, first frame
   ddgi_converged,   ///< the same after kConvergedFrames frames; the time is that of one
 };
 
@@ -31,7 +31,7 @@ inline constexpr auto kNames<Baseline> = name_list("paths", "paths-filtered", "v
 
 inline constexpr unsigned kConvergedFrames = 128;
 
-/// Time that baselines get, and what they share with the frame that it comes from.
+/// Time budget of baselines, and the inputs that they take from the measured frame.
 struct BaselineBudget {
   double budget_ms = 0;  ///< the frame without `shared_ms`
   double rsm_ms = 0;     ///< RSMs of the coarsest cascade

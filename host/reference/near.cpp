@@ -59,7 +59,7 @@ double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
 }
 
-/// Share of the difference of rays without a hit.
+/// Weight of the correction for rays that miss.
 double NearField::trust(const RadianceField& field, const glm::dvec3& normal) const {
   const double arriving = sum(field_irradiance(basis, field, normal)),
                leaving = sum(field_irradiance(basis, field, -normal));

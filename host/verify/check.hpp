@@ -37,14 +37,14 @@ struct CheckResult {
 
 using CheckResults = std::vector<CheckResult>;
 
-/// Returns those of `formats`, except the default soa/float, in which the device can store volumes of this shape.
+/// Returns the formats, without the default soa/float, in which the device can store volumes of this shape.
 std::vector<VolumeFormat> other_formats(const Device& device, const VolumeShape& shape,
                                         const std::vector<VolumeFormat>& formats);
 
 /// Scope of a check. The default covers each path of a kernel once: one basis of each kind of code (harmonics, radial
-/// functions with and without opposite centres, bins), each volume layout and each number format. It gives up what
-/// differs in constants alone (exact face fluxes of all bases, further directions and grid sizes) and combinations of
-/// basis, format and option; `thorough` has them. Building kernels is nearly all of the time.
+/// functions with and without opposite centres, bins), each volume layout and each number format. It omits
+/// variants that differ only in constants (exact face fluxes of all bases, further directions and grid sizes) and
+/// combinations of basis, format and option; `thorough` has them. Building kernels is nearly all of the time.
 struct CheckScope {
   bool thorough = false;  ///< every combination of basis and options
   std::vector<std::string> bases = {"sh2", "sh3", "srbf4", "srbf8v2", "bins24"};

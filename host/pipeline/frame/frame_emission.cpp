@@ -28,7 +28,7 @@ FrameEmission::FrameEmission(Session& session, const Scene& scene, const SceneBu
   moving_ = std::ranges::any_of(triangles_, [&](std::uint32_t t) { return moves(scene, t); });
 }
 
-double FrameEmission::most(double cell) {
+double FrameEmission::max_flux(double cell) {
   measured_.update(Fingerprint().add(cell).add(instant()).value(),
                    [&] { max_flux_ = max_emitted_flux(scene_, triangles_, cell); });
   return max_flux_;

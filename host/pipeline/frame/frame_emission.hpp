@@ -16,7 +16,7 @@ class FrameEmission {
   FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers);
 
   /// Returns max_emitted_flux() of the scene at its current time [W].
-  double most(double cell);
+  double max_flux(double cell);
 
   /// Plans the points for cascades at `grids`, with their flux multiplied by `scale`. A new `epoch` recomputes them.
   void prepare(const std::vector<ClpvGrid>& grids, float scale, unsigned epoch);

@@ -66,7 +66,7 @@ void FrameLights::find_lights(const SceneCamera& camera) {
 
 void FrameLights::find_scale(const ClpvGrid& coarsest) {
   const double cell = double{coarsest.cell};
-  double other = emission_ ? emission_->most(cell) : 0;
+  double other = emission_ ? emission_->max_flux(cell) : 0;
   other += std::numbers::pi * double{brightest_sky_} * cell * cell;
   std::vector<ClpvLight> all;
   for (const Lit& lit : lights_) all.push_back(lit.light);

@@ -94,7 +94,7 @@ class FrameLights {
 /// Returns the scale of stored light: a power of two for 16-bit storage, 1 for float32. 16-bit numbers end at 65504
 /// and lose precision below 6e-5, while lights may be given in lux. With this scale, a cell of `coarsest_cell` [m] that
 /// receives all light of the brightest source stores about 256 W/sr. Cells of each finer cascade store a quarter of it.
-/// This leaves room for what propagation adds, and for values a million times smaller.
+/// This leaves room for light that propagation adds, and for values a million times smaller.
 /// `other`: upper bound of the flux that all other sources send through such a cell [W] (max_emitted_flux).
 float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
                   double other = 0);

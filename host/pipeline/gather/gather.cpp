@@ -105,7 +105,7 @@ void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
                       const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale,
                       const Buffer* occluded, const std::vector<bool>& changed) {
   require_fit(camera, grids, accumulated);
-  if (sees() && occluded == nullptr) throw Error(ExitCode::run_time, "gather: nothing says what is occluded");
+  if (sees() && occluded == nullptr) throw Error(ExitCode::run_time, "gather: occlusion buffer required with visibility on");
   reserve(grids.size());
   cascades_ = grids.size();
   session_.write(grids_, grids);

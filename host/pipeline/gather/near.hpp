@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage `near`: replaces the volumes' light from surfaces nearer than a cell by that of rays (kernels/gather/near.cl).
+// Stage `near`: traces rays for light from surfaces nearer than a cell, and replaces the volumes' (kernels/gather/near.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -20,7 +20,8 @@ namespace clpv {
 
 class NearField {
  public:
-  /// `basis`: of the gathered light. `scene` must outlive this object, and have the positions that `buffers` hold.
+  /// `basis`: of the gathered light. `scene` must outlive this object; it and `buffers` must be at
+  /// the same time.
   NearField(Session& session, const Basis& basis, const Scene& scene, const SceneBuffers& buffers,
             const NearOptions& options);
 

@@ -105,7 +105,7 @@ class Sweeper {
   Passes bounce_passes_;
   std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce
   std::optional<SweepMedium> medium_;
-  bool scattered_swept_ = false;  ///< the next sweep has the medium's light of swept light too
+  bool scattered_swept_ = false;  ///< next sweep includes multiply scattered light
   Buffer first_swept_;            ///< D_1 of docs/method.md; only with all bounces
   float sky_scale_ = 1;
 };

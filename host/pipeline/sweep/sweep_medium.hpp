@@ -28,7 +28,7 @@ class SweepMedium {
   void scatter_swept(const Buffer& swept);
 
   /// Adds the medium to the arguments of a sweep of a cascade. `swept`: with the light of the last scatter_swept(), not of the
-  /// lights alone.
+  /// lights only.
   void add_to(Kernel& sweep, std::size_t cascade, bool swept) const;
 
   const ClpvMedium& medium() const { return medium_; }

@@ -18,11 +18,11 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
 /// Sets the attenuation of a table's directions by a medium, for cells of edge `cell` [m].
 void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium, double cell);
 
-/// Part in [0, 1] of a cascade's cells inside a medium's box along x, y and z, whose product is that of a cell: three rows of
-/// CLPV_SWEEP_PITCH_OF(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the cells beside the grid.
+/// Separable cell coverage by the medium's box, in [0, 1]; multiply x, y and z. Three rows of
+/// CLPV_SWEEP_PITCH_OF(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the halo's cells.
 std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid);
 
-/// part_means() without the coefficients that no direction of a bin depends on (those of other bins).
+/// part_means() without the coefficients that no direction of a bin depends on (they belong to other bins).
 struct SweepMeans {
   int emitting;                   ///< coefficients per bin, the most of any bin
   std::vector<int> coefficients;  ///< 24 x emitting
