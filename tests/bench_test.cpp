@@ -191,7 +191,7 @@ const std::vector<std::string> kRow = test::words_of(
     "real_time cpu_time wall_ms first_launch_ms build_ms device_bytes host_bytes flops bytes reads_per_cell "
     "writes_per_cell gflops gbps max_rel_error tolerance ceiling_share");
 
-/// Small enough for a kernel's compiling to be what takes the time.
+/// Small enough that compiling dominates the time.
 SuiteOptions small() {
   SuiteOptions options;
   options.settings.grid = 16, options.settings.rsm_size = 64, options.settings.shadow_size = 128;

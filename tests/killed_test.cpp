@@ -48,7 +48,7 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   bool running() const { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
-  /// Whether it is the program by now, and has asked for SIGINT: before, that would end it unheard.
+  /// True once exec() has run and the program handles SIGINT; before that, SIGINT ends it without a message.
   bool listens() const {
     std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
     std::string word, name;

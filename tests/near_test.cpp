@@ -124,7 +124,7 @@ TEST(Near, InsideAnEmissiveBoxIsPiL) {
   add_quad(scene, {-0.5f, 0.5f, -0.5f}, {1, 0, 0}, {0, 0, 1}, emitter);
   for (const float x : {-0.5f, 0.5f}) add_quad(scene, {x, -1, -0.5f}, {0, 1.5f, 0}, {0, 0, 1}, emitter);
   for (const float z : {-0.5f, 0.5f}) add_quad(scene, {-0.5f, -1, z}, {1, 0, 0}, {0, 1.5f, 0}, emitter);
-  // Whatever the volumes hold: every ray hits.
+  // Every ray hits, so the volumes' light does not matter.
   const std::vector<glm::dvec3> found = near(scene, EvenLight(0.7), options_for(4));
   for (const glm::dvec3& e : found) ASSERT_NEAR(e.x, pi * kRadiance, 0.02 * kRadiance);
 }

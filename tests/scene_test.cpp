@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: their keys, what they replace in the model, and defaults; and Sponza as a whole.
+// Scene files: keys, precedence over the model, defaults; and all of Sponza.
 #include "scene/scene.hpp"
 
 #include <glm/gtc/constants.hpp>

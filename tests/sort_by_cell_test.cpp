@@ -45,7 +45,7 @@ void expect_sorted(const Keys& keys, std::size_t cells) {
   EXPECT_EQ(sorted_there(sorter, keys, cells), sorted_here(keys)) << keys.size() << " texels, " << cells;
 }
 
-/// Runs of neighbours in one cell, up to `longest`, one texel in eight with no cell: what surfaces look like.
+/// Runs of up to `longest` neighbours in one cell, as surfaces have; one texel in eight has no cell.
 Keys in_runs(std::size_t texels, cl_uint cells, unsigned longest, unsigned seed = 1) {
   std::mt19937 random(seed);
   Keys keys;

@@ -104,7 +104,7 @@ TEST_P(EachTransport, BlockersAreAveragedOverTheLinksFace) {
   EXPECT_GT(between, 0);
 }
 
-// On sh2 a surfel that faces n blocks 1/4 - n.w/2 of what travels along w.
+// On sh2 a surfel of normal n blocks 1/4 - n.w/2 of the light along w.
 TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
   const auto basis = make_basis("sh2");
   const glm::dvec3 normal = glm::normalize(glm::dvec3(2, -1, 3));
@@ -115,8 +115,8 @@ TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
              });
 }
 
-// A surfel across an axis keeps |n.w| of what travels along w, whatever w; a slanted one the same of what travels along
-// the axes, and no less of the rest.
+// A surfel across an axis blocks |n.w| of the light along every w. An oblique surfel transmits the same fraction along
+// the axes, and at least that elsewhere.
 TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
   const auto basis = make_basis("sh2");
   const Transport by_areas = transport(*basis, Blocking::areas);

@@ -10,5 +10,5 @@ __kernel void uninitialised(__global const int* in, __global int* out) {
   if (in[i] > 3) out[i] = 1;
 }
 
-// No fault: what is reported here would be reported anywhere.
+// No fault: a report here is a false alarm.
 __kernel void sound(__global int* out) { out[get_global_id(0)] = (int)get_global_id(0); }

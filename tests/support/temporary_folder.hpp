@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A folder for what a test writes.
+// A temporary folder for a test's files.
 #pragma once
 
 #include <cstdlib>
