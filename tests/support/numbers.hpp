@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Arithmetic that several tests need.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace clpv::test {
+
+inline std::vector<double> times(double factor, std::vector<double> values) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+/// Mean of one channel of RGBA pixels.
+inline double mean(std::span<const float> rgba, std::size_t channel) {
+  double sum = 0;
+  for (std::size_t i = channel; i < rgba.size(); i += 4) sum += double{rgba[i]};
+  return 4 * sum / static_cast<double>(rgba.size());
+}
+
+/// Mean of the first component.
+template <typename T>
+double mean(const std::vector<glm::vec<3, T>>& values) {
+  double sum = 0;
+  for (const auto& value : values) sum += double{value.x};
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace clpv::test

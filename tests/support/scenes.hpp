@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Files of scenes.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace clpv::test {
+
+inline const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
+                         kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
+
+inline std::filesystem::path scene_file(const std::string& name) {
+  return std::filesystem::path(CLPV_SOURCE_DIR) / "scenes" / name;
+}
+
+/// Model of Crytek Sponza (a file or folder that CLPV_SPONZA names); empty if it is absent.
+inline std::filesystem::path sponza() {
+  const char* given = std::getenv("CLPV_SPONZA");
+  std::filesystem::path path = given != nullptr && *given != '\0'
+                                   ? std::filesystem::path(given)
+                                   : std::filesystem::path(CLPV_SOURCE_DIR) / "../shared/scenes/sponza";
+  if (std::filesystem::is_directory(path)) path /= "Sponza.gltf";
+  return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+}  // namespace clpv::test
