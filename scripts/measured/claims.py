@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: MIT
+"""Measures the paper's claims: the numbers of docs/bases.md and docs/paper/figures.md.
+
+    scripts/claims [lobes] [tables] [light] [views] [texels] [shadows] [columns] [cost] [--model PATH/Sponza.gltf] [--out DIR]
+
+lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and in searched centres
+tables   errors and energies of rotated lobes, by the number of table entries
+light    difference of sh2 and srbf8v2 with `--preset paper`, and the error of both against path tracing, by steps,
+         size of the smallest cascade and texels of the RSM; camera `curtains`
+views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras under three suns, by steps and size of the
+         smallest cascade
+texels   difference of neighbouring texels of an RSM, by size of the cascade; camera `curtains`
+shadows  contrast of indirect light on the floor with and without indirect shadows, and of path tracing; camera `columns`
+columns  irradiance of the floor behind the arcade: behind its first column, and between columns; camera `columns`, Sponza only
+cost     `clpv bench table1`
+
+Default: all. Scene: Sponza; without --model this project's atrium. Prints tables and writes claims.json into DIR
+(out/claims). First builds. Needs the packages of scripts/setup.
+"""
+import argparse
+import functools
+import itertools
+import json
+import math
+import pathlib
+import subprocess
+
+import numpy as np
+
+from . import CLPV, ROOT, native
+
+clpv = native()  # main() builds the native module
+from clpv import search  # noqa: E402
+
+BASES = ("sh2", "srbf8v2")
+STEPS, SIZES, TEXELS = (8, 24), (12.5, 50), (256, 1024)
+WIDTH, HEIGHT = 240, 135  # of images that are compared with path tracing
+NOISE = 0.02
+NOISE_OF_PAIRS = 0.05  # of the views' ground truths: both bases of a pair meet the same noise
+REPETITIONS = 7  # of each row of `clpv bench table1`
+UP = 0.99  # minimum y of a floor's normals
+
+
+# Other sets that fit the paper's description.
+def ring(z, first_degrees):
+    radius = math.sqrt(1 - z * z)
+    turns = (math.radians(first_degrees + 120 * i) for i in range(3))
+    return [[radius * math.cos(a), radius * math.sin(a), z] for a in turns]
+
+
+AXES = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+POLES = [[0, 0, 1], [0, 0, -1]]
+GUESSES = {
+    "srbf4: a centre down": [[0, 0, -1]] + ring(1 / 3, -90),
+    "srbf4: on four of the cube's corners": [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]],
+    "srbf8v1: the same azimuths in both rings": POLES + ring(1 / 3, 0) + ring(-1 / 3, 0),
+    "srbf8v1: six round the equator": POLES + ring(0, 0) + ring(0, 60),
+    "srbf8v1: rings at z = 0.5 and -0.5": POLES + ring(0.5, 0) + ring(-0.5, 60),
+    "srbf8v3: (1, 1, 1) and (-1, -1, 1)": AXES + [[1, 1, 1], [-1, -1, 1]],
+    "srbf8v3: (-2, 1, -3) and its opposite": AXES + [[-2, 1, -3], [2, -1, 3]],
+}
+
+
+NAMED = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96")
+ALONG_Z, OBLIQUE = (0, 0, 1), (-2, 1, -3)
+TABLE_SIZES = 256, 257, 512, 1024, 0  # 0: H is computed
+
+
+def of_lobes(bases):
+    rows = []
+    for name, basis in bases.items():
+        up, oblique = map(basis.lobe, (ALONG_Z, OBLIQUE))
+        rotated = basis.lobe(OBLIQUE, basis.clamped_cosine(OBLIQUE, TABLE_SIZES[0]))
+        row = {"basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
+               "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
+               "oblique_rotated_minimum": rotated["minimum"], "mean": basis.mean_error, "minimum": up["minimum"],
+               "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
+        rows.append(row)
+        print(f"{name:44} {row['n']:3} {row['condition']:9.4g} {row['up']:7.3f} {row['oblique']:7.3f} "
+              f"{row['oblique_rotated']:8.3f} {row['oblique_rotated_minimum']:9.3f} {row['mean']:7.3f}")
+    return rows
+
+
+def lobes(_):
+    """Errors of the named bases, of other guesses, and of the best sets that a search finds."""
+    print(f"{'relative L2 error of the clamped cosine':44} {'N':>3} {'condition':>9} {'+z':>7} {'oblique':>7} "
+          f"{'rotated':>8} {'its least':>9} {'mean':>7}")
+    guesses = {name: clpv.Basis(name, centres=centres) for name, centres in GUESSES.items()}
+    rows = of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})
+    searched = []
+    print(f"\n{'searched for (clpv.search N)':34} {'condition':>9} {'error':>8} {'minimum':>8}")
+    for count, over, lambdas in itertools.product((4, 6, 8, 9, 12, 14), ("all", "axes"), ("none", "one", "each")):
+        found = search.search(count, over, lambdas)
+        row = {"n": count, "over": over, "lambdas": lambdas, "error": found.error,
+               "bound": search.minimum_error(count) if over == "all" else None,
+               "condition": found.condition, "lambda": 0 if lambdas == "each" else found.lambdas[0]}
+        searched.append(row)
+        bound = f"{row['bound']:8.4f}" if row["bound"] is not None else f"{'-':>8}"
+        print(f"{f'{count}, over {over}, lambdas {lambdas}':34} {row['condition']:9.4g} {row['error']:8.4f} {bound}")
+    return {"sets": rows, "searched": searched}
+
+
+def tables(_):
+    """Lobes that are rotated through tables of H: errors along +z, and energies of the transport."""
+    rows = []
+    print(f"{'rotated lobes':10} {'entries':>8} {'+z':>8} {'peak off':>9} {'energy 8':>9} {'energy 24':>9}")
+    for name, size in itertools.product((name for name in NAMED if name.startswith("srbf")), TABLE_SIZES):
+        basis = clpv.Basis(name)
+        lobe = basis.lobe(ALONG_Z, basis.clamped_cosine(ALONG_Z, size))
+        row = {"basis": name, "entries": size, "up": lobe["relative_l2"], "peak_error_degrees": lobe["peak_error_degrees"],
+               "energy_sampled_8": basis.energy(8, table_size=size), "energy_sampled_24": basis.energy(24, table_size=size)}
+        rows.append(row)
+        print(f"{name:10} {size:8} {row['up']:8.4f} {row['peak_error_degrees']:8.1f}d {row['energy_sampled_8']:9.4f} "
+              f"{row['energy_sampled_24']:9.4f}")
+    return rows
+
+
+class Views:
+    """The scene of claims about light, its images and its ground truth."""
+
+    def __init__(self, arguments):
+        self.name, self.shadowed = ("sponza", "columns") if arguments.model else ("atrium", "gallery")
+        self.scene = clpv.Scene(ROOT / f"scenes/{self.name}.json", arguments.model)
+
+    @functools.cache
+    def truth(self, camera, view="indirect", noise=NOISE):
+        return clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
+
+    def renderer(self, **options):
+        return clpv.Renderer(self.scene, **{"width": WIDTH, "height": HEIGHT, **options})
+
+    def image(self, camera, **options):
+        return self.renderer(**options).render("indirect", camera)
+
+
+def light(arguments):
+    """Over steps, cascades and RSMs: how far apart the bases are, and how far off each is."""
+    views_of = Views(arguments)
+    rows = []
+    print(f"{'indirect light, curtains, --preset paper':42} {'difference':>10} {'sh2':>8} {'srbf8v2':>8}  [NRMSE]")
+    for size, texels, steps in itertools.product(SIZES, TEXELS, STEPS):
+        images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size, rsm_size=texels, iterations=steps)
+                  for name in BASES]
+        row = {"cascade_size": size, "rsm_size": texels, "iterations": steps,
+               "difference": clpv.compare(images[1], images[0]).nrmse,
+               **{name: clpv.compare(image, views_of.truth("curtains")).nrmse for name, image in zip(BASES, images)}}
+        rows.append(row)
+        print(f"{f'{size:g} m, RSM {texels}, {steps} steps':42} {row['difference']:10.3f} {row['sh2']:8.4f} "
+              f"{row['srbf8v2']:8.4f}")
+    return rows
+
+
+# A fourth camera for the paired comparison, beside the scene's own three.
+FOURTH = {"sponza": clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back"),
+          "atrium": clpv.Camera((5.0, 1.6, 0.4), (-6.0, 2.2, 0.0), name="back")}
+
+
+def views(arguments):
+    """Of each setting: both errors in every view, and mean, standard error and signs of their paired differences."""
+    views_of = Views(arguments)
+    cameras = [*views_of.scene.cameras[:3], FOURTH[views_of.name]]
+    suns = json.loads((ROOT / "scenes/sponza_other_suns.json").read_text())["lights"]
+    views_of.scene.lights = [clpv.Light(direction=sun["direction"], intensity=sun["illuminance_lux"], name=sun["name"])
+                             for sun in suns]
+    views_of.scene.cameras = [camera.replace(name=f"{camera.name}-{sun['name']}", light=sun["name"])
+                              for camera, sun in itertools.product(cameras, suns)]
+    rows, summary = [], []
+    print(f"{'paired, sh2 minus srbf8v2 [NRMSE]':34} {'mean':>8} {'error':>8} {'srbf8v2 better':>15}")
+    for size, steps in itertools.product(SIZES, STEPS):
+        errors = {name: {} for name in BASES}
+        for name in BASES:
+            # Lobes as constants give the light of run-time lobes within 2e-4, five times as fast.
+            renderer = views_of.renderer(preset="paper", lobe_time="host", basis=name, cascade_size=size, iterations=steps)
+            for camera in (each.name for each in views_of.scene.cameras):
+                found = clpv.compare(renderer.render("indirect", camera), views_of.truth(camera, noise=NOISE_OF_PAIRS))
+                errors[name][camera] = found.nrmse
+                rows.append({"camera": camera, "basis": name, "cascade-size": str(size), "iterations": str(steps),
+                             "nrmse": found.nrmse, "energy_ratio": found.energy_ratio})
+        apart = {camera: errors["sh2"][camera] - errors["srbf8v2"][camera] for camera in errors["sh2"]}
+        differences = np.array(list(apart.values()))
+        better = int((differences > 0).sum())
+        summary.append({"cascade_size": size, "iterations": steps, "mean": differences.mean(),
+                        "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)), "srbf8v2_better": better,
+                        "views": len(apart), "apart": apart})
+        print(f"{f'{size:g} m, {steps} steps':34} {summary[-1]['mean']:+8.4f} {summary[-1]['standard_error']:8.4f} "
+              f"{f'{better} of {len(apart)}':>15}")
+        for camera, value in apart.items():
+            print(f"  {camera:32} {errors['sh2'][camera]:8.4f} {errors['srbf8v2'][camera]:8.4f} {value:+8.4f}")
+    return {"summary": summary, "rows": rows}
+
+
+def shadows(arguments):
+    """Contrast of irradiance between the floor's darkest and brightest quarter in the ground truth, for every image."""
+    views_of = Views(arguments)
+    camera = views_of.shadowed
+    albedo, normal = (views_of.truth(camera, view).array.astype(float) for view in ("albedo", "normal"))
+    albedo = albedo[..., :3].sum(axis=-1)
+    floor = (normal[..., 1] > UP) & (albedo > 0)
+
+    def on_floor(image):
+        return image.array[..., :3].astype(float).sum(axis=-1)[floor] / albedo[floor]
+
+    def contrast(light):
+        return (light[bright].mean() - light[dark].mean()) / (light[bright].mean() + light[dark].mean())
+
+    irradiance, rows = on_floor(views_of.truth(camera)), []
+    dark, bright = irradiance <= np.quantile(irradiance, 0.25), irradiance >= np.quantile(irradiance, 0.75)
+    print(f"{'contrast of indirect light on the floor':42} {'shadows on':>10} {'off':>8}")
+    rows.append({"image": "path traced", "on": contrast(irradiance), "off": None})
+    print(f"{'path traced':42} {rows[0]['on']:10.3f} {'-':>8}")
+    variants = [{"preset": "paper", "basis": name} for name in BASES] + [{"preset": "best"}]
+    variants.append({"preset": "paper", "basis": "sh2", "grid": "64", "iterations": "16"})  # light reaches as far
+    for variant in variants:
+        on, off = (contrast(on_floor(views_of.image(camera, **variant, **blockers)))
+                   for blockers in ({}, {"blockers": "none"}))
+        name = " ".join(variant.values())
+        rows.append({"image": name, "on": on, "off": off})
+        print(f"{name:42} {on:10.3f} {off:8.3f}")
+    return {"floor_pixels": int(floor.sum()), "rows": rows}
+
+
+FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
+OTHER_WAY = 0.5  # cosine of the angle beyond which two normals differ
+
+
+def texels(arguments):
+    """Of neighbouring texels: mean difference of their flux over its mean, and share of pairs with other normals."""
+    views_of = Views(arguments)
+    camera = views_of.scene.cameras[0]
+    sun = np.array(next(light.direction for light in views_of.scene.lights if camera.light in ("", light.name)))
+    sun /= np.linalg.norm(sun)
+    renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
+    rows = []
+    print(f"{'neighbouring texels of the RSM, 256^2':42} {'flux':>8} {'normals beyond 60 degrees':>26}")
+    for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
+        above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0), near=0.05,
+                               fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
+        albedo = renderer.render("albedo", above).array[..., :3].astype(float)
+        normal = renderer.show("normal").array[..., :3].astype(float)
+        flux = albedo.sum(axis=-1) * np.clip(-(normal @ sun), 0, None)
+        met = (normal ** 2).sum(axis=-1) > 0.5
+        apart, cosines, fluxes = [], [], []
+        for here, there in ((np.s_[1:], np.s_[:-1]), (np.s_[:, 1:], np.s_[:, :-1])):
+            both = met[here] & met[there]
+            apart += [abs(flux[here] - flux[there])[both]]
+            fluxes += [flux[here][both]]
+            cosines += [(normal[here] * normal[there]).sum(axis=-1)[both]]
+        apart, cosines, fluxes = map(np.concatenate, (apart, cosines, fluxes))
+        rows.append({"size": size, "flux": apart.mean() / fluxes.mean(), "normals": (cosines < OTHER_WAY).mean()})
+        print(f"{f'{size:g} m':42} {rows[-1]['flux']:8.3f} {rows[-1]['normals']:26.3f}")
+    return rows
+
+
+# Sponza's floor, 0.5 m behind the arcade that camera `columns` sees, and x of its first column and of the curtains beside it [m].
+BEHIND_ARCADE = -2.7
+FIRST_COLUMN, CURTAINS = (-6.25, -6.1, -5.95), (-7, -6.85, -6.7, -5.35, -5.2, -5.05)
+
+
+def columns(arguments):
+    """Irradiance behind the first column and behind the curtains beside it, with and without indirect shadows."""
+    if not arguments.model:
+        print("columns: needs --model, since it knows where Sponza's columns are")
+        return None
+    views_of = Views(arguments)
+    points = [(x, 0.02, BEHIND_ARCADE) for x in FIRST_COLUMN + CURTAINS]
+    rows = []
+    print(f"{'floor behind the arcade':42} {'column':>8} {'curtains':>9} {'ratio':>7} {'without shadows':>16}")
+    for variant in ["preset=paper lobe-time=host basis=sh2", "preset=paper lobe-time=host basis=srbf8v2", "preset=best", "grid=64"]:
+        options = dict(option.replace("-", "_").split("=") for option in variant.split())
+        means = []
+        for blockers in ({}, {"blockers": "none"}):
+            renderer = clpv.Renderer(views_of.scene, **options, **blockers)
+            renderer.render(camera="columns")
+            light = renderer.irradiance(points, [(0, 1, 0)] * len(points)).astype(float).sum(axis=-1)
+            means += [light[:len(FIRST_COLUMN)].mean(), light[len(FIRST_COLUMN):].mean()]
+        rows.append({"options": variant, **dict(zip(("column", "curtains", "column_off", "curtains_off"), means))})
+        print(f"{variant:42} {means[0]:8.4f} {means[1]:9.4f} {means[0] / means[1]:7.2f} {means[2] / means[3]:16.2f}")
+    return rows
+
+
+def cost(arguments):
+    scene = ["--scene", "scenes/sponza.json", "--model", arguments.model] if arguments.model else []
+    command = [str(CLPV), "bench", "table1", *scene, "--repetitions", str(REPETITIONS)]
+    text = subprocess.run(command, stdout=subprocess.PIPE, check=True, cwd=ROOT).stdout.decode()
+    print(text)
+    return text.splitlines()
+
+
+CLAIMS = {"lobes": lobes, "tables": tables, "light": light, "views": views, "texels": texels, "shadows": shadows,
+          "columns": columns, "cost": cost}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("claims", nargs="*", metavar="NAME", help=f"{', '.join(CLAIMS)} (default: all)")
+    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/claims", help="output folder (default: out/claims)")
+    arguments = parser.parse_args()
+    for name in arguments.claims:
+        if name not in CLAIMS:
+            parser.error(f"found '{name}', allowed: {', '.join(CLAIMS)}")
+    arguments.out = arguments.out.resolve()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
+    file = arguments.out / "claims.json"
+    results = json.loads(file.read_text()) if file.exists() else {}
+    for name in arguments.claims or CLAIMS:
+        results[name] = CLAIMS[name](arguments)
+        file.write_text(json.dumps(results, indent=2) + "\n")
+        print()
+

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: MIT
+"""Renders the paper's Figures 1 to 6 with clpv: contact sheets with captions, and numbers.
+
+    scripts/figures [--model PATH/Sponza.gltf] [--out DIR]
+
+Scene: Sponza; without --model this project's atrium. Output: DIR (out/figures).
+
+figure1, figure4   camera `curtains`, by `--preset paper` and by the defaults with the paper's two bases
+figure2, 3, 6      by `clpv basis --figures`, with both kinds of lobes
+figure5            camera `columns` (atrium: `gallery`), as figure1
+srbf14.jpg         srbf14 with rotated lobes and sampled transport, and with exact ones; camera `atrium` (`nave`)
+figures.json       brightness of indirect light after 8 and 24 steps
+
+These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md describes them. First builds. Needs
+the packages of scripts/setup.
+"""
+import argparse
+import itertools
+import json
+import pathlib
+import subprocess
+
+import numpy as np
+
+from . import CLPV, ROOT, native
+from .rows import EXACT_LOBES
+
+clpv = native()  # main() builds the native module
+from clpv.draw import style  # noqa: E402
+
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+PRESETS = ("paper", "best")
+BASES = ("sh2", "srbf8v2")
+SIZES = (12.5, 50)  # m, edge of the smallest cascade
+STEPS = (8, 24)
+# Three settings for srbf14. The first's errors are those of the table too.
+EXACT = {name.replace("-", "_"): value for name, value in EXACT_LOBES.items() if name != "preset"}
+SETTINGS = {
+    "rotated lobes": {},
+    "exact lobes": EXACT,
+    "both exact": {**EXACT, "transport": "exact"},
+}
+AMPLIFY = 15  # factor of difference images, as in the paper
+WIDTH, DPI = 12.7, 85  # sheets: inches, pixels per inch
+# A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are rounding.
+DARKER = 0.02
+
+
+class Frames:
+    """Frames of one view, each rendered once, as display images and as arrays."""
+
+    def __init__(self, scene, arguments, camera):
+        self.scene, self.camera = scene, camera
+        self.size = {"width": arguments.width, "height": arguments.height}
+        self.exposure = arguments.exposure if arguments.exposure is not None else (4.0 if arguments.model else 0.6)
+        self.view = f"{'Sponza' if arguments.model else 'atrium'}, camera {camera}, exposure {self.exposure:+g} EV"
+        self.rendered = {}
+
+    def frame(self, view, **options):
+        """The frame as an Image."""
+        key = tuple(options.items())
+        if key not in self.rendered:
+            renderer = clpv.Renderer(self.scene, **self.size, **options)
+            self.rendered[key] = {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
+        return self.rendered[key][view]
+
+    def image(self, view="full", **options):
+        """Pixels for a display, transparent without a surface."""
+        return self.frame(view, **options).display(self.exposure)
+
+    def indirect(self, **options):
+        """Luminance of the indirect light."""
+        return self.frame("indirect", **options).array[..., :3] @ np.array(LUMINANCE)
+
+
+def difference(a, b):
+    return np.clip(AMPLIFY * np.abs(a.astype(int) - b)[..., :3], 0, 255).astype(np.uint8)
+
+
+def sheet(path, title, columns, tiles):
+    """Tiles (pixels, caption), row by row, under a title."""
+    height, width = tiles[0][0].shape[:2]
+    tile = (WIDTH / columns, WIDTH / columns * height / width)
+    made = style.Sheet([title], columns, len(tiles), tile, above=True)
+    for i, (pixels, caption) in enumerate(tiles):
+        made.tile(i, caption).imshow(pixels, interpolation="lanczos", aspect="auto")
+    made.save(path, DPI)
+    print(path)
+
+
+def pair(frames, view="full", **options):
+    """Returns captioned tiles of both bases and of their difference."""
+    images = [frames.image(view, basis=basis, **options) for basis in BASES]
+    return [*zip(images, BASES), (difference(*images), f"difference x{AMPLIFY}")]
+
+
+def with_caption(tiles, text):
+    return [(pixels, f"{caption}, {text}") for pixels, caption in tiles]
+
+
+def figure1(frames, out):
+    tiles = [tile for preset in PRESETS for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")]
+    sheet(out / "figure1.jpg", f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
+
+
+def figure4(frames, out, preset):
+    tiles = []
+    for size, steps in itertools.product(SIZES, STEPS if preset == "paper" else ("no",)):  # a sweep takes none
+        given = {} if steps == "no" else {"iterations": steps}
+        tiles += with_caption(pair(frames, preset=preset, cascade_size=size, **given), f"{size:g} m, {steps} iterations")
+    sheet(out / f"figure4-{preset}.jpg",
+          f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps ({frames.view})", 3, tiles)
+
+
+def figure5(frames, out, preset):
+    tiles = []
+    for view, light in (("full", "direct light on"), ("indirect", "direct light off")):
+        open_air = frames.image(view, basis="srbf8v2", preset=preset, blockers="none")
+        tiles += with_caption(pair(frames, view, preset=preset), light)
+        tiles.append((open_air, f"srbf8v2, {light}, no indirect shadows"))
+    sheet(out / f"figure5-{preset}.jpg", f"Figure 5 by --preset {preset}: indirect shadows ({frames.view})", 4, tiles)
+
+
+def srbf14(frames, out):
+    tiles = []
+    for (setting, options), steps in itertools.product(SETTINGS.items(), STEPS):
+        for size, view in itertools.product(SIZES, ("full", "indirect")):
+            pixels = frames.image(view, preset="paper", basis="srbf14", **options, cascade_size=size, iterations=steps)
+            tiles.append((pixels, f"{setting}, {steps} steps, {size:g} m, {view}"))
+    sheet(out / "srbf14.jpg", f"srbf14 by --preset paper, with other lobes and transport ({frames.view})", 4, tiles)
+
+
+def variants():
+    """Yields the variants that figures.json compares at both numbers of steps."""
+    for basis in BASES:
+        yield {"preset": "paper", "basis": basis}
+    for setting in SETTINGS.values():
+        yield {"preset": "paper", "basis": "srbf14", **setting}
+
+
+def measure(frames, out):
+    """Writes the mean indirect light at both numbers of steps, and the share of pixels that the later steps darken."""
+    rows = []
+    print(f"{'indirect light':44} {'8 steps':>8} {'24 steps':>8} {'ratio':>6} {'darker pixels':>14}")
+    for variant, size in itertools.product(variants(), SIZES):
+        few, many = (frames.indirect(**variant, cascade_size=size, iterations=steps) for steps in STEPS)
+        lost = float((many < few - DARKER * few.mean()).mean())
+        row = {**variant, "cascade_size": size, "mean_8": few.mean(), "mean_24": many.mean(), "darker": lost}
+        rows.append(row)
+        name = " ".join(str(value) for value in variant.values())
+        print(f"{name + f', {size:g} m':44} {row['mean_8']:8.4f} {row['mean_24']:8.4f} "
+              f"{row['mean_24'] / row['mean_8']:6.3f} {100 * lost:12.1f} %")
+    (out / "figures.json").write_text(json.dumps({"view": frames.view, "rows": rows}, indent=2) + "\n")
+
+
+def basis_figures(out):
+    for lobe in ("exact", "rotate"):
+        subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", str(out / f"lobes-{lobe}")], check=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
+    parser.add_argument("--exposure", type=float, help="exposure of all images [EV] (default: 4; without --model: 0.6)")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/figures", help="output folder (default: out/figures)")
+    parser.add_argument("--width", type=int, default=960, help="image width [pixels] (default: 960)")
+    parser.add_argument("--height", type=int, default=540, help="image height [pixels] (default: 540)")
+    arguments = parser.parse_args()
+    subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    scene = clpv.Scene(ROOT / ("scenes/sponza.json" if arguments.model else "scenes/atrium.json"), arguments.model)
+    shadowed, whole = ("columns", "atrium") if arguments.model else ("gallery", "nave")
+    frames, shadows, along = (Frames(scene, arguments, camera) for camera in ("curtains", shadowed, whole))
+    basis_figures(arguments.out)
+    figure1(frames, arguments.out)
+    for preset in PRESETS:
+        figure4(frames, arguments.out, preset)
+        figure5(shadows, arguments.out, preset)
+    srbf14(along, arguments.out)
+    measure(along, arguments.out)
+

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""Measures a device for results/, the standing benchmark of quality, or all numbers that the tables in the docs show.
+
+    scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two cores
+    scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: half an hour on two cores
+    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: about two hours on two cores
+
+NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes it; default: the first.
+The first form runs `clpv check` and four suites of `clpv bench`. The second compares clpv and other methods at equal time with
+path tracing, and names its file after device and commit (docs/results.md). The third runs more suites, frames with --stats, scripts/claims,
+scripts/figures and `clpv quality` against path tracing, and redraws the charts in docs/images; scripts/tables then writes the
+tables. Commit and build first (scripts/build), and keep the machine free of other work. Files hold no samples and no host name.
+`clpv quality` caches ground truths, and for the docs finished cells, so a second run of it is short. The third form needs
+Debian's Python and its packages.
+"""
+import argparse
+import datetime
+import functools
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from . import CLPV, RESULTS, ROOT, charts, rows
+
+FRAME_COUNT = 9
+STANDING_COUNT = 7
+PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", *rows.SCRIPTS]
+
+
+def output(*command):
+    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, cwd=ROOT).stdout.strip()
+
+
+def run(*arguments):
+    """Returns the JSON of `clpv ARGUMENTS FILE.json`. Where that fails and leaves a file, as `clpv bench` does, goes on."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "result.json"
+        command = [str(CLPV), *(argument.replace("FOLDER", folder) for argument in arguments), str(file)]
+        print("scripts/measure: clpv", *arguments, file=sys.stderr)
+        code = subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=ROOT).returncode
+        if code != 0:
+            print(f"scripts/measure: exit code {code}", file=sys.stderr)
+        if not file.exists():
+            sys.exit(code)
+        return json.loads(file.read_text(encoding="utf-8"))
+
+
+def write(folder, name, document):
+    """JSON with a line for each row of its lists."""
+    document.get("context", {}).pop("host_name", None)
+    for row in document.get("benchmarks", []):
+        row.pop("samples_ms", None)
+    members = []
+    for key, value in document.items():
+        lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
+        members.append(f"{json.dumps(key)}: " + (f"[\n{lines}\n]" if lines else json.dumps(value)))
+    (folder / f"{name}.json").write_text("{" + ",\n".join(members) + "}\n", encoding="utf-8")
+
+
+def measure_device(folder):
+    checks = subprocess.run([str(CLPV), "check", "--format=json"], stdout=subprocess.PIPE, text=True, check=False, cwd=ROOT)
+    if checks.returncode != 0:
+        print(f"scripts/measure: clpv check did not pass: exit code {checks.returncode}", file=sys.stderr)
+    write(folder, "check", json.loads(checks.stdout))
+    for suite, options in rows.DEVICE_SUITES.items():
+        write(folder, suite, run("bench", suite, *options, "--output"))
+
+
+def scenes_of(arguments, model):
+    """Arguments of `clpv quality`: paths of the scenes, options, and Sponza's model."""
+    scenes = [argument for argument in arguments if not argument.startswith("--")]
+    return ([f"scenes/{scene}.json" for scene in scenes] + arguments[len(scenes):]
+            + [f"--model={scene}={model}" for scene in scenes if scene.startswith("sponza")])
+
+
+def measured_with(device):
+    return {"commit": output("git", "describe", "--always"), "date": str(datetime.date.today()),
+            "device": device["name"], "driver": f"{device['platform']} {device['driver']}"}
+
+
+def method_of(cell, options):
+    """Name of what a cell measures; None for the frame beside baselines, which another run measures."""
+    if options[0] == "--preset=paper":
+        return "published scheme"
+    near = cell["options"].get("near")
+    return {"off": "clpv", "traced": "clpv, near traced"}[near] if near else cell["options"].get("baseline")
+
+
+def measure_standing(folder, model):
+    """Three groups of cells: 240x135 and 960x540, each with its frame's time, and 240x135 with the time of 960x540."""
+    stats = run("render", "scenes/sponza.json", f"--model={model}", "--camera=curtains", f"--frames={FRAME_COUNT}",
+                "--output=FOLDER/frame.png", "--stats")
+    time = sum(stage["ms"] for stage in stats["stages"] if stage["stage"] not in rows.SHARED)
+    groups = {"small": (rows.STANDING, "small", rows.STANDING_FRAMES + [rows.BASELINES]),
+              "small_with_time_of_large": (rows.STANDING, "small", [rows.BASELINES + [f"--baseline-time={time:.1f}"]]),
+              "large": (rows.STANDING_LARGE, "large", rows.STANDING_FRAMES + [rows.BASELINES])}
+    document = {"measured": measured_with(stats["device"]), "frames": STANDING_COUNT, "time_of_large_ms": time,
+                "ground_truths": []}
+    for name, (scenes, size, runs) in groups.items():
+        document[name] = []
+        for arguments in scenes:
+            for options in runs:
+                report = run("quality", *scenes_of(arguments, model), *rows.SIZES[size], *options, "--fresh",
+                             f"--frames={STANDING_COUNT}", "--output")
+                for cell in report["cells"]:
+                    cell["method"] = method_of(cell, options)
+                document[name] += [cell for cell in report["cells"] if cell["method"]]
+            document["ground_truths"] += [{**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
+                                          for truth in report["ground_truths"] if name != "small_with_time_of_large"]
+    document["variants"] = measure_front(model)
+    measured = document["measured"]
+    slug = re.sub("[^a-z0-9.]+", "-", f"{measured['device']} {measured['driver']} {measured['commit']}".lower())
+    write(folder, slug, document)
+    charts.draw_errors([("", folder / f"{slug}.json")], ROOT / "docs/images/baselines.png")
+
+
+def measure_front(model):
+    """Variants of clpv by grid, and of other methods by time, with the series that each belongs to."""
+    given = [*scenes_of(rows.FRONT, model), "--fresh", "--frames=3"]
+    variants = []
+    for series, options in rows.FRONT_GRIDS.items():
+        variants += [{**row, "series": series} for row in run("quality", *given, "--preset=best", *options, "--output")["variants"]]
+    for time in rows.FRONT_TIMES:
+        report = run("quality", *given, *rows.BASELINES, f"--baseline-time={time}", "--output")
+        variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"] if "baseline" in row["options"]]
+    return variants
+
+
+def measure_docs(folder, model, parts):
+    """`parts`: names of files in results/docs."""
+    sponza = [f"--model={model}", "--camera=curtains"]
+    tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9", "--output=FOLDER/frame.png", "--stats")
+    measured = measured_with(tiny["device"])
+    if "frames" in parts:
+        frames = []
+        for varied in rows.FRAMES.values():
+            options = [f"--{name}={value}" for name, value in varied.items()]
+            stats = run("render", "scenes/sponza.json", *sponza, *options, f"--frames={FRAME_COUNT}",
+                        "--output=FOLDER/frame.png", "--stats")
+            frames.append({"given": varied, "frame_ms": stats["frame_ms"], "stages": stats["stages"]})
+        write(folder, "frames", {"measured": measured, "frames": frames})
+    for suite, options in rows.DOCS_SUITES.items():
+        if suite not in parts:
+            continue
+        if options[:1] == ["sponza"]:
+            options = ["--scene=scenes/sponza.json", *sponza, *options[1:]]
+        plots = ROOT / "out/charts" / suite
+        plots.mkdir(parents=True, exist_ok=True)
+        document = run("bench", suite, *options, f"--plot={plots}", "--output")
+        write(folder, suite, {"measured": measured, **document})
+        for chart in rows.CHARTS.get(suite, ()):
+            shutil.copy(plots / f"{chart}.png", ROOT / f"docs/images/bench-{chart}.png")
+    if "quality-centres" in parts:
+        search_centres(sponza)
+    for name in filter(parts.count, rows.QUALITY_FILES):
+        measure_quality(folder, name, model, measured)
+    if "quality-media" in parts:
+        measure_media(folder, model, measured)
+    if "quality-grid" in parts or "quality-grid-published" in parts:
+        charts.draw_errors([("clpv, the defaults", folder / "quality-grid.json"),
+                            ("published scheme, sh2 in buffers", folder / "quality-grid-published.json")],
+                           ROOT / "docs/images/front.png")
+    for script, claims in rows.SCRIPTS.items():
+        if script not in parts:
+            continue
+        out = f"out/{script}"
+        subprocess.run([f"scripts/{script}", *claims, f"--model={model}", f"--out={out}"], stdout=subprocess.DEVNULL,
+                       check=True, cwd=ROOT)
+        write(folder, script, {"measured": measured, **json.loads((ROOT / out / f"{script}.json").read_text())})
+
+
+def search_centres(sponza):
+    (ROOT / "out").mkdir(exist_ok=True)
+    clpv = functools.partial(subprocess.run, stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
+    search = [sys.executable, "-m", "clpv.search", "8", "-o"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    clpv([*search, rows.SEARCHED], env=environment)
+    clpv([str(CLPV), "render", "scenes/sponza.json", *sponza, "--dump-normals=out/normals.json", "-o", "out/normals.png"])
+    clpv([*search, rows.SEARCHED_NORMALS, "--weights=out/normals.json"], env=environment)
+
+
+def measure_quality(folder, name, model, measured):
+    arguments, runs = rows.QUALITY_FILES[name]
+    cells, variants = [], []
+    given = scenes_of(arguments, model)
+    if not any(argument.startswith("--preset") for argument in given):
+        given.append("--preset=best")  # bases and transports that a run does not name keep their defaults
+    for options in runs:
+        vary = [f"--vary={option}={value}" for option, value in options.items()]
+        document = run("quality", *given, *vary, "--output")
+        cells += document["cells"]
+        variants += document["variants"]
+    write(folder, name, {"measured": measured, "given": arguments, "cells": cells, "variants": variants})
+
+
+def measure_media(folder, model, measured):
+    cells = []
+    for medium, arguments, bounces, views in rows.MEDIA:
+        for count in bounces:
+            for view in views:
+                report = run("quality", *scenes_of(arguments, model), "--preset=best", "--spp=256", f"--bounces={count}",
+                             f"--view={view}", "--output")
+                cells += [{**cell, "medium": medium, "bounces": count, "view": view} for cell in report["cells"]]
+    write(folder, "quality-media", {"measured": measured, "cells": cells})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name", metavar="NAME", help="folder in results/; quality: the standing benchmark; docs: all that the docs' tables show")
+    parser.add_argument("device", metavar="DEVICE", nargs="?", help="as --device of clpv takes it (default: the first)")
+    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models; for quality and docs")
+    parser.add_argument("--part", metavar="NAME", action="append", help="of docs: a file of results/docs, repeatable (default: all)")
+    arguments = parser.parse_intermixed_args()
+    for part in arguments.part or []:
+        if arguments.name != "docs" or part not in PARTS:
+            parser.error(f"--part {part}: allowed for docs: {', '.join(PARTS)}")
+    if (arguments.name in ("docs", "quality")) != (arguments.model is not None):
+        parser.error("--model: needed for docs and quality, and for these alone")
+    if arguments.device:
+        os.environ["CLPV_DEVICE"] = arguments.device
+    folder = RESULTS / arguments.name
+    folder.mkdir(parents=True, exist_ok=True)
+    if arguments.name == "docs":
+        measure_docs(folder, pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
+        print("results/docs is written; scripts/tables writes the tables of the docs")
+    elif arguments.name == "quality":
+        measure_standing(folder, pathlib.Path(arguments.model).resolve())
+        print("results/quality is written; scripts/tables writes docs/results.md")
+    else:
+        measure_device(folder)
+        print(f"results/{arguments.name} is written; results/README.md says how to send it")
+
