@@ -543,42 +543,11 @@ def standing_large():
 
 
 @table
-def standing_samples():
-    """Mean number of samples that fit the time."""
-    units = {"paths": "paths_per_pixel", "vpl": "vpls_per_pixel", "ddgi": "rays_per_probe"}
-    groups = {"small": "240x135", "small_with_time_of_large": "240x135, time of 960x540", "large": "960x540"}
-    lines = [["run", "samples", *groups.values()]]
-    for run, document in standing():
-        for method in known.METHODS:
-            unit = units[method.split("-")[0]]
-            line = [run, f"`{method}`: {unit.replace('_', ' ')}"]
-            for group in groups:
-                cells = [cell for cell in document[group] if cell["method"] == method and not cell["rejected"]]
-                counts, strides = ([int(cell["settings"][key]) for cell in cells] for key in (unit, "stride"))
-                line.append(f"{min(counts)} to {max(counts)}, stride {min(strides)} to {max(strides)}" if cells else "-")
-            lines.append(line)
-    return lines
-
-
-@table
 def standing_runs():
     return [["run", "clpv", "device", "driver", "threads", "date", "time of 960x540 [ms]"]] + [
         [run, document["measured"]["commit"], document["measured"]["device"], document["measured"]["driver"],
          str(document["small"][0]["compute_units"]), document["measured"]["date"], number(document["time_of_large_ms"])]
         for run, document in standing()]
-
-
-@table
-def standing_truths():
-    """Ground truths by the hash in their file's name."""
-    lines = [["scene", "camera", "size", "hash", "paths per pixel", "noise [%]"]]
-    for _, document in standing():
-        for truth in document["ground_truths"]:
-            line = [truth["scene"], truth["camera"], {"small": "240x135", "large": "960x540"}[truth["size"]],
-                    truth["file"].removesuffix(".exr").split("-")[-1], str(truth["spp"]), percent(truth["noise"], 1)]
-            if line not in lines:
-                lines.append(line)
-    return lines
 
 
 # The docs.
