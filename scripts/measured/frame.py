@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""Renders the pictures of docs/frame.md: one frame of the atrium, stage by stage.
+
+    scripts/frame [--out DIR]
+
+Output: DIR (docs/images): frame-NAME.jpg. First builds. Needs the packages of scripts/setup.
+"""
+import argparse
+import math
+import pathlib
+import subprocess
+
+import numpy as np
+from matplotlib import pyplot
+
+from . import ROOT, native
+
+clpv = native()  # main() builds the native module
+
+CAMERA = "nave"
+SIZE = {"width": 640, "height": 360}
+# Pictures: view, exposure over the scene's [EV], options of `clpv render`. Steps without iterations leave injected light as it is.
+PICTURES = {
+    "direct": ("direct", 0, {}),
+    "injected": ("cells", -0.5, {"transport": "sampled", "iterations": 0}),
+    "swept": ("cells", -1.5, {}),
+    "irradiance": ("irradiance", -1.5, {"near": "off"}),
+    "near": ("irradiance", -1.5, {"near": "traced"}),
+    "full": ("full", 0, {"near": "traced"}),
+}
+CASCADE = 12.5  # edge of the finest cascade [m]
+FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
+
+
+def rsm(scene, camera):
+    """What the sun's RSM of the finest cascade holds: the light that each texel reflects."""
+    sun = np.array(scene.lights[0].direction)
+    sun /= np.linalg.norm(sun)
+    above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0), near=0.05,
+                           fov=math.degrees(2 * math.atan(CASCADE / 2 / FROM_THE_SUN)))
+    return clpv.Renderer(scene, width=SIZE["height"], height=SIZE["height"]).render("direct", above)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/images", help="output folder (default: docs/images)")
+    out = parser.parse_args().out
+    subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
+    scene = clpv.Scene(ROOT / "scenes/atrium.json")
+    camera = next(each for each in scene.cameras if each.name == CAMERA)
+
+    def save(name, image, exposure):
+        file = out / f"frame-{name}.jpg"
+        pixels = image.display(scene.exposure + exposure)[..., :3]
+        pyplot.imsave(file, pixels, pil_kwargs={"quality": 80, "optimize": True})
+        print(file)
+
+    save("rsm", rsm(scene, camera), 0)
+    for name, (view, exposure, options) in PICTURES.items():
+        save(name, clpv.Renderer(scene, **SIZE, **options).render(view, camera), exposure)
