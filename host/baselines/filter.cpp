@@ -19,11 +19,11 @@
 namespace clpv::baselines {
 namespace {
 
-// Planes differ by up to so many pixels' edges per pixel of distance. Tuned, as is the power of the normals' cosine, on Sponza,
-// the atrium and the Cornell box with two paths per pixel.
+// Distance of planes at which a tap's weight is 0, in pixel edges per pixel of distance. Tuned, like the power of the
+// normals' cosine, on Sponza, the atrium and the Cornell box with two paths per pixel.
 constexpr float kThickness = 2;
 
-/// Pixels of a row, from one of them on.
+/// A range of a row's pixels.
 struct Row {
   const float *px, *py, *pz, *nx, *ny, *nz, *density;
   const float *red, *green, *blue, *computed;
@@ -72,7 +72,7 @@ void normalise(Irradiance& sums, std::size_t first, std::size_t last) {
   }
 }
 
-/// A row of a thinned view at the pixels of the full one: of each, the thinned pixel before it or after it.
+/// Maps a row of the full view to a thinned one: for each pixel, the thinned pixels before and after it.
 struct SpreadRow {
   Planes surfaces;
   Irradiance image;

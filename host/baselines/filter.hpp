@@ -15,7 +15,7 @@ struct Tap {
   float weight;
 };
 
-/// 4 x 4 neighbours of equal weight: one pixel of each kind, where pixels alternate in blocks of 4 x 4.
+/// 4 x 4 neighbours of equal weight: one pixel of each interleaved set.
 std::vector<Tap> block_taps();
 /// 3 x 3 neighbours at a distance of `step`, with the weights of a B-spline.
 std::vector<Tap> wavelet_taps(int step);

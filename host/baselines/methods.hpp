@@ -41,7 +41,7 @@ class Probes {
   Probes(const View& view, std::vector<ClpvGrid> grids) : view_(view), grids_(std::move(grids)) {}
 
   /// Renders the next frame: finds the probes that pixels need, traces `rays` of each, blends the results with those of earlier
-  /// frames, and returns the irradiance of all pixels. The first frame starts from nothing.
+  /// frames, and returns the irradiance of all pixels. The first frame has no history.
   Irradiance render(unsigned rays);
 
   std::size_t count() const { return positions_.size(); }  ///< probes of the last frame

@@ -29,7 +29,7 @@ std::uint32_t even_bits(std::uint32_t x) {
   return (x | (x >> 8)) & 0x0000ffffu;
 }
 
-/// One of `share` lights that share the flux of a texel.
+/// One of `share` lights, among which a texel's flux is divided.
 PointLight light_of(const SurfaceImage& rsm, std::size_t texel, double share) {
   const glm::dvec3 normal(rsm.normal[texel]),
       position = reference::surface_position(rsm.view, texel, rsm.depth[texel]);

@@ -16,7 +16,7 @@ constexpr int kDistancePower = 50;                     // of the cosine that wei
 constexpr float kHysteresis = 0.97f;                   // share of earlier frames, once as many are blended
 constexpr float kReach = 1.5f;                         // distances count up to so many diagonals of a cell
 constexpr float kBias = 0.3f * 0.75f;                  // lift of a point before visibility [cells]
-constexpr float kBehind = 0.2f;                        // least weight of a probe by its direction
+constexpr float kBehind = 0.2f;                        // minimum weight of a probe by its direction
 constexpr float kCrushed = 0.2f;                       // smaller weights fall with their third power
 constexpr std::uint64_t kSeed = 3;
 
@@ -37,14 +37,14 @@ glm::vec2 octahedral_point(const glm::vec3& v) {
   return {(1 - std::abs(at.y)) * std::copysign(1.0f, at.x), (1 - std::abs(at.x)) * std::copysign(1.0f, at.y)};
 }
 
-/// Index of a texel of a map with `edge` texels along each edge, from -1 to `edge`: beyond an edge lies the mirrored half of it.
+/// Index of a texel of a map with `edge` texels along each edge, from -1 to `edge`: coordinates beyond an edge are mirrored.
 std::size_t folded(int x, int y, int edge) {
   if (x < 0 || x >= edge) x = std::clamp(x, 0, edge - 1), y = edge - 1 - y;
   if (y < 0 || y >= edge) y = std::clamp(y, 0, edge - 1), x = edge - 1 - x;
   return static_cast<std::size_t>(y) * edge + x;
 }
 
-/// Texels about a direction and their bilinear weights.
+/// Texels around a direction and their bilinear weights.
 struct Texels {
   std::size_t index[4];
   float weight[4];
@@ -125,8 +125,8 @@ glm::vec3 radiance_of(const View& view, reference::PathSampler& sampler, const r
 
 }  // namespace
 
-/// Finds the cubes of probes that hold the pixels, and numbers their corners. Probes lie at the cells' centres. Results of earlier
-/// frames stay if the numbers are the same: the camera stands still.
+/// Finds the probe cubes that contain pixels, and numbers their corners. Probes lie at the cells' centres. Keeps results of
+/// earlier frames if the numbers do not change (static camera).
 void Probes::find_probes() {
   corners_.resize(view_.hits().size());
   std::vector<std::vector<char>>
@@ -200,7 +200,7 @@ void Probes::trace(unsigned rays) {
       });
 }
 
-/// Irradiance at a pixel: the mean of the eight probes about it, by trilinear weights, direction and visibility.
+/// Irradiance at a pixel: mean of the eight surrounding probes, weighted trilinearly, by direction and by visibility.
 glm::vec3 Probes::sample(std::size_t pixel) const {
   const Corner& corner = corners_[pixel];
   if (corner.grid < 0) return glm::vec3(0);
@@ -233,7 +233,7 @@ glm::vec3 Probes::sample(std::size_t pixel) const {
         weight *= bound * bound * bound;
       }
     }
-    weight = std::max(weight, 1e-6f);  // so that a pixel that no probe sees has a mean
+    weight = std::max(weight, 1e-6f);  // defines the mean of pixels that no probe sees
     if (weight < kCrushed) weight *= weight * weight / (kCrushed * kCrushed);
     weight *= std::max(0.001f, f.x * f.y * f.z);
     sum += weight * glm::vec4(along_normal.mean(&radiance_[probe * kLightTexels * kLightTexels]), 1);

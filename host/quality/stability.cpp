@@ -121,8 +121,8 @@ void Stability::add(int number, double seconds, const Scene& scene, const SceneC
   before_ = std::move(now);
 }
 
-/// Light of the frame `now` at the points of the previous one: that of the volumes there, and the near field of the
-/// nearest pixels.
+/// Light of the frame `now` at the points of the previous one: from the volumes, with the near-field
+/// correction of the nearest pixels.
 std::vector<float> Stability::light_before(const Seen& now) {
   std::vector<float> light = frame_.irradiance_on(before_->surfaces);
   if (frame_.options().near == Near::off) return light;

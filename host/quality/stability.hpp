@@ -48,8 +48,7 @@ struct StabilityStep {
 };
 
 /// Measures consecutive frames. Gathers the light of each frame at the points visible in the previous frame, which
-/// avoids interpolation between pixels. The near-field correction is taken
-/// from the nearest pixel.
+/// avoids interpolation between pixels. The near-field correction is taken from the nearest pixel.
 class Stability {
  public:
   /// `traced`: paths per pixel of the path-traced images; 0: none.

@@ -10,7 +10,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kFewUnreached = 0.001;  // specks at the horizon are no surprise
+constexpr double kFewUnreached = 0.001;  // ignores specks at the horizon
 
 }  // namespace
 
