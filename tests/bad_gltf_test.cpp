@@ -2,6 +2,7 @@
 // Invalid models: each is rejected with a message and exit code 3 (bad_input), before memory of the requested size is
 // allocated.
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::test::bad_gltf_test {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// Values of a document, by JSON pointers; null: the member goes.
+/// Values of a document, by JSON pointers; null removes the member.
 using Changes = std::vector<std::pair<std::string, json>>;
 
 struct Row {
@@ -72,33 +73,19 @@ const std::string kPrimitive = "/meshes/0/primitives/0", kLights = "/extensions/
 
 TEST_F(BadGltfTest, EveryIndexOutOfRange) {
   std::vector<Row> rows;
-  for (const char* place : {"/scene",
-                            "/scenes/0/nodes/0",
-                            "/nodes/0/children/0",
-                            "/nodes/0/mesh",
-                            "/nodes/1/camera",
-                            "/nodes/0/skin",
-                            "/nodes/1/extensions/KHR_lights_punctual/light",
-                            "/skins/0/joints/0",
-                            "/skins/0/inverseBindMatrices",
-                            "/meshes/0/primitives/0/indices",
-                            "/meshes/0/primitives/0/material",
-                            "/meshes/0/primitives/0/attributes/POSITION",
-                            "/meshes/0/primitives/0/targets/0/POSITION",
-                            "/accessors/0/bufferView",
-                            "/accessors/0/sparse/indices/bufferView",
-                            "/accessors/0/sparse/values/bufferView",
-                            "/bufferViews/0/buffer",
-                            "/materials/0/pbrMetallicRoughness/baseColorTexture/index",
-                            "/materials/0/emissiveTexture/index",
-                            "/textures/0/source",
-                            "/textures/0/sampler",
-                            "/images/0/bufferView",
-                            "/animations/0/samplers/0/input",
-                            "/animations/0/samplers/0/output",
-                            "/animations/0/channels/0/target/node"}) {
+  for (const std::string& place : words_of(
+           "/scene /scenes/0/nodes/0 /nodes/0/children/0 /nodes/0/mesh /nodes/1/camera /nodes/0/skin "
+           "/nodes/1/extensions/KHR_lights_punctual/light /skins/0/joints/0 "
+           "/skins/0/inverseBindMatrices /meshes/0/primitives/0/indices "
+           "/meshes/0/primitives/0/material /meshes/0/primitives/0/attributes/POSITION "
+           "/meshes/0/primitives/0/targets/0/POSITION /accessors/0/bufferView "
+           "/accessors/0/sparse/indices/bufferView /accessors/0/sparse/values/bufferView "
+           "/bufferViews/0/buffer /materials/0/pbrMetallicRoughness/baseColorTexture/index "
+           "/materials/0/emissiveTexture/index /textures/0/source /textures/0/sampler "
+           "/images/0/bufferView /animations/0/samplers/0/input /animations/0/samplers/0/output "
+           "/animations/0/channels/0/target/node")) {
     for (const json& bad : {json(1000), json(-1), json(18446744073709551615ull), json(1.5), json("0")})
-      rows.push_back({{{place, bad}}, {std::string(place) + ": found " + bad.dump()}});
+      rows.push_back({{{place, bad}}, {place + ": found " + bad.dump()}});
   }
   expect_all_rejected(rows);
 }
@@ -309,7 +296,7 @@ TEST_F(BadGltfTest, TooManyInstancesAndMorphTargets) {
 }
 
 TEST_F(BadGltfTest, PosesBeyondTheBoundsAreRejected) {
-  // A spline of rotations from a turn to its negative, at no speed, passes nothing half way; a node flies off.
+  // A spline from a rotation to its negative with zero tangents has length 0 half way; a node leaves the bounds.
   animate<float>(0, "rotation", {0, 1},
                  {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0}, "CUBICSPLINE");
   animate<float>(0, "translation", {0, 0.9f, 1}, {0, 0, 0, 0, 0, 0, 1e30f, 0, 0});

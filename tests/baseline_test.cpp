@@ -20,6 +20,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::baseline_test {
@@ -30,16 +31,8 @@ using ::testing::HasSubstr;
 
 constexpr int kWidth = 48, kHeight = 27;
 
-std::filesystem::path scene_file(const std::string& name) {
-  return std::filesystem::path(CLPV_SOURCE_DIR) / "scenes" / name;
-}
-
-SceneCamera camera_at(const glm::vec3& eye, const glm::vec3& along) {
-  SceneCamera camera;
-  camera.eye = eye, camera.forward = glm::normalize(along);
-  camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, glm::vec3(0, 1, 0)), camera.forward));
-  return camera;
-}
+using test::camera_at;
+using test::scene_file;
 
 /// The Cornell box with a budget from a frame, and its ground truth.
 class Cornell : public ::testing::Test {
@@ -77,13 +70,6 @@ class Cornell : public ::testing::Test {
   static inline Image truth_;
 };
 
-TEST_F(Cornell, BudgetIsTheFrameWithoutWhatEveryMethodNeeds) {
-  EXPECT_GT(budget_.budget_ms, budget_.rsm_ms);
-  EXPECT_GT(budget_.rsm_ms, 0);
-  EXPECT_EQ(budget_.shared_ms.size(), 3u);
-  EXPECT_EQ(budget_.rsms.size(), 2u) << "one per light";
-}
-
 // Tolerances: noise of ground truth and method, and what the method blurs: discs and texels of an RSM, cells of probes, and a
 // third of this image's width by the filter.
 TEST_F(Cornell, ConvergesToPathTracing) {
@@ -107,15 +93,6 @@ TEST_F(Cornell, ProbesConvergeOverFrames) {
   const double first = errors(run(Baseline::ddgi_first, 8)).nrmse_valid.value(),
                later = errors(run(Baseline::ddgi_converged, 8, 1, 64)).nrmse_valid.value();
   EXPECT_LT(later, 0.7 * first);
-}
-
-TEST_F(Cornell, SkippedPixelsTakeTheirNeighboursLight) {
-  for (const Baseline baseline : {Baseline::paths, Baseline::paths_filtered, Baseline::vpl,
-                                  Baseline::vpl_interleaved, Baseline::ddgi_first}) {
-    const baselines::Irradiance image = run(baseline, 256, 2);
-    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_EQ(image.computed(i), view_->hits()[i].has_value());
-    EXPECT_NEAR(errors(image).energy_ratio.value(), 1, 0.2) << name_of(baseline);
-  }
 }
 
 TEST_F(Cornell, BytesDoNotDependOnThreads) {
@@ -178,10 +155,7 @@ Scene furnace() {
   scene.path = "furnace";
   const unsigned wall = test::add_grey(scene, 0.5f);
   for (float& e : scene.materials[wall].emissive) e = 2;
-  const glm::vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2);
-  test::add_quad(scene, {0, 0, 0}, z, x, wall), test::add_quad(scene, {0, 2, 0}, x, z, wall);
-  test::add_quad(scene, {0, 0, 0}, y, z, wall), test::add_quad(scene, {2, 0, 0}, z, y, wall);
-  test::add_quad(scene, {0, 0, 0}, x, y, wall), test::add_quad(scene, {0, 0, 2}, y, x, wall);
+  test::add_box(scene, glm::vec3(0), 2, wall);
   return scene;
 }
 
@@ -196,13 +170,6 @@ TEST(BaselineProbes, FurnaceIsEvenlyLit) {
     EXPECT_NEAR(image.at(i).x, 2 * pi_v<float>,
                 0.16f * 2 * pi_v<float>);  // probes behind the walls count, most in corners
   }
-}
-
-TEST(BaselineLights, NoneWithoutLitSurfaces) {
-  SurfaceImage dark;
-  dark.view = test::kDown;
-  dark.depth.assign(63, 1), dark.normal.assign(63, {0, 1, 0, 0}), dark.colour.assign(63, glm::vec4(0));
-  EXPECT_TRUE(baselines::draw_lights(std::vector{dark}, 16).empty());
 }
 
 TEST(BaselineLights, CarryAllFluxAndArea) {

@@ -157,21 +157,6 @@ TEST(BenchCompare, ReportsOfQualityAndStats) {
   EXPECT_THAT(mixed.err, HasSubstr("two reports of one command"));
 }
 
-TEST(BenchReport, AboveACeilingIsExplained) {
-  Row row;
-  row.name = "row", row.ceiling = "bandwidth", row.ceiling_share = 0.9;
-  EXPECT_THAT(report_table({row}), Not(HasSubstr("above 100%")));
-  row.ceiling_share = 1.2;
-  EXPECT_THAT(report_table({row}), HasSubstr("above 100% bandwidth: caches"));
-}
-
-TEST(BenchCompare, RejectsWhatIsNoReport) {
-  EXPECT_THROW(compare_runs(nlohmann::json::array(), report({}), "old.json"), Error);
-  EXPECT_THROW(
-      compare_runs({{"context", {{"schema", 2}}}, {"benchmarks", nlohmann::json::array()}}, report({}), "o"),
-      Error);
-}
-
 TEST(BenchPublished, CellsAreThoseOfTheTable) {
   EXPECT_EQ(published_ms(Pass::inject_light, "sh2", true, 1), 2.292);
   EXPECT_EQ(published_ms(Pass::propagate, "srbf8v2", false, 2), 7.019);
@@ -279,16 +264,6 @@ TEST(BenchSuites, Table1HasThePublishedTimes) {
   const std::string table = table1_suite().table(rows);
   EXPECT_THAT(table, ::testing::ContainsRegex("injection, small +2\\.028 +[0-9.]+"));
   EXPECT_THAT(table, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
-}
-
-TEST(BenchSuites, FramesAreTheSameTwice) {
-  SuiteOptions options = small();
-  options.bases = {"sh2"};
-  options.settings.cascades = 1;
-  const std::vector<Row> rows = rows_of(frame_suite(), "best/recompute:light", options);
-  expect_right(rows);
-  EXPECT_THAT(names_of(rows),
-              ::testing::Contains("gather/sh2/soa/half/sweep/occlusion/best/recompute:light"));
 }
 
 TEST(BenchSuites, EveryPassOfRasterizingIsRightAndThePeerDrawsTheSame) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cascades: nested grids about the camera, on whole cells.
+// Cascades: nested grids around the camera, on whole cells.
 #include "pipeline/frame/cascade.hpp"
 
 #include <gmock/gmock.h>

@@ -9,6 +9,7 @@
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::cells_test {
@@ -54,7 +55,7 @@ TEST(CellSpheres, NoneBesideThemAndNextToTheEye) {
 }
 
 TEST(CellSpheres, AreShadedByTheirIrradiance) {
-  const Scene scene = load_scene(CLPV_SOURCE_DIR "/scenes/cornell.json");
+  const Scene scene = load_scene(kCornell);
   RenderOptions options;
   options.width = 64;
   options.height = 36;
@@ -88,14 +89,13 @@ TEST(CellSpheres, AreShadedByTheirIrradiance) {
 
 TEST(CellSpheres, AreAViewOfRenderAndNotOfPathtrace) {
   const TemporaryFolder folder;
-  const std::string scene = CLPV_SOURCE_DIR "/scenes/cornell.json";
   EXPECT_EQ(
-      run_here("render " + scene + " --width 32 --height 18 --grid 8 --rsm-size 32 --view cells -o a.exr",
+      run_here("render " + kCornell + " --width 32 --height 18 --grid 8 --rsm-size 32 --view cells -o a.exr",
                folder.path())
           .exit_code,
       0);
   const Outcome traced =
-      run_here("pathtrace " + scene + " --width 8 --height 8 --spp 1 --view cells -o a.exr", folder.path());
+      run_here("pathtrace " + kCornell + " --width 8 --height 8 --spp 1 --view cells -o a.exr", folder.path());
   EXPECT_EQ(traced.exit_code, 2);
   EXPECT_THAT(traced.err, ::testing::HasSubstr("cells"));
 }

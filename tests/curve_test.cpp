@@ -15,7 +15,7 @@ using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::Pointwise;
 
-constexpr double kExact = 1e-14;  // a few roundings of numbers about 1
+constexpr double kExact = 1e-14;  // a few roundings of numbers near 1
 constexpr double kPi = glm::pi<double>();
 
 std::vector<double> at(const Curve& curve, double seconds) {
@@ -48,7 +48,7 @@ TEST(Curve, IsConstantBeforeTheFirstKeyAndAfterTheLast) {
 }
 
 TEST(Curve, SplineIsTheCubicOfItsValuesAndSlopes) {
-  // p(x) = 2x^3 - 3x^2 + x + 5 and its slope 6x^2 - 6x + 1, at uneven keys: one cubic, whatever the pieces.
+  // p(x) = 2x^3 - 3x^2 + x + 5 and its slope 6x^2 - 6x + 1, at uneven keys: every piece is the same cubic.
   const auto p = [](double x) { return ((2 * x - 3) * x + 1) * x + 5; };
   const auto slope = [](double x) { return (6 * x - 6) * x + 1; };
   Curve curve{Interpolation::cubic_spline, 1, {0, 0.5, 2}, {}};

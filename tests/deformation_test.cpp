@@ -13,7 +13,7 @@ using ::testing::Not;
 
 constexpr float kNear = 1e-6f;
 
-/// The triangle as a finger: (0,0,0) goes with joint 0, (1,0,0) with joint 1, (0,1,0) with both by halves.
+/// A skinned triangle: (0,0,0) follows joint 0, (1,0,0) joint 1, (0,1,0) both with weight 1/2.
 struct SkinTest : AnimationTest {
   SkinTest() {
     primitive()["attributes"]["JOINTS_0"] =

@@ -7,7 +7,7 @@
 # All tests keep compiled programs in CACHE: clpv's, and PoCL's unless POCL_CACHE_DIR is set. PATH begins with /usr/bin, since drawing
 # needs the modules of Debian's Python. Time-outs have room for a machine five times slower. LONG tests start first, so that none of them runs alone at the end.
 cmake_minimum_required(VERSION 3.22)
-set(LONG killed helpers drawing starved bench soak quality hostile sequence propagate frame gather inject)
+set(LONG check killed helpers drawing starved bench soak quality hostile sequence frame)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
 foreach(line IN LISTS lines)

@@ -14,6 +14,7 @@
 #include "pipeline/raster/view.hpp"
 #include "reference/emit.hpp"
 #include "support/error.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/traced_scenes.hpp"
 #include "verify/check.hpp"
@@ -66,7 +67,7 @@ TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
   }
 }
 
-// A spot of some texels anywhere on a texture far finer than the points are apart: neither missed nor counted twice.
+// A spot of a few texels on a texture much finer than the point spacing is neither missed nor counted twice.
 TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
   for (const unsigned at : {3u, 517u, 1020u}) {
     Scene scene;
@@ -83,7 +84,7 @@ TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
     const SurfaceImage points = emitted(scene, plan_of(scene, grids_about({0, 0, 0})));
     const double wanted = pi * 1e4 * 4 * 16 / (1024.0 * 1024);
     EXPECT_NEAR(total(points).x, wanted, 0.05 * wanted) << at;
-    // And it shines from where it is: v goes along x, u along z.
+    // The light comes from the spot: v runs along x, u along z.
     for (std::size_t i = 0; i < points.colour.size(); ++i) {
       if (points.colour[i].x < 0.1 * wanted) continue;
       EXPECT_NEAR(points.position[i].x, -1 + 2 * 302.0 / 1024, 0.15) << at;
@@ -160,11 +161,7 @@ TEST(Emit, MaximumFluxIsThatOfACellOrTheTotal) {
   EXPECT_TRUE(emits(scene));
 }
 
-TEST(Emit, KernelAgreesWithTheReference) {
-  expect_passed(reference::check(Stage::emit, test_session()), 2);
-}
-
-/// A small lamp under the ceiling of nothing, over a floor that a frame shows.
+/// A small lamp over a visible floor, without a ceiling.
 Scene lamp_over_floor(float edge = 0.5f) {
   Scene scene = floor_scene(0.5f);
   add_quad(scene, {-edge / 2, 1.5f, -edge / 2}, {edge, 0, 0}, {0, 0, edge},
@@ -183,13 +180,7 @@ RenderOptions small_frame() {
   return options;
 }
 
-double mean(const std::vector<float>& rgba, int channel) {
-  double sum = 0;
-  for (std::size_t i = static_cast<std::size_t>(channel); i < rgba.size(); i += 4) sum += double{rgba[i]};
-  return 4 * sum / static_cast<double>(rgba.size());
-}
-
-// A square over a parallel plane: the mean of E over what is seen, against path tracing, which is against closed forms.
+// A square over a parallel plane: the mean of the visible E against path tracing, which path_tracer_test.cpp compares with closed forms.
 TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
   const Scene scene = lamp_over_floor();
   Frame frame(test_session(), scene, small_frame());

@@ -12,6 +12,7 @@
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::empty_room_test {
 namespace {
@@ -36,7 +37,7 @@ Quality quality(const Scene& scene, const Image& truth, const std::string& basis
 }
 
 TEST(EmptyRoom, FinerCellsAreNoWorse) {
-  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/empty_room.json");
+  const Scene scene = load_scene(test::scene_file("empty_room.json"));
   reference::PathTracerOptions traced;
   traced.noise = 0.04;
   const Image truth = traced_view(

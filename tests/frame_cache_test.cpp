@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results whose inputs did not change are not recomputed, and a frame is the same whatever was rendered before it.
+// Results whose inputs did not change are not recomputed, and a frame does not depend on the frames before it.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -79,7 +79,7 @@ class CachedFrame : public ::testing::Test {
     return found;
   }
 
-  /// The passes of the frame at those instants, which is held against the same frame rendered alone.
+  /// Renders the frame at those instants, compares it with the same frame rendered alone, and returns its passes.
   Passes passes(const Instants& at) {
     const SceneCamera camera = show(at);
     const Found kept = rendered(session_, frame_, camera);
@@ -133,7 +133,7 @@ TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
 
 TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
   Instants at;
-  // Cells of the finest cascade, alone and with the coarser one; inside them; things that move meanwhile, and not.
+  // Steps across cells of the finest cascade, of both cascades, and within a cell, with and without moving objects.
   for (int i = 0; i < 16; ++i) {
     at.eye[i % 2 == 0 ? 0 : 2] += (i % 2 == 0 ? 0.7f : -0.7f) * kCell;
     if (i % 6 == 1) at.sun += 0.1;
@@ -168,7 +168,7 @@ TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
   EXPECT_TRUE(observed() == recomputed);
 }
 
-/// Surfels that the camera sees are blockers: what depends on them changes with the view.
+/// Visible surfels are blockers, so blockers and propagation change with the view.
 class CachedPublishedFrame : public CachedFrame {
  protected:
   CachedPublishedFrame()

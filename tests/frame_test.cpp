@@ -19,25 +19,18 @@
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::frame_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::scene_file;
+using test::sponza;
 
 constexpr int kWidth = 96, kHeight = 54;
 // Another device rounds otherwise, which moves single pixels across edges of shadows and triangles.
 constexpr double kGoldenTolerance = 0.03;
-
-fs::path scene_path(const std::string& name) {
-  return fs::path(CLPV_SOURCE_DIR) / "scenes" / name;
-}
-
-fs::path sponza_model() {
-  const char* given = std::getenv("CLPV_SPONZA");
-  return given != nullptr ? fs::path(given)
-                          : fs::path(CLPV_SOURCE_DIR) / "../shared/scenes/sponza/Sponza.gltf";
-}
 
 RenderOptions small_options(const Scene& scene) {
   RenderOptions options;
@@ -78,23 +71,23 @@ static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructibl
               !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
 
 TEST(Frame, AtriumEqualsItsGoldenImage) {
-  const Scene scene = load_scene(scene_path("atrium.json"));
+  const Scene scene = load_scene(scene_file("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");
 }
 
 TEST(Frame, CornellBoxEqualsItsGoldenImage) {
-  const Scene scene = load_scene(scene_path("cornell.json"));
+  const Scene scene = load_scene(scene_file("cornell.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "cornell");
 }
 
 TEST(Frame, SponzaEqualsItsGoldenImage) {
-  if (!fs::exists(sponza_model())) GTEST_SKIP() << "the Crytek Sponza is not at " << sponza_model();
-  const Scene scene = load_scene(scene_path("sponza.json"), {sponza_model()});
+  if (sponza().empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
+  const Scene scene = load_scene(scene_file("sponza.json"), sponza());
   expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
 }
 
 TEST(Frame, TheBackWallIsRedNearTheRedWall) {
-  const Scene scene = load_scene(scene_path("cornell.json"));
+  const Scene scene = load_scene(scene_file("cornell.json"));
   for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
@@ -109,7 +102,7 @@ TEST(Frame, TheBackWallIsRedNearTheRedWall) {
 }
 
 TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
-  Scene scene = load_scene(scene_path("cornell.json"));
+  Scene scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
   const Image usual = render(scene, options, Show::indirect);
   for (const float brightness : {1e-5f, 1e6f}) {
@@ -123,7 +116,7 @@ TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
 }
 
 TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
-  const Scene scene = load_scene(scene_path("cornell.json"));
+  const Scene scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
   Device device = choose_device();
   {
@@ -139,27 +132,8 @@ TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
   EXPECT_EQ(session.device_bytes(), 0u);
 }
 
-TEST(Frame, SceneWithoutLightIsBlack) {
-  Scene scene = load_scene(scene_path("cornell.json"));
-  scene.lights.clear();
-  const Image image = render(scene, small_options(scene), Show::full);
-  for (std::size_t at = 0; at < image.pixels.size(); ++at) {
-    if (at % 4 == 3) continue;
-    ASSERT_EQ(image.pixels[at], 0.0f) << at;
-  }
-}
-
-TEST(Frame, WithoutOcclusionThereIsMoreLight) {
-  const Scene scene = load_scene(scene_path("cornell.json"));
-  RenderOptions options = small_options(scene);
-  const Image occluded = render(scene, options, Show::irradiance);
-  options.blockers = Blockers::none;
-  const Image open = render(scene, options, Show::irradiance);
-  EXPECT_GT(mean(open, 0, 0, kWidth, kHeight, 1), 1.05 * mean(occluded, 0, 0, kWidth, kHeight, 1));
-}
-
 TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
-  Scene scene = load_scene(scene_path("cornell.json"));
+  Scene scene = load_scene(scene_file("cornell.json"));
   scene.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(1)));
   EXPECT_NO_THROW(Frame(test::test_session(), scene, {}));
   const std::vector<std::function<void(RenderOptions&)>> changes = {
@@ -196,11 +170,11 @@ std::vector<float> finest_light(const Scene& scene, const RenderOptions& options
 }
 
 TEST(Frame, MovingByACellShiftsLightByOne) {
-  const Scene scene = load_scene(scene_path("cornell.json"));
+  const Scene scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
   options.blockers = Blockers::none;
   options.transport = TransportKind::sampled;
-  options.iterations = 0;  // what stands inside both grids is then the same; light from outside has no way in
+  options.iterations = 0;  // then cells in both grids have the same light, as none comes from outside
   const auto cell = static_cast<float>(options.cascade_size / options.grid);
   const glm::vec3 eye = (glm::floor(scene.camera("").eye / cell) + 0.25f) * cell;
   const auto here = finest_light(scene, options, eye),
@@ -215,11 +189,11 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
   }
   ASSERT_GT(total, 0);
   // Not to the bit: seen from elsewhere, float32 rounding turns single texels on the edges of the boxes to the other
-  // surface, about one in 64 a cell. Light that did not move with the grid would differ by 100 %.
+  // surface, one in 64 per cell. Light that did not move with the grid would differ by 100 %.
   EXPECT_LT(difference, 2e-3 * total);
 }
 
-// Light as volumes of 16 bits hold it: neither lux nor candle light leaves their range.
+// Volumes of 16 bits: neither daylight in lux nor candle light exceeds their range.
 constexpr VolumeFormat kHalf{Layout::soa, Storage::float16};
 
 TEST(LightScale, AFullCellIsAThousandthOfTheRange) {
@@ -248,7 +222,7 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
   RenderOptions options;
   options.grid = 64;
   const std::string message = test::error_of(
-      ExitCode::run_time, [&] { Frame(session, load_scene(scene_path("cornell.json")), options); });
+      ExitCode::run_time, [&] { Frame(session, load_scene(scene_file("cornell.json")), options); });
   ASSERT_THAT(message, ::testing::HasSubstr("grid: found 64, and at most "));
   const int fits = std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
   EXPECT_GT(fits, 8);
@@ -256,7 +230,7 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
   options.grid = 512;
   EXPECT_THAT(
       test::error_of(ExitCode::device,
-                     [&] { Frame(test::test_session(), load_scene(scene_path("cornell.json")), options); }),
+                     [&] { Frame(test::test_session(), load_scene(scene_file("cornell.json")), options); }),
       ::testing::HasSubstr("kernels address at most 2147483647: grid 4"));
 }
 

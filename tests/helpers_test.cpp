@@ -46,10 +46,6 @@ TEST(Claims, FinishedJobsHaveResults) {
   EXPECT_EQ(claims.finished_count(), 1u);
 }
 
-TEST(Claims, AFolderThatIsGoneIsAnError) {
-  EXPECT_THROW(Claims("/no/such/folder").take("job"), Error);
-}
-
 TEST(Helpers, ALibraryHasNone) {
   EXPECT_EQ(helper_count(), 0u) << "only clpv's main names a program";
 }
@@ -90,14 +86,6 @@ nlohmann::json results_of(const test::Outcome& outcome) {
   nlohmann::json checks = nlohmann::json::parse(outcome.out).at("checks");
   for (nlohmann::json& check : checks) check.erase("seconds");
   return checks;
-}
-
-TEST(Check, HelpersFindWhatOneProcessFinds) {
-  const std::string check = CLPV_PROGRAM " check --format json --stage shade,emit,sizes";
-  const test::Outcome helped = test::run(check), alone = test::run("taskset -c 0 " + check);
-  ASSERT_EQ(helped.exit_code, 0) << helped.err;
-  ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  EXPECT_EQ(results_of(helped), results_of(alone));
 }
 
 TEST(Check, ListsAndSelects) {

@@ -78,14 +78,5 @@ TEST(ImageHeader, APngIsLeftWithWhatItsPixelsNeedAndPlainTexts) {
   }
 }
 
-TEST(ImageHeader, APngIsReadWithoutItsPackedTexts) {
-  const test::TemporaryFolder folder;
-  std::string png = test::decode_base64(test::kPngRgba2x2);
-  const Image before = read_image(folder.write("a.png", png));
-  png.insert(kHeaderEnd, chunk("iCCP", "of no name"));
-  const Image after = read_image(folder.write("b.png", png));
-  EXPECT_EQ(before.pixels, after.pixels);
-}
-
 }  // namespace
 }  // namespace clpv::image_header_test

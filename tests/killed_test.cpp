@@ -16,6 +16,7 @@
 
 #include "image/image_io.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test::killed_test {
 namespace {
@@ -108,7 +109,6 @@ class Killed : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
 const std::string kSmall = " --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 ";
 
 TEST_F(Killed, WhileItRenders) {
@@ -217,17 +217,6 @@ TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
   EXPECT_THAT(read_file(said), HasSubstr("clpv: stopping after this kernel; once more to stop now"));
   EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
   EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
-}
-
-TEST_F(Killed, AFolderThatDisappearsIsReported) {
-  const fs::path film = folder_ / "film", said = folder_ / "said";
-  Child child(CLPV_PROGRAM " " + sequence(film), said);
-  for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i) std::this_thread::sleep_for(100ms);
-  fs::rename(film, folder_ / "gone");
-  int left = 600;
-  while (child.running() && --left > 0) std::this_thread::sleep_for(100ms);
-  EXPECT_GT(left, 0) << "it goes on, writing nowhere";
-  EXPECT_THAT(read_file(said), HasSubstr("there is no folder " + film.string()));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(LookupTable, RejectsImagesThatTheDeviceLacks) {
 /// Entries 0 .. size - 1 as a kernel reads them.
 std::vector<float> entries(const LookupTable& table, int size) {
   Session& session = test_session();
-  // A program needs a file; this one holds definitions only.
+  // A program needs a file; this one has only definitions.
   ProgramSource source{"shared/sort.h", {}, {}};
   source.generated = table.macros() +
                      "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"

@@ -91,28 +91,6 @@ TEST(Options, ABasisReplacesAFileOfCentres) {
   EXPECT_EQ(options.centres, "");
 }
 
-TEST(Options, StageOptionsMatchTheChoice) {
-  RenderOptions options;
-  apply_preset(options, PresetName::paper);
-  options.evaluate = Evaluation::image, options.grid = 11, options.state = State::fluxes;
-  const InjectOptions inject = inject_options(options, true);
-  EXPECT_TRUE(inject.unit_flux_lobes);
-  EXPECT_EQ(inject.grid, 11);
-  EXPECT_EQ(inject.blocking, Blocking::one_sided);
-  EXPECT_EQ(inject.lobes.kind, LobeKind::rotate);
-  EXPECT_EQ(inject.table, TableStorage::image);
-  const PropagateOptions propagate = propagate_options(options);
-  EXPECT_EQ(propagate.state, State::fluxes);
-  EXPECT_EQ(propagate.lobe_time, LobeTime::kernel);
-  EXPECT_EQ(propagate.format, (VolumeFormat{Layout::image, Storage::float16}));
-  options.cascades = 3, options.directions = Directions::of216, options.coarser_directions = Directions::of96;
-  EXPECT_EQ(sweep_options(options).parts, (std::vector<int>{3, 2, 2}));
-  EXPECT_EQ(sweep_options(options).grid, 11);
-  const GatherOptions gather = gather_options(options);
-  EXPECT_TRUE(gather.lobes.table_functions);
-  EXPECT_EQ(gather.table, TableStorage::image);
-}
-
 /// Those that are no options, which the tests above go through.
 template <typename E>
 class EachNamedEnum : public ::testing::Test {};
@@ -184,7 +162,7 @@ TEST(Presets, KeepOptionsThatTheyDoNotSet) {
 TEST(Presets, RenderRecordsWhatWasResolved) {
   const test::TemporaryFolder folder;
   const std::string image = (folder.path() / "a.exr").string(), stats = (folder.path() / "a.json").string();
-  // The preset comes last, and is overridden all the same; the scene's own cascades stand.
+  // Options override the preset wherever it stands; the scene's cascades override its sizes.
   const test::Outcome outcome =
       test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " + stats +
                      " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
@@ -198,19 +176,6 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   EXPECT_EQ(metadata.at("preset"), "paper");
   EXPECT_EQ(metadata.at("basis"), "sh2");
   EXPECT_EQ(metadata.at("blocking"), "one-sided");
-}
-
-TEST(Presets, PropagateTakesThem) {
-  const std::string propagate = "propagate --grid 5 --iterations 1 --at 2,2,2 ";
-  const test::Outcome paper = test::run_here(propagate + "--lambda 0.3 --preset paper");
-  ASSERT_EQ(paper.exit_code, 0) << paper.err;
-  const nlohmann::json options = nlohmann::json::parse(paper.out).at("options");
-  EXPECT_EQ(options["preset"], "paper");
-  EXPECT_EQ(options["basis"], "srbf8v2");
-  EXPECT_EQ(options["lambda"], 0.3);
-  const test::Outcome swept = test::run_here(propagate + "--preset best");
-  EXPECT_EQ(swept.exit_code, 2);
-  EXPECT_THAT(swept.err, HasSubstr("transport: found 'sweep', which takes no steps"));
 }
 
 TEST(Presets, QualityTakesAPresetsTransport) {

@@ -59,15 +59,6 @@ TEST_F(OutputFile, RejectsPathsThatCannotBeFiles) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST_F(OutputFile, ANameWithoutFolderGoesIntoTheCurrentOne) {
-  const fs::path before = fs::current_path();
-  fs::current_path(folder_);
-  check_writable("plain.txt");
-  write_file("plain.txt", std::string_view("x"));
-  fs::current_path(before);
-  EXPECT_EQ(read_file(folder_ / "plain.txt"), "x");
-}
-
 // A link to a missing file was once replaced by the file.
 TEST_F(OutputFile, FollowsASymbolicLinkToAFileOrToNone) {
   fs::create_symlink("target", folder_ / "link");

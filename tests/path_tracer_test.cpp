@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "tests/support/error_of.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::path_tracer_test {
@@ -23,14 +24,11 @@ Scene box(float albedo, float emitted) {
   scene.path = "box";
   add_grey(scene, albedo);
   for (float& e : scene.materials[0].emissive) e = emitted;
-  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  add_quad(scene, {0, 0, 0}, z, x, 0), add_quad(scene, {0, 1, 0}, x, z, 0);
-  add_quad(scene, {0, 0, 0}, y, z, 0), add_quad(scene, {1, 0, 0}, z, y, 0);
-  add_quad(scene, {0, 0, 0}, x, y, 0), add_quad(scene, {0, 0, 1}, y, x, 0);
+  add_box(scene, glm::vec3(0), 1, 0);
   return scene;
 }
 
-/// Where the centre of a pixel of kDown meets the floor.
+/// Point of the floor at the centre of a pixel of kDown.
 glm::dvec2 on_floor(unsigned px, unsigned py) {
   const double sx = (2 * (px + 0.5) / kDown.width - 1) * kDown.half_width;
   const double sy = (1 - 2 * (py + 0.5) / kDown.height) * kDown.half_height;
@@ -42,12 +40,6 @@ glm::dvec2 on_floor(unsigned px, unsigned py) {
 double corner_factor(double a, double b) {
   const double ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
   return (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * pi);
-}
-
-double mean(const std::vector<glm::vec3>& values) {
-  double sum = 0;
-  for (const glm::vec3& v : values) sum += (v.x + v.y + v.z) / 3.0;
-  return sum / values.size();
 }
 
 // A closed box whose walls emit E and reflect a: radiance E / (1 - a) everywhere, E (1 + a) after one bounce.
@@ -196,7 +188,7 @@ TEST(PathTracer, ParallelPlatesExchangeTheAnalyticFormFactor) {
   EXPECT_LT(image.noise, 2e-3);
 }
 
-// Unbiased: many short runs average to what one long run gives, and the noise reported is the noise there is.
+// The estimator is unbiased, and the reported noise is the actual noise: many short runs average to the closed form.
 TEST(PathTracer, ShortRunsAverageToTheTruthWithTheNoiseTheyReport) {
   const double truth = plates_expected();
   PathTracerOptions options;

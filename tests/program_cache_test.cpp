@@ -84,14 +84,6 @@ TEST_F(ProgramCacheTest, AnyDamageIsFound) {
   EXPECT_EQ(cache_.load("key"), binary);
 }
 
-TEST_F(ProgramCacheTest, FolderThatCannotBeMadeIsNoFailure) {
-  write_file(folder_.path() / "file", "");
-  const ProgramCache cache(folder_.path() / "file" /
-                           "below");  // root may write anywhere, but not below a file
-  EXPECT_FALSE(cache.store("key", {1}));
-  EXPECT_FALSE(cache.load("key").has_value());
-}
-
 TEST_F(ProgramCacheTest, DropsTheLeastRecentlyUsed) {
   const ProgramCache cache(folder_.path(), 2500);
   const Binary binary(1000, 1);

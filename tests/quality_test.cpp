@@ -114,15 +114,6 @@ TEST(QualityStore, ReturnsStoredCells) {
   }
 }
 
-TEST(QualityStore, DamagedCellsAreMeasuredAgain) {
-  const test::TemporaryFolder folder;
-  const QualityStore store(folder.path());
-  for (const char* text : {"", "{\"scene\": \"room\"", "[]", "{\"scene\": 3}"}) {
-    folder.write("k.json", text);
-    EXPECT_FALSE(store.find("k")) << text;
-  }
-}
-
 /// A floor and a wall, both 4 x 4 m, lit from the front.
 void write_room(const test::TemporaryFolder& folder) {
   test::GltfBuilder room;
@@ -153,12 +144,6 @@ class QualityCommand : public ::testing::Test {
  private:
   test::TemporaryFolder folder_;
 };
-
-TEST_F(QualityCommand, MeasuresOnlyWhatIsNamed) {
-  const test::Outcome named = quality("--basis sh2 --camera left --format json");  // and --grid
-  ASSERT_EQ(named.exit_code, 0) << named.err;
-  EXPECT_EQ(nlohmann::json::parse(named.out)["variants"].size(), 1u);
-}
 
 TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
   std::ofstream(file("cache")) << "a file, so that no folder of this name can be made";

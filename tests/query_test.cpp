@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light at points: irradiance equal to the frame's where the camera sees them, radiance to the CPU reference; valid and invalid
+// Light at points: irradiance equals the frame's at visible points, radiance the CPU reference's; valid and invalid
 // files of points; `clpv query`.
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::query_test {
@@ -25,7 +26,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
 
 RenderOptions small_options(const Scene& scene) {
   RenderOptions options;

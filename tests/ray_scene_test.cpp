@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ray casting: holes and single-sided surfaces as the path tracer sees them, and the same image as the rasteriser's.
+// Ray casting: holes, single-sided surfaces, and the same image as the rasteriser's.
 #include "pathtracer/ray_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -103,40 +103,6 @@ TEST(RotatedLobes, EqualTheRotatedLobeTowardsZ) {
   }
 }
 
-TEST(RotatedLobes, TowardsMinusZAreTheLobeUpsideDown) {
-  const auto basis = make_basis("srbf6");
-  EXPECT_THAT(Lobes(*basis, kRotated)(-kUp), Pointwise(DoubleNear(1e-12), basis->clamped_cosine(-kUp)));
-}
-
-TEST(RotatedLobes, MakeTheTransportsLobes) {
-  const auto basis = make_basis("srbf8v2");
-  const Lobes lobes(*basis, kTable);
-  for (const TransportKind kind : {TransportKind::sampled, TransportKind::exact}) {
-    const Transport transport = make_transport(kind, *basis, kTable);
-    const Matrix& columns = std::get<FaceTransport>(transport.scheme).lobes;
-    for (int a = 0; a < 6; ++a) {
-      const std::vector<double> lobe = lobes(glm::dvec3(kAxes[static_cast<std::size_t>(a)]));
-      const double carried = transport.unit_flux_lobes ? basis->energy(lobe) : kPi;
-      for (int i = 0; i < 8; ++i)
-        EXPECT_NEAR(columns(i, a), lobe[static_cast<std::size_t>(i)] / carried, 1e-15);
-    }
-  }
-}
-
-TEST(RotatedLobes, FloorCostsSrbf14ItsAxisLobes) {
-  // A^-1 amplifies what floor() drops: harmless at condition numbers of 1e3, not at 1.8e4.
-  for (const char* name : {"srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3"}) {
-    const auto basis = make_basis(name);
-    EXPECT_NEAR(error_at(*basis, Lobes(*basis, kTable), kUp), error_at(*basis, Lobes(*basis, kRotated), kUp),
-                .002)
-        << name;
-  }
-  const auto rich = make_basis("srbf14");
-  EXPECT_NEAR(error_at(*rich, Lobes(*rich, kTable), kUp), .0948, 1e-4);
-  EXPECT_NEAR(error_at(*rich, Lobes(*rich, {LobeKind::rotate, 257}), kUp), .2999, 1e-4);
-  EXPECT_LT(error_at(*rich, Lobes(*rich, {LobeKind::rotate, 1 << 16}), kUp), .081);
-}
-
 TEST(RotationTo, TurnsAsLittleAsPossible) {
   std::vector<glm::dvec3> axes = test::spread_axes(20);
   axes.insert(axes.end(), {kUp, -kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1e-7, 0, -1))});

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test::scene_test {
 namespace {
@@ -158,28 +159,10 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   }
 }
 
-TEST_F(SceneTest, AnEmptyModelIsAScene) {
-  GltfBuilder empty;
-  const Scene scene = load_scene(empty.write(folder));
-  EXPECT_THAT(scene.triangles, IsEmpty());
-  EXPECT_EQ(scene.cameras.size(), 1u);
-  EXPECT_THAT(scene.notes, Contains(HasSubstr("no triangles")));
-}
-
-/// Where Sponza lies, or empty.
-std::filesystem::path sponza() {
-  const char* given = std::getenv("CLPV_SPONZA");
-  std::filesystem::path path = given != nullptr && *given != '\0' ? std::filesystem::path(given)
-                                                                  : std::filesystem::path(CLPV_SOURCE_DIR) /
-                                                                        "../shared/scenes/sponza/Sponza.gltf";
-  if (std::filesystem::is_directory(path)) path /= "Sponza.gltf";
-  return std::filesystem::exists(path) ? path : std::filesystem::path();
-}
-
 TEST(SponzaTest, IsWhatItsReadmeSays) {
   const auto model = sponza();
-  if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA says where it lies";
-  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/sponza.json", model);
+  if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
+  const Scene scene = load_scene(scene_file("sponza.json"), model);
   EXPECT_EQ(scene.triangles.size(), 262267u);
   EXPECT_EQ(scene.vertices.size(), 192870u);
   EXPECT_EQ(scene.materials.size(), 25u);

@@ -22,6 +22,7 @@
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/traced_scenes.hpp"
@@ -112,7 +113,7 @@ TEST(SkyLight, LightComesFromWhereTheSkyIsBright) {
     EXPECT_NEAR(above[i].x, bins[i / 4].directions[i % 4].w.y < 0 ? 1 : 0, 5e-3) << "downwards";
 }
 
-/// A black floor under `sky`; the camera looks at a patch of it about the origin from 0.3 m.
+/// A black floor under `sky`; the camera sees a patch around the origin from 0.3 m.
 Scene under(const Sky& sky, float half = 10) {
   Scene scene;
   scene.path = "under the sky";
@@ -141,19 +142,13 @@ RenderOptions small_frame() {
 double lit(const Scene& scene, const RenderOptions& options = small_frame()) {
   Frame frame(test_session(), scene, options);
   frame.render(scene.cameras[0]);
-  const std::vector<float> found = frame.read(Show::irradiance);
-  double sum = 0;
-  for (std::size_t i = 0; i < found.size(); i += 4) sum += double{found[i]};
-  return 4 * sum / static_cast<double>(found.size());
+  return mean(frame.read(Show::irradiance), 0);
 }
 
 double traced(const Scene& scene, int bounces = 1, std::uint32_t samples = 1024) {
   PathTracerOptions options;
   options.samples = samples, options.bounces = bounces;
-  const TracedImage image = reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options);
-  double sum = 0;
-  for (const glm::vec3& e : image.irradiance) sum += double{e.x};
-  return sum / static_cast<double>(image.irradiance.size());
+  return mean(reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options).irradiance);
 }
 
 TEST(SkyFrame, AnOpenPlaneGetsPiTimesTheRadiance) {
@@ -183,7 +178,7 @@ TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
   }
 }
 
-// A texel of the sun's size far brighter than the sky: found by those that look for it.
+// A small, very bright texel: direct sampling finds it.
 TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
   constexpr int kWidth = 512, kHeight = 256, kX = 300, kY = 60;
   const Sky sky = map_of(kWidth, kHeight, [](int x, int y) { return x == kX && y == kY ? 1e5f : 0.1f; });
@@ -243,7 +238,7 @@ TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   EXPECT_TRUE(frame.read(Show::full) == full);
 }
 
-/// A scene file with that member "sky", beside a map of two texels whose red is `value` in the second.
+/// A scene file with that member "sky", and a map of two texels; the second has red `value`.
 class SkyFile : public ::testing::Test {
  protected:
   void write(const std::string& sky, float value,

@@ -8,11 +8,11 @@
 
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::soak_test {
 namespace {
 
-const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
 
 constexpr double kFlat = 1.01;  // over frames()
 
@@ -44,7 +44,7 @@ TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
   const std::vector<RenderOptions> all = {
       small(TransportKind::sweep, Layout::soa, 8), small(TransportKind::sampled, Layout::soa, 12),
       small(TransportKind::sampled, Layout::aos, 8), small(TransportKind::sweep, Layout::soa, 16)};
-  const Scene scene = load_scene(kTiny);
+  const Scene scene = load_scene(test::kTiny);
   Session session(choose_device());
   const auto render = [&](int i) {
     Frame frame(session, scene, all[static_cast<std::size_t>(i) % all.size()]);

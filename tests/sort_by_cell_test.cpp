@@ -64,7 +64,7 @@ TEST(SortByCell, CellsOfNoOneAndManyTexels) {
   Keys each_its_own(4096);
   std::iota(each_its_own.rbegin(), each_its_own.rend(), 0);
   expect_sorted(each_its_own, 4096);
-  // Odd and even numbers of bits, powers of two and beside them.
+  // Odd and even numbers of bits, powers of two and their neighbours.
   for (const cl_uint cells : {2u, 3u, 64u, 125u, 729u, 32768u, 35937u, 2146689u}) {
     expect_sorted(in_runs(3000, cells, 1), cells);
     expect_sorted(in_runs(3000, cells, 70), cells);
@@ -72,7 +72,7 @@ TEST(SortByCell, CellsOfNoOneAndManyTexels) {
   }
 }
 
-// More texels than 512 chunks of the least length hold: chunks grow. Their number is no multiple of a run's.
+// More texels than 512 chunks of minimum length, so chunks grow; not a multiple of a run's length.
 TEST(SortByCell, LargeSurfaces) {
   expect_sorted(in_runs(200'003, 4096, 40), 4096);
 }

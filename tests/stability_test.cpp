@@ -13,6 +13,8 @@
 #include "reference/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::stability_test {
 namespace {
@@ -23,12 +25,8 @@ constexpr int kWidth = 64, kHeight = 36;
 
 /// G-buffer of the floor y = 0 and, where `box` > 0, of a box's top at that height over |x|, |z| < 1.
 SurfaceImage view_of_floor(const glm::vec3& eye, double box = 0) {
-  SceneCamera camera;
-  camera.eye = eye;
-  camera.forward = glm::normalize(glm::vec3(0.1f, -0.6f, -1));
-  camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, {0, 1, 0}), camera.forward));
   SurfaceImage image;
-  image.view = camera_view(camera, kWidth, kHeight);
+  image.view = camera_view(test::camera_at(eye, {0.1f, -0.6f, -1}), kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const glm::dvec3 far = reference::surface_position(image.view, x, y, 1), from(eye);
@@ -119,7 +117,7 @@ class SteadyFrame : public ::testing::Test {
 
   void SetUp() override { camera_.eye = (glm::floor(camera_.eye / kCell) + 0.25f) * kCell; }
 
-  /// Renders from a cell's share further, and says how the light changed where the view before saw it too.
+  /// Moves the camera by that many cells, and returns the change of light on surfaces visible before and after.
   LightChange after(float cells) {
     if (before_.depth.empty()) render();
     camera_.eye.x += cells * kCell;
@@ -138,7 +136,7 @@ class SteadyFrame : public ::testing::Test {
   static double change_at_rest(Near near) {
     RenderOptions options = small_options();
     options.near = near;
-    const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/cornell.json");
+    const Scene scene = load_scene(test::scene_file("cornell.json"));
     const SceneCamera camera = scene.camera("");
     Frame frame(test_session(), scene, options);
     Stability stability(test_session(), frame, 0);
@@ -149,7 +147,7 @@ class SteadyFrame : public ::testing::Test {
     return stability.steps().front().change.mean.value();
   }
 
-  Scene scene_ = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / "scenes/cornell.json");
+  Scene scene_ = load_scene(test::scene_file("cornell.json"));
   SceneCamera camera_ = scene_.camera("");
   Frame frame_{test_session(), scene_, small_options()};
   SurfaceImage before_;

@@ -36,7 +36,7 @@ class Starved : public ::testing::Test {
   /// Programs are compiled once for all tests, each in its process; the cache lies beside the program.
   static fs::path compiled() { return fs::path(CLPV_PROGRAM).parent_path() / "starved_cache"; }
 
-  /// `timeout` goes first: the shim is for the program alone.
+  /// `timeout` goes first: only the program gets the shim.
   static std::string program() {
     return "timeout 600 env " + usual_kernels() +
            "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() +
@@ -66,7 +66,7 @@ class Starved : public ::testing::Test {
     EXPECT_EQ(report()["live"], 0) << "memory objects left";
   }
 
-  /// Each `step`th call of a frame in turn, or as CLPV_STARVED_STEP says (1: every one).
+  /// Each `step`-th call of a frame in turn; CLPV_STARVED_STEP replaces the step (1: every call).
   void expect_reported_at_some(const std::string& call, long step, const std::string& code,
                                const std::string& name) {
     const Outcome sound = run(program() + kTiny + "-o " + (folder_ / "sound.exr").string());

@@ -15,6 +15,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::tev_test {
@@ -23,7 +24,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
 const std::string kSmall = " --width 32 --height 18 --grid 8 --rsm-size 32 --cascades 1";
 
 /// Reads the fields of a packet in order.
@@ -194,27 +194,6 @@ TEST_F(TevCommands, RenderSendsEachView) {
   for (int x = 0; x < 32; ++x) EXPECT_EQ(depth.at(x, 9, 0), written.at(x, 9, *written.channel("depth.R")));
 }
 
-TEST_F(TevCommands, SequenceSendsItsFrames) {
-  Server server;
-  const Outcome outcome =
-      run("sequence " + kCornell + kSmall + " -o frames --frames 2 --fps 1" + server.option());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  server.finish();
-  EXPECT_EQ(server.updates, 2);
-  EXPECT_EQ(server.images.begin()->second.pixels, read_image(folder / "frames/frame-0001.exr").pixels);
-}
-
-TEST_F(TevCommands, PathtraceSendsEverySecond) {
-  Server server;
-  const Outcome outcome =
-      run("pathtrace " + kCornell + " --width 96 --height 54 --spp 2048 --view indirect -o a.exr" +
-          server.option());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  server.finish();
-  EXPECT_GT(server.updates, 1) << "before its end";
-  EXPECT_EQ(server.images.at("cornell front indirect").pixels, read_image(folder / "a.exr").pixels);
-}
-
 TEST_F(TevCommands, AViewerThatClosesIsAWarning) {
   Server server(2);
   const Outcome outcome =
@@ -223,18 +202,6 @@ TEST_F(TevCommands, AViewerThatClosesIsAWarning) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("--tev"), HasSubstr("further images are not shown")));
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/frame-0007.exr"));
-}
-
-TEST_F(TevCommands, NobodyListensIsAWarning) {
-  std::string option;
-  {
-    Server server(0);
-    option = server.option();
-    Tev(option.substr(option.find('=') + 1));
-  }
-  const Outcome outcome = run("render " + kCornell + kSmall + " -o a.exr" + option);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("is tev running?"));
 }
 
 TEST_F(TevCommands, BadAddressesAreRejected) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Textures as the rasteriser sees them: mip chains, wrap modes, filters, holes.
+// Textures in the rasteriser: mip chains, wrap modes, filters, holes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

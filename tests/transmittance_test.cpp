@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "basis/transport.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace clpv::transmittance_test {
 namespace {
+
+using test::times;
 
 constexpr int kGrid = 5;
 constexpr double kFloat = 1e-6;
@@ -47,8 +50,7 @@ reference::Volume geometry_of(int numbers, const Blockers& blockers) {
   return volume;
 }
 
-/// Expects each cell to transmit `expected` along each link. The checks of propagation and of the sweep hold the kernels
-/// against the same reference.
+/// Expects each cell to transmit `expected` along each link.
 void expect_all(const Transport& transport, const reference::Volume& geometry,
                 const std::function<double(const glm::ivec3& cell, const Link& link)>& expected,
                 double allowed = kFloat) {
@@ -60,11 +62,6 @@ void expect_all(const Transport& transport, const reference::Volume& geometry,
           << cell.z;
     });
   }
-}
-
-std::vector<double> times(double s, std::vector<double> c) {
-  for (double& value : c) value *= s;
-  return c;
 }
 
 class EachTransport : public ::testing::TestWithParam<TransportKind> {

@@ -6,6 +6,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::view_values_test {
@@ -15,7 +16,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json";
 const std::string kFront = " --eye 0.278,0.273,-0.18 --target 0.278,0.273,0.28 --fov 75";
 const std::string kSmall = " --width 32 --height 18 --grid 8 --rsm-size 32 --cascades 1";
 

@@ -30,7 +30,7 @@ ClpvGrid grid_at(const glm::ivec3& first) {
   return grid;
 }
 
-/// Triangles from specks to walls, in and round a space of about 20 cells; the last 40 move.
+/// Triangles of all sizes in and around a space of 20 cells; the last 40 move.
 Scene soup() {
   Scene scene;
   const unsigned materials[] = {add_material(scene, {0.8f, 0.5f, 0.3f}),
@@ -55,14 +55,14 @@ void shift(Scene& scene, const MeshRange& part, const glm::vec3& by) {
   }
 }
 
-/// All that triangles leave in a cascade.
+/// All results of voxelisation in a cascade.
 struct Left {
   std::vector<std::uint8_t> occluded;
   std::vector<float> blocked, reflected;
   bool operator==(const Left&) const = default;
 };
 
-/// The three stages that mark cells, of two cascades: the first stays where it was put first.
+/// The three voxelising stages for two cascades; only the second moves.
 class Stages {
  public:
   explicit Stages(const SceneBuffers& buffers)
@@ -95,7 +95,7 @@ Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
 TEST(VoxelMasks, MoveWithACascade) {
   const Scene scene = soup();
   Stages kept(upload_scene(test_session(), scene));
-  // A cell, several along two and three axes, back, farther than the grid is wide, past a base (32 cells apart), and nowhere.
+  // By one cell, by several along two and three axes, back, by more than the grid, past a base (every 32 cells), by none.
   const glm::ivec3 places[] = {{-4, -4, -4}, {-3, -4, -4}, {-3, -6, -1}, {-1, -5, -2},
                                {-4, -4, -4}, {5, -4, -4},  {11, -4, 2},  {17, -4, 2},
                                {15, -4, 2},  {16, -3, 2},  {16, -3, 2}};

@@ -36,7 +36,7 @@ inline const test::TemporaryFolder& folder() {
   return made;
 }
 
-/// Runs `read`, whose input may be rejected, with these exit codes alone.
+/// Runs `read`; it may reject its input, but only with these exit codes.
 template <typename Read>
 void read_or_reject(std::initializer_list<ExitCode> allowed, Read&& read) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene file, with a sound model (sound.gltf) beside it.
+// A scene file, with a valid model (sound.gltf) in the same folder.
 #include "tests/fuzz/model.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

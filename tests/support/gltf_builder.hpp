@@ -186,18 +186,18 @@ struct GltfTest : ::testing::Test {
   }
 };
 
-/// A sound triangle, to be spoilt.
+/// A valid triangle for tests of invalid changes.
 struct BadInputTest : GltfTest {
   BadInputTest() { model.triangle(); }
 
-  /// The rejection of the model as it stands; always names the file.
+  /// The error of loading the model; always names the file.
   std::string rejected() {
     const std::string message = rejection(model.write(folder));
     EXPECT_THAT(message, ::testing::HasSubstr("model.gltf"));
     return message;
   }
 
-  /// Makes the triangle wear an image of that URI.
+  /// Gives the triangle a texture with an image of that URI.
   void wear(const std::string& uri) {
     model.document["images"] = {{{"uri", uri}}};
     model.document["textures"] = {{{"source", 0}}};
@@ -211,7 +211,7 @@ struct BadInputTest : GltfTest {
   json& accessor() { return model.document["accessors"][0]; }
 };
 
-/// The triangle of BadInputTest at node 0, and what moves it.
+/// The triangle of BadInputTest at node 0, with animations.
 struct AnimationTest : BadInputTest {
   /// Adds a channel with its sampler.
   template <typename T>

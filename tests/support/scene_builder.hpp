@@ -49,6 +49,24 @@ inline void add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& u, 
   scene.triangles.push_back({{first, first + 2, first + 3}, material});
 }
 
+/// A cube from `low` on, its faces inwards.
+inline void add_box(Scene& scene, const glm::vec3& low, float edge, unsigned material) {
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::vec3 across(0), u(0), v(0);
+    across[axis] = u[(axis + 1) % 3] = v[(axis + 2) % 3] = edge;
+    add_quad(scene, low, u, v, material);
+    add_quad(scene, low + across, v, u, material);
+  }
+}
+
+/// A camera with y up.
+inline SceneCamera camera_at(const glm::vec3& eye, const glm::vec3& along) {
+  SceneCamera camera;
+  camera.eye = eye, camera.forward = glm::normalize(along);
+  camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, glm::vec3(0, 1, 0)), camera.forward));
+  return camera;
+}
+
 inline ClpvLight directional_light(const glm::vec3& direction, const glm::vec3& irradiance = glm::vec3(1)) {
   const glm::vec3 d = glm::normalize(direction);
   ClpvLight light{};

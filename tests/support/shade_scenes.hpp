@@ -51,7 +51,7 @@ inline ClpvView view_of(const glm::dvec3& eye, const glm::dvec3& forward, bool o
   return view;
 }
 
-/// Where a ray `origin` + t `direction` first meets something: t, or 0 where it meets nothing at t > 0.
+/// Parameter t of the first hit of the ray `origin` + t `direction`; 0 without a hit at t > 0.
 using Geometry = std::function<double(const glm::dvec3& origin, const glm::dvec3& direction)>;
 
 inline double plane_at(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& normal,

@@ -46,7 +46,7 @@ inline std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& z) {
   return {x, glm::cross(z, x)};
 }
 
-/// The sphere in eight octants of a frame with that z axis: exact to rounding for what is smooth in each
+/// The sphere in eight octants of a frame with that z axis: exact to rounding for functions smooth in each
 /// octant, such as max(0, w . z) times a basis function.
 inline std::vector<Node> sphere(const glm::dvec3& z = {0, 0, 1}, int order = 24) {
   std::pair<glm::dvec3, glm::dvec3> frame{{1, 0, 0}, {0, 1, 0}};
