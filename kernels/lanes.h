@@ -1,19 +1,61 @@
 // SPDX-License-Identifier: MIT
-// Explicit vectors of eight lanes, such as eight pixels of a row.
+// Explicit vectors of W lanes: pixels of a row, cells of a row, rays. First text of every program with generated text.
 //
-// PoCL vectorises work-items in short kernels of straight-line code on named scalars, without arrays, branches and
-// float3 in memory (coefficients.h, surface.h, volume/whole_groups.h). Longer kernels use float8, and no function that
-// PoCL does not inline, such as any(), floor() or log2().
+// W 8 is for CPUs. PoCL vectorises work-items by itself only in short kernels of straight-line code on named scalars,
+// without arrays, branches and float3 in memory (coefficients.h, surface.h, volume/whole_groups.h). Longer kernels use
+// vectors, and no function that PoCL does not inline, such as any(), floor() or log2().
 #ifndef CLPV_LANES_H
 #define CLPV_LANES_H
 
-#define CLPV_ABREAST 8
-#define CLPV_COMPONENT float8
+#ifndef CLPV_W
+#define CLPV_W 8
+#endif
+#define W CLPV_W
 
+// Large functions need the attribute: PoCL leaves them out of line.
+#define CLPV_INLINE static inline __attribute__((always_inline))
+
+// Vectors of W numbers, conversions between them, and load and store of W numbers that follow one another. A comparison
+// of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one lane it is 1 or 0: use `mask == 0`, not
+// ~mask.
+#if W == 8
+typedef float8 realW;
+typedef int8 intW;
+typedef uint8 uintW;
+typedef long8 longW;
+#define to_realW convert_float8
+#define to_intW convert_int8
+#define to_uintW convert_uint8
+#define to_longW convert_long8
+#define as_realW as_float8
+#define as_intW as_int8
+#define as_uintW as_uint8
+#define load_lanes(from) vload8(0, from)
+#define store_lanes(value, to) vstore8(value, 0, to)
+#define lane_numbers() ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
 // Gathers one element per lane, at the indices `at`.
 #define CLPV_GATHER(from, at)                                                                            \
   ((from)[(at).s0], (from)[(at).s1], (from)[(at).s2], (from)[(at).s3], (from)[(at).s4], (from)[(at).s5], \
    (from)[(at).s6], (from)[(at).s7])
+#elif W == 1
+typedef float realW;
+typedef int intW;
+typedef uint uintW;
+#define to_realW convert_float
+#define to_intW convert_int
+#define to_uintW convert_uint
+#define as_intW as_int
+#define as_uintW as_uint
+#define load_lanes(from) (*(from))
+#define store_lanes(value, to) (*(to) = (value))
+#define lane_numbers() 0
+#define CLPV_GATHER(from, at) ((from)[at])
+#endif
+
+#define ZERO ((realW)(0.0f))
+#define ONE ((realW)(1.0f))
+
+#if W == 8
 
 // Gathers a float4 per lane, then reads it by columns: one load per lane instead of four.
 typedef struct {
@@ -22,7 +64,7 @@ typedef struct {
 
 // Functions that read buffers return structs through pointers: Oclgrind does not know the annotations that compilers
 // give to functions that return one.
-static inline void gather_rows(__global const float4* from, const uint8 at, Rows* rows) {
+static inline void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
   rows->r0 = from[at.s0];
   rows->r1 = from[at.s1];
   rows->r2 = from[at.s2];
@@ -34,20 +76,45 @@ static inline void gather_rows(__global const float4* from, const uint8 at, Rows
 }
 
 #define CLPV_COLUMN(rows, c)                                                                           \
-  ((float8)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
-            (rows).r7.c))
+  ((realW)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
+           (rows).r7.c))
 
-// Returns true if a comparison holds in no lane.
-static inline bool none(const int8 lanes) {
-  return as_long(convert_char8(lanes)) == 0;
+// Returns true if a mask holds in no lane.
+static inline bool no_lane(const intW mask) {
+  return as_long(convert_char8(mask)) == 0;
 }
 
-// Bit mask of a comparison; the first lane is the lowest bit.
-static inline uint clpv_bits(const int8 lanes) {
-  return (uint)(((as_ulong(convert_char8(lanes)) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
+// Bits of a mask; the first lane is the lowest bit.
+static inline uint lane_bits(const intW mask) {
+  return (uint)(((as_ulong(convert_char8(mask)) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
 }
 
-// Large functions need the attribute: PoCL leaves them out of line.
-#define CLPV_INLINE static inline __attribute__((always_inline))
+// Sums and extremes over all lanes.
+static inline float sum_lanes(const realW v) {
+  const float4 four = v.lo + v.hi;
+  return four.x + four.y + four.z + four.w;
+}
+static inline uint sum_lanes_uint(const uintW v) {
+  const uint4 four = v.lo + v.hi;
+  return four.x + four.y + four.z + four.w;
+}
+static inline float min_lane(const realW v) {
+  const float4 four = v.lo < v.hi ? v.lo : v.hi;
+  const float2 two = four.lo < four.hi ? four.lo : four.hi;
+  return two.x < two.y ? two.x : two.y;
+}
+static inline int min_lane_int(const intW v) {
+  const int4 four = min(v.lo, v.hi);
+  return min(min(four.x, four.y), min(four.z, four.w));
+}
+static inline int max_lane_int(const intW v) {
+  return -min_lane_int(-v);
+}
 
+#elif W == 1
+
+static inline bool no_lane(const intW mask) { return mask == 0; }
+static inline float sum_lanes(const realW v) { return v; }
+
+#endif
 #endif

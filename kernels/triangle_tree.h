@@ -13,74 +13,74 @@
 #include "shared/tree.h"
 
 typedef struct {
-  __global const float8 *nodes, *leaves;
+  __global const realW *nodes, *leaves;
 } Tree;
 
 // Eight rays and their nearest hits.
 typedef struct {
-  float from[3][CLPV_ABREAST], along[3][CLPV_ABREAST], inverse[3][CLPV_ABREAST];  // [m]; unit; 1 / along
-  uint near_row[3][CLPV_ABREAST];  // row of a node that holds the nearer planes
-  float distance[CLPV_ABREAST];   // of the hit [m], or reach of the ray
-  float u[CLPV_ABREAST], v[CLPV_ABREAST];  // weights of the second and third vertex
-  uint triangle[CLPV_ABREAST];
+  float from[3][W], along[3][W], inverse[3][W];  // [m]; unit; 1 / along
+  uint near_row[3][W];  // row of a node that holds the nearer planes
+  float distance[W];   // of the hit [m], or reach of the ray
+  float u[W], v[W];  // weights of the second and third vertex
+  uint triangle[W];
 } Rays;
 
 #define CLPV_BOX_MARGIN 1.000001f  // covers the rounding of distances to planes
 
-CLPV_INLINE void clpv_set_ray_axis(const int axis, const float8 from, const float8 along, Rays* rays) {
-  const float8 none = (float8)(0.0f), least = along < none ? (float8)(-1e-20f) : (float8)(1e-20f);
-  vstore8(from, 0, rays->from[axis]);
-  vstore8(along, 0, rays->along[axis]);
-  vstore8(1.0f / (fabs(along) > fabs(least) ? along : least), 0, rays->inverse[axis]);
-  vstore8(along < none ? (uint8)(CLPV_TREE_UPPER + axis) : (uint8)(CLPV_TREE_LOWER + axis), 0, rays->near_row[axis]);
+CLPV_INLINE void set_ray_axis(const int axis, const realW from, const realW along, Rays* rays) {
+  const realW least = along < ZERO ? (realW)(-1e-20f) : (realW)(1e-20f);
+  store_lanes(from, rays->from[axis]);
+  store_lanes(along, rays->along[axis]);
+  store_lanes(1.0f / (fabs(along) > fabs(least) ? along : least), rays->inverse[axis]);
+  store_lanes(along < ZERO ? (uintW)(CLPV_TREE_UPPER + axis) : (uintW)(CLPV_TREE_LOWER + axis), rays->near_row[axis]);
 }
 
 // Rays without hits; those of reach 0 have none.
-CLPV_INLINE void clpv_set_rays(const Vec from, const Vec along, const float8 reach, Rays* rays) {
-  clpv_set_ray_axis(0, from.x, along.x, rays);
-  clpv_set_ray_axis(1, from.y, along.y, rays);
-  clpv_set_ray_axis(2, from.z, along.z, rays);
-  vstore8(reach, 0, rays->distance);
-  vstore8((float8)(0.0f), 0, rays->u);
-  vstore8((float8)(0.0f), 0, rays->v);
-  vstore8((uint8)(0u), 0, rays->triangle);
+CLPV_INLINE void set_rays(const Vec from, const Vec along, const realW reach, Rays* rays) {
+  set_ray_axis(0, from.x, along.x, rays);
+  set_ray_axis(1, from.y, along.y, rays);
+  set_ray_axis(2, from.z, along.z, rays);
+  store_lanes(reach, rays->distance);
+  store_lanes(ZERO, rays->u);
+  store_lanes(ZERO, rays->v);
+  store_lanes((uintW)(0u), rays->triangle);
 }
 
 // Shortens the parts of ray i within eight boxes to those between their planes across axis a.
 #define CLPV_MEET_SLABS(a)                                                                                       \
   {                                                                                                              \
     const uint near_row = rays->near_row[a][i], far_row = CLPV_TREE_LOWER + CLPV_TREE_UPPER + 2 * a - near_row;  \
-    const float8 from = (float8)(rays->from[a][i]), inverse = (float8)(rays->inverse[a][i]);                     \
-    const float8 entered = (node[near_row] - from) * inverse, left = (node[far_row] - from) * inverse;           \
+    const realW from = (realW)(rays->from[a][i]), inverse = (realW)(rays->inverse[a][i]);                     \
+    const realW entered = (node[near_row] - from) * inverse, left = (node[far_row] - from) * inverse;           \
     enter = entered > enter ? entered : enter;                                                                   \
     leave = left < leave ? left : leave;                                                                         \
   }
 
 // Bit mask of the children whose boxes ray i meets before its hit.
 #define CLPV_BOXES_HIT(name, memory)                                                                                  \
-  CLPV_INLINE uint name(memory const float8* node, const Rays* rays, const uint i) {                                  \
-    float8 enter = (float8)(0.0f), leave = (float8)(rays->distance[i]);                                               \
+  CLPV_INLINE uint name(memory const realW* node, const Rays* rays, const uint i) {                                  \
+    realW enter = ZERO, leave = (realW)(rays->distance[i]);                                               \
     CLPV_MEET_SLABS(0) CLPV_MEET_SLABS(1) CLPV_MEET_SLABS(2)                                                          \
-    return clpv_bits(enter <= leave * CLPV_BOX_MARGIN);                                                               \
+    return lane_bits(enter <= leave * CLPV_BOX_MARGIN);                                                               \
   }
-CLPV_BOXES_HIT(clpv_boxes_hit, __global)
-CLPV_BOXES_HIT(clpv_entry_hit, )
+CLPV_BOXES_HIT(boxes_hit, __global)
+CLPV_BOXES_HIT(entry_hit, )
 
-static inline uint clpv_lowest(const uint bits) {
+static inline uint lowest_bit(const uint bits) {
   return 31u - clz(bits & (0u - bits));
 }
 
 // Mask of the lanes where a masked material has a hole at weights (u, v).
-__attribute__((noinline)) int8 clpv_holes(const uint8 triangle, const float8 u, const float8 v, CLPV_SCENE) {
+__attribute__((noinline)) intW find_holes(const uintW triangle, const realW u, const realW v, CLPV_SCENE) {
   Rows indices, a, b, c, base, factors, maps;
   gather_rows(triangles, triangle, &indices);
-  const uint8 ia = as_uint8(CLPV_COLUMN(indices, x)), ib = as_uint8(CLPV_COLUMN(indices, y)),
-              ic = as_uint8(CLPV_COLUMN(indices, z)), im = as_uint8(CLPV_COLUMN(indices, w));
-  const float8 w = 1.0f - u - v;
+  const uintW ia = as_uintW(CLPV_COLUMN(indices, x)), ib = as_uintW(CLPV_COLUMN(indices, y)),
+              ic = as_uintW(CLPV_COLUMN(indices, z)), im = as_uintW(CLPV_COLUMN(indices, w));
+  const realW w = 1.0f - u - v;
   gather_rows(vertices + 2, 3u * ia, &a);
   gather_rows(vertices + 2, 3u * ib, &b);
   gather_rows(vertices + 2, 3u * ic, &c);
-  const float8 vertex_alpha = w * CLPV_COLUMN(a, w) + u * CLPV_COLUMN(b, w) + v * CLPV_COLUMN(c, w);
+  const realW vertex_alpha = w * CLPV_COLUMN(a, w) + u * CLPV_COLUMN(b, w) + v * CLPV_COLUMN(c, w);
   gather_rows(vertices + 1, 3u * ia, &a);
   gather_rows(vertices + 1, 3u * ib, &b);
   gather_rows(vertices + 1, 3u * ic, &c);
@@ -89,83 +89,77 @@ __attribute__((noinline)) int8 clpv_holes(const uint8 triangle, const float8 u, 
   gather_rows(materials, 3u * im, &base);
   gather_rows(materials + 1, 3u * im, &factors);
   gather_rows(materials + 2, 3u * im, &maps);
-  const float8 alpha = CLPV_COLUMN(base, w) * vertex_alpha *
-                       clpv_bilinear_alpha(textures, texels, as_uint8(CLPV_COLUMN(maps, x)) * CLPV_TEXTURE_LEVELS, uv);
+  const realW alpha = CLPV_COLUMN(base, w) * vertex_alpha *
+                       sample_alpha(textures, texels, as_uintW(CLPV_COLUMN(maps, x)) * CLPV_TEXTURE_LEVELS, uv);
   return alpha < CLPV_COLUMN(factors, w);
-}
-
-static inline float clpv_least(const float8 v) {
-  const float4 four = v.lo < v.hi ? v.lo : v.hi;
-  const float2 two = four.lo < four.hi ? four.lo : four.hi;
-  return two.x < two.y ? two.x : two.y;
 }
 
 // Hits on masked materials, which count unless there is a hole. Eight are looked up together.
 typedef struct {
-  float distance[CLPV_ABREAST], u[CLPV_ABREAST], v[CLPV_ABREAST];
-  uint triangle[CLPV_ABREAST], ray[CLPV_ABREAST];
+  float distance[W], u[W], v[W];
+  uint triangle[W], ray[W];
 } MaskedHits;
 
-CLPV_INLINE void clpv_take(Rays* rays, const uint i, const float distance, const float u, const float v,
-                           const uint triangle) {
+CLPV_INLINE void take_hit(Rays* rays, const uint i, const float distance, const float u, const float v,
+                          const uint triangle) {
   rays->distance[i] = distance;
   rays->u[i] = u;
   rays->v[i] = v;
   rays->triangle[i] = triangle;
 }
 
-CLPV_INLINE void clpv_take_masked(const MaskedHits* masked, const uint count, CLPV_SCENE, Rays* rays) {
+CLPV_INLINE void take_masked(const MaskedHits* masked, const uint count, CLPV_SCENE, Rays* rays) {
   if (count == 0) return;
-  const uint holes = clpv_bits(clpv_holes(vload8(0, masked->triangle), vload8(0, masked->u), vload8(0, masked->v),
+  const uint holes = lane_bits(find_holes(load_lanes(masked->triangle), load_lanes(masked->u), load_lanes(masked->v),
                                           CLPV_PASS_SCENE));
   for (uint j = 0; j < count; ++j) {
     const uint i = masked->ray[j];
     if ((holes >> j & 1u) == 0u && masked->distance[j] < rays->distance[i])
-      clpv_take(rays, i, masked->distance[j], masked->u[j], masked->v[j], masked->triangle[j]);
+      take_hit(rays, i, masked->distance[j], masked->u[j], masked->v[j], masked->triangle[j]);
   }
 }
 
 // Takes the nearest triangle of a leaf if it is nearer than the hit of ray i. On a tie, the first
 // triangle wins.
-CLPV_INLINE void clpv_leaf_hit(__global const float8* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
-                               uint* masked_count) {
-  const Vec along = vec((float8)(rays->along[0][i]), (float8)(rays->along[1][i]), (float8)(rays->along[2][i]));
+CLPV_INLINE void test_leaf(__global const realW* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
+                           uint* masked_count) {
+  const Vec along = vec((realW)(rays->along[0][i]), (realW)(rays->along[1][i]), (realW)(rays->along[2][i]));
   const Vec edge1 = vec(leaf[CLPV_TREE_EDGE1], leaf[CLPV_TREE_EDGE1 + 1], leaf[CLPV_TREE_EDGE1 + 2]);
   const Vec edge2 = vec(leaf[CLPV_TREE_EDGE2], leaf[CLPV_TREE_EDGE2 + 1], leaf[CLPV_TREE_EDGE2 + 2]);
   const Vec from = vec(rays->from[0][i] - leaf[CLPV_TREE_CORNER], rays->from[1][i] - leaf[CLPV_TREE_CORNER + 1],
                        rays->from[2][i] - leaf[CLPV_TREE_CORNER + 2]);
   const Vec across = vec_cross(along, edge2), around = vec_cross(from, edge1);
-  const float8 zero = (float8)(0.0f), one = (float8)(1.0f), scale = one / vec_dot(edge1, across);
-  const float8 u = vec_dot(from, across) * scale, v = vec_dot(along, around) * scale,
+  const realW scale = ONE / vec_dot(edge1, across);
+  const realW u = vec_dot(from, across) * scale, v = vec_dot(along, around) * scale,
                distance = vec_dot(edge2, around) * scale;
-  int8 met = (u >= zero) & (v >= zero) & (u + v <= one) & (distance > zero) & (distance < (float8)(rays->distance[i]));
-  if (none(met)) return;
-  const uint8 triangle = as_uint8(leaf[CLPV_TREE_TRIANGLES]);
-  const int8 unsure = met & ((triangle & CLPV_TREE_MASKED) != 0u);
-  if (!none(unsure)) {
-    for (uint bits = clpv_bits(unsure); bits != 0; bits &= bits - 1u) {
-      const uint lane = clpv_lowest(bits), j = *masked_count;
+  intW met = (u >= ZERO) & (v >= ZERO) & (u + v <= ONE) & (distance > ZERO) & (distance < (realW)(rays->distance[i]));
+  if (no_lane(met)) return;
+  const uintW triangle = as_uintW(leaf[CLPV_TREE_TRIANGLES]);
+  const intW unsure = met & ((triangle & CLPV_TREE_MASKED) != 0u);
+  if (!no_lane(unsure)) {
+    for (uint bits = lane_bits(unsure); bits != 0; bits &= bits - 1u) {
+      const uint lane = lowest_bit(bits), j = *masked_count;
       masked->distance[j] = ((const float*)&distance)[lane];
       masked->u[j] = ((const float*)&u)[lane];
       masked->v[j] = ((const float*)&v)[lane];
       masked->triangle[j] = ((const uint*)&triangle)[lane] & ~CLPV_TREE_MASKED;
       masked->ray[j] = i;
-      *masked_count = (j + 1) % CLPV_ABREAST;
-      if (j + 1 == CLPV_ABREAST) clpv_take_masked(masked, CLPV_ABREAST, CLPV_PASS_SCENE, rays);
+      *masked_count = (j + 1) % W;
+      if (j + 1 == W) take_masked(masked, W, CLPV_PASS_SCENE, rays);
     }
     met &= ~unsure;
-    if (none(met)) return;
+    if (no_lane(met)) return;
   }
-  const float8 reached = met ? distance : (float8)(INFINITY);
-  const float nearest = clpv_least(reached);
-  const uint lane = clpv_lowest(clpv_bits(reached == (float8)(nearest)));
+  const realW reached = met ? distance : (realW)(INFINITY);
+  const float nearest = min_lane(reached);
+  const uint lane = lowest_bit(lane_bits(reached == (realW)(nearest)));
   if (nearest < rays->distance[i])
-    clpv_take(rays, i, nearest, ((const float*)&u)[lane], ((const float*)&v)[lane], ((const uint*)&triangle)[lane]);
+    take_hit(rays, i, nearest, ((const float*)&u)[lane], ((const float*)&v)[lane], ((const uint*)&triangle)[lane]);
 }
 
 // Up to eight subtrees that hold all triangles in a box: a node (shared/tree.h) that rays of one region share.
 typedef struct {
-  float8 rows[CLPV_TREE_CHILDREN + 1];
+  realW rows[CLPV_TREE_CHILDREN + 1];
 } Entry;
 
 typedef struct {
@@ -173,17 +167,17 @@ typedef struct {
 } Box;
 
 // Bit mask of the children of a node that overlap a box.
-CLPV_INLINE uint clpv_overlaps(__global const float8* node, const Box box) {
-  int8 overlaps = (int8)(-1);
+CLPV_INLINE uint find_overlaps(__global const realW* node, const Box box) {
+  intW overlaps = (intW)(-1);
   for (int a = 0; a < 3; ++a)
     overlaps &= (node[CLPV_TREE_LOWER + a] <= box.upper[a]) & (node[CLPV_TREE_UPPER + a] >= box.lower[a]);
-  return clpv_bits(overlaps);
+  return lane_bits(overlaps);
 }
 
 #define CLPV_ENTRY_STEPS 24  // subtrees to look at, at most
 
 // Opens nodes in order, from the root on, as long as the children that overlap the box fit.
-CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
+CLPV_INLINE void enter_tree(const Tree tree, const Box box, Entry* entry) {
   float rows[CLPV_TREE_CHILDREN][CLPV_TREE_WIDTH];
   int children[CLPV_TREE_WIDTH];
   for (uint lane = 0; lane < CLPV_TREE_WIDTH; ++lane) {
@@ -194,8 +188,8 @@ CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
   children[0] = 0;
   uint count = 1, next = 0;
   for (uint step = 0; step < CLPV_ENTRY_STEPS && next < count; ++step) {
-    __global const float8* node = tree.nodes + (size_t)(uint)max(children[next], 0) * CLPV_TREE_NODE_ROWS;
-    uint overlaps = clpv_overlaps(node, box), lane = next, free = count;
+    __global const realW* node = tree.nodes + (size_t)(uint)max(children[next], 0) * CLPV_TREE_NODE_ROWS;
+    uint overlaps = find_overlaps(node, box), lane = next, free = count;
     if (children[next] < 0 || count - 1 + popcount(overlaps) > CLPV_TREE_WIDTH) {
       ++next;
       continue;
@@ -208,14 +202,14 @@ CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
     }
     count += popcount(overlaps) - 1;
     for (; overlaps != 0; lane = free++) {
-      const uint child = clpv_lowest(overlaps);
+      const uint child = lowest_bit(overlaps);
       overlaps &= overlaps - 1u;
       for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][lane] = ((__global const float*)(node + row))[child];
       children[lane] = ((__global const int*)(node + CLPV_TREE_CHILDREN))[child];
     }
   }
-  for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) entry->rows[row] = vload8(0, rows[row]);
-  entry->rows[CLPV_TREE_CHILDREN] = as_float8(vload8(0, children));
+  for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) entry->rows[row] = load_lanes(rows[row]);
+  entry->rows[CLPV_TREE_CHILDREN] = as_realW(load_lanes(children));
 }
 
 // Entries of the lists: number of a node or a leaf, and a ray in the lowest bits.
@@ -225,7 +219,7 @@ CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
 // Adds the children in the mask `bits` of a node for ray i.
 #define CLPV_ADD_CHILDREN(memory, node, bits, i)                                                        \
   for (uint rest = bits; rest != 0; rest &= rest - 1u) {                                                \
-    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[clpv_lowest(rest)];            \
+    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[lowest_bit(rest)];            \
     const uint inner = child >= 0;                                                                      \
     nodes[node_count] = (uint)child << CLPV_RAY_BITS | i;                                               \
     leaves[leaf_count] = (uint)~child << CLPV_RAY_BITS | i;                                             \
@@ -235,29 +229,29 @@ CLPV_INLINE void clpv_enter(const Tree tree, const Box box, Entry* entry) {
 
 // Finds the nearest triangle of each ray. Nodes are visited in the order in which they were found; once the list is
 // long the last first, for which the rest of the array suffices.
-CLPV_INLINE void clpv_nearest_triangles(const Tree tree, const Entry* entry, CLPV_SCENE, Rays* rays) {
+CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Rays* rays) {
   uint nodes[CLPV_LIST + CLPV_TREE_WIDTH * CLPV_TREE_DEPTH], leaves[CLPV_LIST + CLPV_TREE_WIDTH];
   uint visited = 0, node_count = 0, leaf_count = 0, masked_count = 0;
   MaskedHits masked;
-  vstore8((uint8)(0u), 0, masked.triangle);
-  for (uint i = 0; i < CLPV_ABREAST; ++i) {
-    const uint bits = rays->distance[i] > 0.0f ? clpv_entry_hit(entry->rows, rays, i) : 0u;
+  store_lanes((uintW)(0u), masked.triangle);
+  for (uint i = 0; i < W; ++i) {
+    const uint bits = rays->distance[i] > 0.0f ? entry_hit(entry->rows, rays, i) : 0u;
     CLPV_ADD_CHILDREN(, entry->rows, bits, i)
   }
   while (visited < node_count || leaf_count > 0) {
     while (visited < node_count && leaf_count <= CLPV_LIST) {
-      const uint next = nodes[node_count > CLPV_LIST ? --node_count : visited++], i = next % CLPV_ABREAST;
-      __global const float8* node = tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * CLPV_TREE_NODE_ROWS;
-      const uint bits = clpv_boxes_hit(node, rays, i);
+      const uint next = nodes[node_count > CLPV_LIST ? --node_count : visited++], i = next % W;
+      __global const realW* node = tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * CLPV_TREE_NODE_ROWS;
+      const uint bits = boxes_hit(node, rays, i);
       CLPV_ADD_CHILDREN(__global, node, bits, i)
     }
     for (uint j = 0; j < leaf_count; ++j) {
-      __global const float8* leaf = tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * CLPV_TREE_LEAF_ROWS;
-      clpv_leaf_hit(leaf, leaves[j] % CLPV_ABREAST, CLPV_PASS_SCENE, rays, &masked, &masked_count);
+      __global const realW* leaf = tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * CLPV_TREE_LEAF_ROWS;
+      test_leaf(leaf, leaves[j] % W, CLPV_PASS_SCENE, rays, &masked, &masked_count);
     }
     leaf_count = 0;
   }
-  clpv_take_masked(&masked, masked_count, CLPV_PASS_SCENE, rays);
+  take_masked(&masked, masked_count, CLPV_PASS_SCENE, rays);
 }
 
 #endif

@@ -1,51 +1,46 @@
 // SPDX-License-Identifier: MIT
-// Vectors of three named components, of type CLPV_COMPONENT: float, or float8 after lanes.h, for eight vectors at a
-// time.
+// Vectors of three components, W at a time (lanes.h).
 #ifndef CLPV_VEC_H
 #define CLPV_VEC_H
 
-#ifndef CLPV_COMPONENT
-#define CLPV_COMPONENT float
-#endif
-
-typedef CLPV_COMPONENT Real;
+#include "lanes.h"
 
 typedef struct {
-  Real x, y, z;
+  realW x, y, z;
 } Vec;
 
-static inline Vec vec(const Real x, const Real y, const Real z) {
+static inline Vec vec(const realW x, const realW y, const realW z) {
   const Vec v = {x, y, z};
   return v;
 }
 
 static inline Vec vec_of(const float v[3]) {
-  return vec((Real)(v[0]), (Real)(v[1]), (Real)(v[2]));
+  return vec((realW)(v[0]), (realW)(v[1]), (realW)(v[2]));
 }
 static inline Vec vec_load(__global const float* v) {
-  return vec((Real)(v[0]), (Real)(v[1]), (Real)(v[2]));
+  return vec((realW)(v[0]), (realW)(v[1]), (realW)(v[2]));
 }
 static inline Vec vec_minus(const Vec a, const Vec b) {
   return vec(a.x - b.x, a.y - b.y, a.z - b.z);
 }
-static inline Vec vec_times(const Vec a, const Real s) {
+static inline Vec vec_times(const Vec a, const realW s) {
   return vec(a.x * s, a.y * s, a.z * s);
 }
 static inline Vec vec_product(const Vec a, const Vec b) {
   return vec(a.x * b.x, a.y * b.y, a.z * b.z);
 }
-static inline Real vec_dot(const Vec a, const Vec b) {
+static inline realW vec_dot(const Vec a, const Vec b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 // Dot product without fused multiply-adds, for the same result on every device.
-static inline Real vec_dot_unfused(const Vec a, const Vec b) {
+static inline realW vec_dot_unfused(const Vec a, const Vec b) {
 #pragma OPENCL FP_CONTRACT OFF
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 // a + s b
-static inline Vec vec_add_scaled(const Vec a, const Real s, const Vec b) {
+static inline Vec vec_add_scaled(const Vec a, const realW s, const Vec b) {
   return vec(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
 

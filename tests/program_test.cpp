@@ -67,14 +67,16 @@ TEST(KernelFiles, UnknownAndEndlessOnesAreRejected) {
   EXPECT_THROW(assemble_kernel_source("loop.cl"), Error);
 }
 
-TEST(ProgramText, LiteralsThenGeneratedThenFile) {
+TEST(ProgramText, LiteralsThenLanesAndGeneratedThenFile) {
   KernelFolder folder;
+  folder.write("lanes.h", "typedef float realW;\n");
   folder.write("a.cl", "int a;\n");
   const std::string text = program_text({.file = "a.cl",
                                          .literals = Literals().flag("CLPV_B", true).number("CLPV_A", 3),
                                          .generated = "int g;"});
   EXPECT_EQ(text,
             "#line 1 \"literals\"\n#define CLPV_A 3u\n#define CLPV_B 1\n"
+            "#line 1 \"lanes.h\"\ntypedef float realW;\n"
             "#line 1 \"generated\"\nint g;\n#line 1 \"a.cl\"\nint a;\n");
 }
 

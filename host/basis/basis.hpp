@@ -34,8 +34,8 @@ class Basis {
   virtual void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const = 0;
 
   /// Returns OpenCL C for the struct `Coefficients` of N floats c0 .. c{N-1}, which defines:
-  ///   static Coefficients clpv_basis(float x, float y, float z)             b_i(w), w unit
-  ///   static Coefficients clpv_cosine_integrals(float x, float y, float z)  alpha_i(d), d unit
+  ///   static Coefficients basis_functions(float x, float y, float z)             b_i(w), w unit
+  ///   static Coefficients cosine_integrals(float x, float y, float z)  alpha_i(d), d unit
   virtual std::string kernel_source() const = 0;
 
   /// Unit normals of planes through the origin where functions are discontinuous: quadrature splits there.

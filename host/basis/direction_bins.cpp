@@ -148,7 +148,7 @@ std::string DirectionBins::kernel_basis() const {
   static const char* const kNames[] = {"x", "y", "z"};
   std::string text =
       "static inline float clpv_step(const float s) { return fma(0.5f, sign(s), 0.5f); }\n"
-      "static inline Coefficients clpv_basis(const float x, const float y, const float z) {\n  Coefficients "
+      "static inline Coefficients basis_functions(const float x, const float y, const float z) {\n  Coefficients "
       "r;\n";
   std::string sum;
   for (int face = 0; face < 6; ++face) {
@@ -186,7 +186,7 @@ std::string DirectionBins::kernel_cosine() const {
   std::vector<std::vector<Patch>> of_bin(size_);
   for (const Patch& patch : patches_) of_bin[patch.bin].push_back(patch);
   std::string text =
-      "static inline Coefficients clpv_cosine_integrals(const float x, const float y, const float z) {\n"
+      "static inline Coefficients cosine_integrals(const float x, const float y, const float z) {\n"
       "  const float8 none = (float8)(0.0f), whole = (float8)(1.0f);\n  float8 t, lit;\n";
   std::string all;
   for (int first = 0; first < size_; first += kLanes) {

@@ -79,7 +79,7 @@ std::string horner(std::span<const double> coefficients, const std::string& x) {
 std::string rotated_integrals_source(const Basis& basis, int table_size) {
   const std::vector<double> up_lobe = basis.clamped_cosine({0, 0, 1});
   const Parameters products = gram_parameters(basis);
-  std::string text = opening("clpv_rotated_integrals", {}) + kRotation;
+  std::string text = opening("rotated_integrals", {}) + kRotation;
   for (int j = 0; j < basis.size(); ++j) {
     const glm::dvec3& c = basis.centres()[j];
     text += fmt::format("  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n",
@@ -101,7 +101,7 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
 
 std::string table_basis_source(const Basis& basis, int table_size, const TableName& name) {
   const Parameters lambdas = function_parameters(basis);
-  std::string text = opening("clpv_table_basis", name);
+  std::string text = opening("table_basis", name);
   for (int i = 0; i < basis.size(); ++i) {
     const std::string t = dot_product(basis.centres()[i], {"x", "y", "z"});
     text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.index[i], table_size, name));

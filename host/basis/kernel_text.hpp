@@ -27,10 +27,10 @@ inline const TableName kFunctionsTable{"FUNCTIONS", "functions"};
 // Both functions require a basis with centres, and return text that requires the macros of pipeline/inject/lookup_table.hpp.
 // `table_size`: entries per table; tables lie one after the other, as in ZonalTables::values().
 
-/// Returns the function `Coefficients clpv_rotated_integrals(x, y, z, table)`: R c, the integrals of b_i times the lobe
+/// Returns the function `Coefficients rotated_integrals(x, y, z, table)`: R c, the integrals of b_i times the lobe
 /// rotated from +z to the unit direction (x, y, z), by gram_tables().
 std::string rotated_integrals_source(const Basis& basis, int table_size);
-/// Returns the function `Coefficients clpv_table_basis(x, y, z, table)`: b_i of a unit direction, by function_tables().
+/// Returns the function `Coefficients table_basis(x, y, z, table)`: b_i of a unit direction, by function_tables().
 std::string table_basis_source(const Basis& basis, int table_size, const TableName& name = {});
 
 }  // namespace clpv

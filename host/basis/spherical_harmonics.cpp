@@ -115,7 +115,7 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
 }
 
 std::string SphericalHarmonics::kernel_source() const {
-  return kernel_function("clpv_basis", false) + kernel_function("clpv_cosine_integrals", true);
+  return kernel_function("basis_functions", false) + kernel_function("cosine_integrals", true);
 }
 
 }  // namespace clpv

@@ -50,7 +50,7 @@ std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs
         float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
         float_literal(1 - lambda * lambda));
   };
-  std::string text = std::string("static inline Coefficients clpv_basis") + kSignature;
+  std::string text = std::string("static inline Coefficients basis_functions") + kSignature;
   for (const Pair& pair : pairs) {
     text += height_statement(basis, pair.centre) + value(pair.centre, pair.centre, 1);
     if (pair.opposite >= 0) text += value(pair.opposite, pair.centre, -1);
@@ -107,7 +107,7 @@ std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
                             const std::map<double, CosineOfPoisson>& cosines) {
   std::map<double, std::vector<double>> chebyshev;
   for (const auto& [lambda, cosine] : cosines) chebyshev[lambda] = cosine.chebyshev();
-  std::string text = std::string("static inline Coefficients clpv_cosine_integrals") + kSignature;
+  std::string text = std::string("static inline Coefficients cosine_integrals") + kSignature;
   for (const Pair& pair : pairs) {
     const int i = pair.centre;
     const double lambda = basis.lambdas()[i], slope = cosines.at(lambda).slope();

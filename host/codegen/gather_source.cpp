@@ -23,11 +23,11 @@ std::string pair_macros(int count, const std::string& member) {
 
 /// g(n): alpha(-n), or 4 b(-n).
 std::string gather_weights(int count, TransportKind transport, bool from_table) {
-  std::string text = "CLPV_INLINE Coefficients clpv_gather_weights(const float3 n CLPV_AND_TABLE) {\n";
-  if (!has_faces(transport)) return text + "  return clpv_cosine_integrals(-n.x, -n.y, -n.z);\n}\n";
+  std::string text = "CLPV_INLINE Coefficients gather_weights(const float3 n CLPV_AND_TABLE) {\n";
+  if (!has_faces(transport)) return text + "  return cosine_integrals(-n.x, -n.y, -n.z);\n}\n";
   text += fmt::format("  Coefficients g = {};\n", from_table
-                                                      ? "clpv_table_basis(-n.x, -n.y, -n.z CLPV_PASS_TABLE)"
-                                                      : "clpv_basis(-n.x, -n.y, -n.z)");
+                                                      ? "table_basis(-n.x, -n.y, -n.z CLPV_PASS_TABLE)"
+                                                      : "basis_functions(-n.x, -n.y, -n.z)");
   for (int i = 0; i < count; ++i) text += fmt::format("  g.c{} *= 4.0f;\n", i);
   return text + "  return g;\n}\n";
 }
@@ -43,7 +43,8 @@ std::string pack_source(const Basis& basis) {
 }
 
 std::string radiance_source(const Basis& basis) {
-  return coefficient_macros(basis.size()) + pair_macros(basis.size(), "(a).c{}") + basis.kernel_source();
+  return coefficient_macros(basis.size(), "float") + pair_macros(basis.size(), "(a).c{}") +
+         basis.kernel_source();
 }
 
 std::string gather_source(const Basis& basis, TransportKind transport, const LobeOptions& lobes,

@@ -13,7 +13,7 @@ namespace clpv {
 /// For pack.cl: coefficient_macros of the basis and CLPV_EACH_PAIR.
 std::string pack_source(const Basis& basis);
 
-/// For gather.cl: coefficient_macros, CLPV_EACH_PAIR and clpv_gather_weights(n). `from_table`: reads b from the table
+/// For gather.cl: coefficient_macros, CLPV_EACH_PAIR and gather_weights(n). `from_table`: reads b from the table
 /// that `lobes` describes.
 std::string gather_source(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
                           bool from_table);

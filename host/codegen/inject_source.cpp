@@ -50,12 +50,12 @@ std::string unknown(std::string right, double diagonal, const char* known, int f
   return fmt::format("{} * ({})", float_literal(1 / diagonal), right);
 }
 
-/// clpv_project_sum: A^-1 as two triangular systems, A = L L^T. A float A^-1 would have 20x the rounding error for
+/// project_sum: A^-1 as two triangular systems, A = L L^T. A float A^-1 would have 20x the rounding error for
 /// srbf14.
 std::string projection(const Basis& basis) {
   const int n = basis.size();
   const Matrix lower = cholesky(basis.gram());
-  std::string text = "static inline Coefficients clpv_project_sum(const Coefficients a) {\n";
+  std::string text = "static inline Coefficients project_sum(const Coefficients a) {\n";
   for (int i = 0; i < n; ++i) {
     const auto row = [&](int j) { return lower(i, j); };
     text += fmt::format("  const float y{} = {};\n", i,
@@ -71,18 +71,18 @@ std::string projection(const Basis& basis) {
 }
 
 std::string lobe_blockers(const Basis& basis, const LobeOptions& lobes) {
-  return lobe_source(basis, lobes) + weighted_sum("clpv_energy", basis.integrals()) +
-         "static inline Coefficients clpv_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
-         "  return clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE);\n}\n"
-         "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
-         "  return clpv_energy(a) > clpv_energy(b) ? a : b;\n}\n";
+  return lobe_source(basis, lobes) + weighted_sum("blocked_energy", basis.integrals()) +
+         "static inline Coefficients surfel_blocker(float x, float y, float z CLPV_AND_TABLE) {\n"
+         "  return lobe_integrals(x, y, z CLPV_PASS_TABLE);\n}\n"
+         "static inline Coefficients merge_blockers(const Coefficients a, const Coefficients b) {\n"
+         "  return blocked_energy(a) > blocked_energy(b) ? a : b;\n}\n";
 }
 
 std::string area_blockers() {
-  return "static inline Coefficients clpv_project_sum(const Coefficients a) { return a; }\n"
-         "static inline Coefficients clpv_blocker(float x, float y, float z) {\n"
+  return "static inline Coefficients project_sum(const Coefficients a) { return a; }\n"
+         "static inline Coefficients surfel_blocker(float x, float y, float z) {\n"
          "  const Coefficients b = {fabs(x), fabs(y), fabs(z)};\n  return b;\n}\n"
-         "static inline Coefficients clpv_merge(const Coefficients a, const Coefficients b) {\n"
+         "static inline Coefficients merge_blockers(const Coefficients a, const Coefficients b) {\n"
          "  const Coefficients r = {fmax(a.c0, b.c0), fmax(a.c1, b.c1), fmax(a.c2, b.c2)};\n  return r;\n}\n";
 }
 
@@ -94,11 +94,11 @@ std::string lobe_source(const Basis& basis, const LobeOptions& lobes) {
   std::string text = basis.kernel_source();
   if (lobes.kind == LobeKind::rotate && !basis.centres().empty()) {
     text += rotated_integrals_source(basis, lobes.table_size);
-    text += "#define clpv_lobe_integrals clpv_rotated_integrals\n";
+    text += "#define lobe_integrals rotated_integrals\n";
   } else {
-    text += "#define clpv_lobe_integrals clpv_cosine_integrals\n";
+    text += "#define lobe_integrals cosine_integrals\n";
   }
-  text += weighted_sum("clpv_flux", flux);
+  text += weighted_sum("lobe_flux", flux);
   return text + projection(basis);
 }
 

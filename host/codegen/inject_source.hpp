@@ -12,16 +12,16 @@ namespace clpv {
 
 /// Text for light, without literals. lobe_source() defines the functions below; inject_source() adds the basis's
 /// functions.
-///   Coefficients clpv_lobe_integrals(x, y, z CLPV_PASS_TABLE)   alpha of the lobe about the unit normal
-///   float clpv_flux(Coefficients alpha)         integral of the lobe with integrals alpha [sr]
-///   Coefficients clpv_project_sum(Coefficients a)                A^-1 a
+///   Coefficients lobe_integrals(x, y, z CLPV_PASS_TABLE)   alpha of the lobe about the unit normal
+///   float lobe_flux(Coefficients alpha)         integral of the lobe with integrals alpha [sr]
+///   Coefficients project_sum(Coefficients a)                A^-1 a
 /// Rotated lobes of a basis with centres follow the macros of their LookupTable.
 std::string lobe_source(const Basis& basis, const LobeOptions& lobes);
 std::string inject_source(const Basis& basis, const LobeOptions& lobes);
 
-/// Text for blockers: clpv_project_sum, and
-///   Coefficients clpv_blocker(x, y, z CLPV_PASS_TABLE)            contribution of a surfel of share 1, before projection
-///   Coefficients clpv_merge(Coefficients a, Coefficients b)       blocking of two sources that see the same surface
+/// Text for blockers: project_sum, and
+///   Coefficients surfel_blocker(x, y, z CLPV_PASS_TABLE)            contribution of a surfel of share 1, before projection
+///   Coefficients merge_blockers(Coefficients a, Coefficients b)       blocking of two sources that see the same surface
 /// Lobes as above; areas need no table.
 std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blocking blocking);
 

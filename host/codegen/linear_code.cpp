@@ -73,7 +73,7 @@ int parity_class(std::span<const double> coordinate, const std::vector<SignedPer
 std::string LinearCode::name(const std::string& expression, const OperationCount& cost) {
   const auto [entry, fresh] = names_.emplace(expression, fmt::format("v{}", names_.size()));
   if (fresh) {
-    text_ += fmt::format("  const CLPV_REAL {} = {};\n", entry->second, expression);
+    text_ += fmt::format("  const realW {} = {};\n", entry->second, expression);
     operations_.additions += cost.additions;
     operations_.multiplications += cost.multiplications;
     operations_.fused += cost.fused;
@@ -98,7 +98,7 @@ std::string LinearCode::combination(const std::vector<Term>& terms) {
     const std::string factor = float_literal(term.factor);
     sum = sum.empty()
               ? name(fmt::format("{} * {}", factor, term.input), {.multiplications = 1})
-              : name(fmt::format("fma((CLPV_REAL)({}), {}, {})", factor, term.input, sum), {.fused = 1});
+              : name(fmt::format("fma((realW)({}), {}, {})", factor, term.input, sum), {.fused = 1});
   }
   return sum;
 }
@@ -200,24 +200,20 @@ std::string macro_text(const std::string& name, const std::string& statements) {
   return text + "\n\n";
 }
 
-std::string cell_macros(const std::string& type, const std::string& each, int count) {
+std::string cell_macros(const std::string& type, const std::string& each, int count,
+                        const std::string& number) {
   std::string list, fields;
   for (int i = 0; i < count; ++i) {
     list += fmt::format(" DO({})", i);
     fields += fmt::format("{} c{}", i == 0 ? "" : ",", i);
   }
-  return fmt::format("#define CLPV_EACH_{}(DO){}\ntypedef struct {{\n  CLPV_REAL{};\n}} {};\n", each, list,
+  return fmt::format("#define CLPV_EACH_{}(DO){}\ntypedef struct {{\n  {}{};\n}} {};\n", each, list, number,
                      fields, type);
 }
 
-std::string coefficient_macros(int coefficients) {
-  // Inlined by the compiler's front end: later passes would pass structs in memory or vector registers, and
-  // work-items would not vectorise on CPUs.
-  return "#define CLPV_INLINE static inline __attribute__((always_inline))\n"
-         "#ifndef CLPV_LANES\n#define CLPV_LANES 1\n#endif\n"
-         "#if CLPV_LANES == 8\n#define CLPV_REAL float8\n#else\n#define CLPV_REAL float\n#endif\n" +
-         fmt::format("#define CLPV_N {}\n", coefficients) +
-         cell_macros("Coefficients", "COEFFICIENT", coefficients);
+std::string coefficient_macros(int coefficients, const std::string& number) {
+  return fmt::format("#define CLPV_N {}\ntypedef {} Coefficient;\n", coefficients, number) +
+         cell_macros("Coefficients", "COEFFICIENT", coefficients, "Coefficient");
 }
 
 }  // namespace clpv

@@ -24,7 +24,7 @@ struct OperationCount {
   int flops() const { return additions + multiplications + 2 * fused; }
 };
 
-/// List of statements `const CLPV_REAL NAME = ...;`. Equal expressions are written once.
+/// List of statements `const realW NAME = ...;`. Equal expressions are written once.
 class LinearCode {
  public:
   /// Appends statements for rows * inputs (inputs: expressions). Mirrors must be commuting symmetries of the inputs;
@@ -61,11 +61,13 @@ std::vector<std::string> fields(const std::string& name, int count);
 /// vector registers.
 std::string macro_text(const std::string& name, const std::string& statements);
 
-/// First text of every kernel with coefficients (ProgramSource::generated): CLPV_INLINE, CLPV_LANES and
-/// CLPV_REAL, CLPV_N, CLPV_EACH_COEFFICIENT(DO) and struct Coefficients of N CLPV_REALs c0, c1, ...
-std::string coefficient_macros(int coefficients);
+/// First generated text of kernels with coefficients: CLPV_N, the type Coefficient of one of them, `number`, struct
+/// Coefficients of N of them, c0, c1, ..., and CLPV_EACH_COEFFICIENT(DO). `number`: "realW", those of W cells
+/// (kernels/lanes.h), or "float" for kernels that read one cell at a time.
+std::string coefficient_macros(int coefficients, const std::string& number = "realW");
 
-/// struct `type` of `count` CLPV_REALs c0, c1, ..., and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
-std::string cell_macros(const std::string& type, const std::string& each, int count);
+/// struct `type` of `count` numbers c0, c1, ..., and CLPV_EACH_`each`(DO), which writes DO(0) DO(1) ...
+std::string cell_macros(const std::string& type, const std::string& each, int count,
+                        const std::string& number = "realW");
 
 }  // namespace clpv

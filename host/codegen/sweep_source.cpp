@@ -50,7 +50,7 @@ std::string sweep_links_text(const Basis& basis, const Transport& transport) {
 CountedText sweep_collect_text() {
   const Matrix projection = swept_projection();
   LinearCode code;
-  const std::string function = code.function("Coefficients", "clpv_project_bins", "Bins", projection,
+  const std::string function = code.function("Coefficients", "project_bins", "Bins", projection,
                                              mirrors_of(*make_basis("bins24")).list());
   return {coefficient_macros(projection.rows()) + sweep_bin_macros() +
               cell_macros("Bins", "BIN", kSweepBins) + function,
@@ -59,20 +59,20 @@ CountedText sweep_collect_text() {
 
 std::string incident_flux_text() {
   return cell_macros("FaceFluxes", "FACE_FLUX", kCellFaces) +
-         LinearCode().function("FaceFluxes", "clpv_incident_flux", "Bins", incident_flux());
+         LinearCode().function("FaceFluxes", "incident_flux", "Bins", incident_flux());
 }
 
 std::string bounce_source_text(const Basis& basis) {
   return coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) +
          incident_flux_text() +
-         LinearCode().function("Coefficients", "clpv_reflected_intensity", "FaceFluxes",
+         LinearCode().function("Coefficients", "reflected_intensity", "FaceFluxes",
                                reflected_intensity(basis));
 }
 
 std::string scatter_source_text(double anisotropy) {
   return coefficient_macros(swept_basis()->size()) + sweep_bin_macros() +
          cell_macros("Bins", "BIN", kSweepBins) +
-         LinearCode().function("Bins", "clpv_scatter", "Bins", scattering_matrix(anisotropy),
+         LinearCode().function("Bins", "scatter_bins", "Bins", scattering_matrix(anisotropy),
                                mirrors_of(*make_basis("bins24")).list());
 }
 

@@ -21,16 +21,16 @@ struct CountedText {
 };
 /// For sweep_links.cl: the text of transmittance_source, and macros of the links used across each axis.
 std::string sweep_links_text(const Basis& basis, const Transport& transport);
-/// For sweep_collect.cl: coefficient_macros of swept_basis(), struct Bins, and Coefficients clpv_project_bins(Bins).
+/// For sweep_collect.cl: coefficient_macros of swept_basis(), struct Bins, and Coefficients project_bins(Bins).
 CountedText sweep_collect_text();
 
-/// For sweep_collect.cl with CLPV_WITH_INCIDENT: struct FaceFluxes, and FaceFluxes clpv_incident_flux(Bins).
+/// For sweep_collect.cl with CLPV_WITH_INCIDENT: struct FaceFluxes, and FaceFluxes incident_flux(Bins).
 std::string incident_flux_text();
 /// For bounce.cl: coefficient_macros of `basis`, struct Bins, incident_flux_text(), and
-/// Coefficients clpv_reflected_intensity(FaceFluxes).
+/// Coefficients reflected_intensity(FaceFluxes).
 std::string bounce_source_text(const Basis& basis);
 
-/// For sweep_medium.cl: struct Bins, and Bins clpv_scatter(Bins), the product with scattering_matrix(anisotropy).
+/// For sweep_medium.cl: struct Bins, and Bins scatter_bins(Bins), the product with scattering_matrix(anisotropy).
 std::string scatter_source_text(double anisotropy);
 
 }  // namespace clpv

@@ -62,7 +62,7 @@ void generate_faces(TransportCode& out, const Basis& basis, const FaceTransport&
       const int link = 5 * k + f;
       const std::string& half = fluxes[f];
       std::string flux =
-          out.arrive.name(form.functions_at_run_time ? fmt::format("clpv_flux_through(a{}, at[{}])", k, link)
+          out.arrive.name(form.functions_at_run_time ? fmt::format("flux_through(a{}, at[{}])", k, link)
                                                      : fmt::format("{0} + fabs({0})", half),
                           {.additions = 1});
       if (form.lobes_at_run_time) {
@@ -96,11 +96,11 @@ void generate_faces(TransportCode& out, const Basis& basis, const FaceTransport&
 
 std::string expand_function(const FaceTransport& faces, const Basis& basis, State target) {
   if (target == State::coefficients) {
-    std::string text = "CLPV_INLINE Coefficients clpv_expand(const Target a) {\n  Coefficients r;\n";
+    std::string text = "CLPV_INLINE Coefficients expand_fluxes(const Target a) {\n  Coefficients r;\n";
     for (int i = 0; i < basis.size(); ++i) text += fmt::format("  r.c{0} = a.c{0};\n", i);
     return text + "  return r;\n}\n";
   }
-  return LinearCode().function("Coefficients", "clpv_expand", "Target", faces.lobes,
+  return LinearCode().function("Coefficients", "expand_fluxes", "Target", faces.lobes,
                                mirrors_of_fluxes().list());
 }
 

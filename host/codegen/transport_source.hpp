@@ -27,7 +27,7 @@ struct StepForm {
 ///   CLPV_ARRIVE               declares `gained`, the light that the cell gains from its neighbours a0, a1, ...; with
 ///                             blocking times the transmittance t.c0, t.c1, ... (transmittance_source.hpp); with lobes
 ///                             at run time it sets `through[face]` instead, the flux through each face [W]
-///   clpv_expand(sum)          coefficients of a sum of gains
+///   expand_fluxes(sum)          coefficients of a sum of gains
 struct TransportSource {
   std::string text;
   OperationCount arrive;  ///< per cell and channel

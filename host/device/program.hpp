@@ -19,7 +19,7 @@ struct ProgramSource {
   std::string options = "-cl-std=CL1.2 -w";  ///< tests show warnings; users could do nothing about them
 };
 
-/// Returns the full text that a driver compiles: literals, generated text, file with its includes. Each
+/// Returns the full text that a driver compiles: literals, lanes.h with generated text, file with its includes. Each
 /// section starts with a #line directive ("literals", "generated", the file's name under kernels/).
 /// Throws Error(run_time) for an unknown file.
 std::string program_text(const ProgramSource& source);

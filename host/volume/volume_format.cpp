@@ -106,7 +106,7 @@ int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
   literals.word("CLPV_LAYOUT", kLayoutLiterals[static_cast<std::size_t>(format.layout)])
       .flag("CLPV_STORAGE_HALF", format.storage == Storage::float16)
-      .integer("CLPV_LANES", lanes);
+      .integer("CLPV_W", lanes);
 }
 
 int accesses_per_cell(const VolumeFormat& format, int coefficients) {

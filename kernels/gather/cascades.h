@@ -19,9 +19,9 @@
 #endif
 
 // Clamps to [0, maximum]; NaN becomes 0.
-CLPV_INLINE float8 clpv_clamp(const float8 v, const float maximum) {
-  const float8 zero = (float8)(0.0f), upper = (float8)(maximum);
-  return v > zero ? (v < upper ? v : upper) : zero;
+CLPV_INLINE realW clamp_to(const realW v, const float maximum) {
+  const realW upper = (realW)(maximum);
+  return v > ZERO ? (v < upper ? v : upper) : ZERO;
 }
 
 #if CLPV_PACKED
@@ -31,20 +31,20 @@ CLPV_INLINE float8 clpv_clamp(const float8 v, const float maximum) {
 #endif
 
 // Share of a cascade in the weight that finer ones leave, in [0, 1].
-CLPV_INLINE float8 clpv_cascade_share(const ClpvGrid grid, const Vec position) {
+CLPV_INLINE realW cascade_share(const ClpvGrid grid, const Vec position) {
   const Vec from_eye = vec_minus(position, vec_of(grid.middle));
-  const float8 x = fabs(from_eye.x), y = fabs(from_eye.y), z = fabs(from_eye.z), xy = x > y ? x : y;
-  const float8 farthest = xy > z ? xy : z;
-  const float8 inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * (1.0f / grid.cell);
-  return clpv_clamp(inside * CLPV_INVERSE_BLEND, 1.0f);
+  const realW x = fabs(from_eye.x), y = fabs(from_eye.y), z = fabs(from_eye.z), xy = x > y ? x : y;
+  const realW farthest = xy > z ? xy : z;
+  const realW inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * (1.0f / grid.cell);
+  return clamp_to(inside * CLPV_INVERSE_BLEND, 1.0f);
 }
 
 // The points position + offset * s * lift [m] in a cascade, s its cell.
-CLPV_INLINE void clpv_cascade_points(const ClpvGrid grid, const Vec position, const float8 offset, const Vec lift,
+CLPV_INLINE void find_cascade_points(const ClpvGrid grid, const Vec position, const realW offset, const Vec lift,
                                      SamplePoints* points) {
-  const Vec at = vec_times(vec_minus(position, vec_of(grid.origin)), (float8)(1.0f / grid.cell));
+  const Vec at = vec_times(vec_minus(position, vec_of(grid.origin)), (realW)(1.0f / grid.cell));
   const Vec lifted = vec_add_scaled(at, offset, lift);
-  clpv_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), points);
+  find_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), points);
 }
 
 #endif

@@ -16,10 +16,10 @@
 //
 // gather_packed.h and gather_image.h define
 //   CLPV_GATHERED, Sampled                        type of a cascade's volume; coefficients at a point
-//   SamplePoints, clpv_sample_points(at, &points) eight points [cells] from the first centre, clamped to the grid
-//   float clpv_sample(volume, points, i, &s)      trilinear at point i, to be multiplied by the result
-//   float4 clpv_weigh(weights, sampled)           weights . coefficients for each channel, and 0
-// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, and Coefficients clpv_gather_weights(float3 n
+//   SamplePoints, find_sample_points(at, &points) eight points [cells] from the first centre, clamped to the grid
+//   float sample_cells(volume, points, i, &s)      trilinear at point i, to be multiplied by the result
+//   float4 weigh(weights, sampled)           weights . coefficients for each channel, and 0
+// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, and Coefficients gather_weights(float3 n
 // CLPV_AND_TABLE), g(n). If g comes from a look-up table, it is the last argument.
 #include "gather/cascades.h"
 #include "raster/surface_row.h"
@@ -30,59 +30,59 @@
 
 #if CLPV_POINTS
 typedef float4 Place;
-#define CLPV_LOAD_SURFACES points
+#define CLPV_LOAD_SURFACES load_points
 #else
 typedef float Place;
-#define CLPV_LOAD_SURFACES surfaces
+#define CLPV_LOAD_SURFACES load_surfaces
 #endif
 
 // E s^2 of one volume at point i.
-CLPV_INLINE float4 clpv_irradiance(CLPV_GATHERED volume, const SamplePoints* points, const int i,
-                                   const Coefficients weights) {
+CLPV_INLINE float4 volume_irradiance(CLPV_GATHERED volume, const SamplePoints* points, const int i,
+                                     const Coefficients weights) {
   Sampled sampled;
-  const float scale = clpv_sample(volume, points, i, &sampled);
-  return scale * max(clpv_weigh(weights, sampled), 0.0f);
+  const float scale = sample_cells(volume, points, i, &sampled);
+  return scale * max(weigh(weights, sampled), 0.0f);
 }
 
 // Eight pixels: surfaces, and the irradiance summed so far.
 typedef struct {
   Surfaces surfaces;
-  float8 remaining;  // weight that finer cascades leave
-  Coefficients weights[CLPV_ABREAST];
-  float4 sums[CLPV_ABREAST];
+  realW remaining;  // weight that finer cascades leave
+  Coefficients weights[W];
+  float4 sums[W];
 } Gathering;
 
 // Adds the irradiance from a cascade.
-CLPV_INLINE void clpv_add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GATHERED volume) {
+CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GATHERED volume) {
   const ClpvGrid grid = *of;
   const float per_cell = 1.0f / grid.cell;
-  const float8 share = clpv_cascade_share(grid, g->surfaces.position);
-  const float8 weight = share * g->remaining * (per_cell * per_cell);
+  const realW share = cascade_share(grid, g->surfaces.position);
+  const realW weight = share * g->remaining * (per_cell * per_cell);
   g->remaining *= 1.0f - share;
-  if (none(weight > (float8)(0.0f))) return;
+  if (no_lane(weight > ZERO)) return;
   SamplePoints points;
-  clpv_cascade_points(grid, g->surfaces.position, (float8)(CLPV_GATHER_OFFSET), g->surfaces.normal, &points);
-  float shares[CLPV_ABREAST];
-  vstore8(weight, 0, shares);
-  for (int i = 0; i < CLPV_ABREAST; ++i) {
-    if (shares[i] > 0.0f) g->sums[i] += shares[i] * clpv_irradiance(volume, &points, i, g->weights[i]);
+  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), g->surfaces.normal, &points);
+  float shares[W];
+  store_lanes(weight, shares);
+  for (int i = 0; i < W; ++i) {
+    if (shares[i] > 0.0f) g->sums[i] += shares[i] * volume_irradiance(volume, &points, i, g->weights[i]);
   }
 }
 
 __kernel void gather(const ClpvView view, __global const Place* places, __global const float4* normals,
                      __global const ClpvGrid* grids, const uint cascades, const float unit, __global float4* irradiance
                      CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
-  const PixelRow p = this_row(view);
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Gathering g;
   CLPV_LOAD_SURFACES(view, p, places, normals, &g.surfaces);
-  g.remaining = g.surfaces.depth > (float8)(0.0f) ? (float8)(1.0f) : (float8)(0.0f);
-  const VecLanes normal = unpack((int8)(-1), g.surfaces.normal);
-  for (int i = 0; i < CLPV_ABREAST; ++i) {
-    g.weights[i] = clpv_gather_weights((float3)(normal.x[i], normal.y[i], normal.z[i]) CLPV_PASS_TABLE);
+  g.remaining = g.surfaces.depth > ZERO ? ONE : ZERO;
+  const VecLanes normal = unpack((intW)(-1), g.surfaces.normal);
+  for (int i = 0; i < W; ++i) {
+    g.weights[i] = gather_weights((float3)(normal.x[i], normal.y[i], normal.z[i]) CLPV_PASS_TABLE);
     g.sums[i] = 0.0f;
   }
-#define CLPV_ADD_CASCADE(c, volume) clpv_add_cascade(&g, grids + c, volume)
+#define CLPV_ADD_CASCADE(c, volume) add_cascade(&g, grids + c, volume)
   CLPV_ADD_CASCADES
   for (uint i = 0; i < p.count; ++i) irradiance[g.surfaces.first + i] = unit * g.sums[i];
 }

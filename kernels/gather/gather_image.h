@@ -13,24 +13,25 @@ typedef struct {
 } Sampled;
 
 typedef struct {
-  float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
+  float x[W], y[W], z[W];
 } SamplePoints;
 
-CLPV_INLINE void clpv_sample_points(const Vec at, SamplePoints* points) {
-  vstore8(at.x, 0, points->x);
-  vstore8(at.y, 0, points->y);
-  vstore8(at.z, 0, points->z);
+CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
+  store_lanes(at.x, points->x);
+  store_lanes(at.y, points->y);
+  store_lanes(at.z, points->z);
 }
 
-CLPV_INLINE float clpv_sample(CLPV_IMAGE_IN volume, const SamplePoints* at, const int i, Sampled* s) {
+CLPV_INLINE float sample_cells(CLPV_IMAGE_IN volume, const SamplePoints* at, const int i, Sampled* s) {
   s->r = light_sample(volume, 0, at->x[i], at->y[i], at->z[i]);
   s->g = light_sample(volume, 1, at->x[i], at->y[i], at->z[i]);
   s->b = light_sample(volume, 2, at->x[i], at->y[i], at->z[i]);
   return 1.0f;
 }
 
-CLPV_INLINE float4 clpv_weigh(const Coefficients weights, const Sampled sampled) {
-  return (float4)(clpv_dot(weights, sampled.r), clpv_dot(weights, sampled.g), clpv_dot(weights, sampled.b), 0.0f);
+CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
+  return (float4)(dot_coefficients(weights, sampled.r), dot_coefficients(weights, sampled.g),
+                  dot_coefficients(weights, sampled.b), 0.0f);
 }
 
 #define CLPV_GATHERED CLPV_IMAGE_IN

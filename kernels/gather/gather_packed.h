@@ -36,39 +36,39 @@ typedef struct {
 // Eight points: number of the lowest of the eight cells about each, and its position between their centres in [0, 1];
 // with CLPV_VISIBLE the same for the sample points of visibility.cl.
 typedef struct {
-  int number[CLPV_ABREAST];
-  float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
+  int number[W];
+  float x[W], y[W], z[W];
 #if CLPV_VISIBLE
-  int visibility_point[CLPV_ABREAST];
-  float visibility_x[CLPV_ABREAST], visibility_y[CLPV_ABREAST], visibility_z[CLPV_ABREAST];
+  int visibility_point[W];
+  float visibility_x[W], visibility_y[W], visibility_z[W];
 #endif
 } SamplePoints;
 
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
-CLPV_INLINE void clpv_sample_points(const Vec at, SamplePoints* points) {
+CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
   const float last = (float)(CLPV_GRID - 1);
-  const int8 highest = (int8)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0);
-  const Vec p = vec(clpv_clamp(at.x, last), clpv_clamp(at.y, last), clpv_clamp(at.z, last));
-  const int8 x = min(convert_int8(p.x), highest), y = min(convert_int8(p.y), highest),
-             z = min(convert_int8(p.z), highest);
-  const Vec t = vec(p.x - convert_float8(x), p.y - convert_float8(y), p.z - convert_float8(z));
-  const int8 number = (z * CLPV_GRID + y) * CLPV_GRID + x;
-  vstore8(number, 0, points->number);
-  vstore8(t.x, 0, points->x), vstore8(t.y, 0, points->y), vstore8(t.z, 0, points->z);
+  const intW highest = (intW)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0);
+  const Vec p = vec(clamp_to(at.x, last), clamp_to(at.y, last), clamp_to(at.z, last));
+  const intW x = min(to_intW(p.x), highest), y = min(to_intW(p.y), highest),
+             z = min(to_intW(p.z), highest);
+  const Vec t = vec(p.x - to_realW(x), p.y - to_realW(y), p.z - to_realW(z));
+  const intW number = (z * CLPV_GRID + y) * CLPV_GRID + x;
+  store_lanes(number, points->number);
+  store_lanes(t.x, points->x), store_lanes(t.y, points->y), store_lanes(t.z, points->z);
 #if CLPV_VISIBLE
-  const Vec q = vec(clpv_clamp(t.x * 4.0f - 0.5f, 3.0f), clpv_clamp(t.y * 4.0f - 0.5f, 3.0f),
-                    clpv_clamp(t.z * 4.0f - 0.5f, 3.0f));
-  const int8 qx = min(convert_int8(q.x), (int8)(2)), qy = min(convert_int8(q.y), (int8)(2)),
-             qz = min(convert_int8(q.z), (int8)(2));
-  vstore8(number * 64 + (qz * 4 + qy) * 4 + qx, 0, points->visibility_point);
-  vstore8(q.x - convert_float8(qx), 0, points->visibility_x);
-  vstore8(q.y - convert_float8(qy), 0, points->visibility_y);
-  vstore8(q.z - convert_float8(qz), 0, points->visibility_z);
+  const Vec q = vec(clamp_to(t.x * 4.0f - 0.5f, 3.0f), clamp_to(t.y * 4.0f - 0.5f, 3.0f),
+                    clamp_to(t.z * 4.0f - 0.5f, 3.0f));
+  const intW qx = min(to_intW(q.x), (intW)(2)), qy = min(to_intW(q.y), (intW)(2)),
+             qz = min(to_intW(q.z), (intW)(2));
+  store_lanes(number * 64 + (qz * 4 + qy) * 4 + qx, points->visibility_point);
+  store_lanes(q.x - to_realW(qx), points->visibility_x);
+  store_lanes(q.y - to_realW(qy), points->visibility_y);
+  store_lanes(q.z - to_realW(qz), points->visibility_z);
 #endif
 }
 
 // Trilinear weights of the eight corners about a point (x, y, z) in [0, 1]^3; corner bits: 1 x, 2 y, 4 z.
-CLPV_INLINE float8 clpv_corner_weights(const float x, const float y, const float z) {
+CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
   const float8 along_x = fma((float8)(-1, 1, -1, 1, -1, 1, -1, 1), (float8)(x), (float8)(1, 0, 1, 0, 1, 0, 1, 0));
   const float8 along_y = fma((float8)(-1, -1, 1, 1, -1, -1, 1, 1), (float8)(y), (float8)(1, 1, 0, 0, 1, 1, 0, 0));
   const float8 along_z = fma((float8)(-1, -1, -1, -1, 1, 1, 1, 1), (float8)(z), (float8)(1, 1, 1, 1, 0, 0, 0, 0));
@@ -80,7 +80,7 @@ CLPV_INLINE float8 clpv_corner_weights(const float x, const float y, const float
 
 // Visible shares of the eight cells: their bits at eight sample points, interpolated trilinearly so that light is
 // continuous, and constant beyond the outermost points.
-CLPV_INLINE float8 clpv_visible_shares(__global const uchar* at, const float8 weights) {
+CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights) {
   const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 visible = 0.0f;
 #define CLPV_ADD_POINT(i, next) visible += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);
@@ -92,24 +92,23 @@ CLPV_INLINE float8 clpv_visible_shares(__global const uchar* at, const float8 we
 
 // Multiplies the weights of cells by their visible shares and returns the factor that normalises them. If less than
 // CLPV_MIN_VISIBLE is visible, the weights do not change.
-CLPV_INLINE float clpv_apply_visibility(const PackedCascade cascade, const SamplePoints* points, const int i,
-                                        float8* weights) {
-  const float8 from = clpv_corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
-  const float8 visible = *weights * clpv_visible_shares(cascade.occluded + points->visibility_point[i], from);
-  const float4 pairs = visible.lo + visible.hi;
-  const float total = pairs.x + pairs.y + pairs.z + pairs.w;
+CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points, const int i,
+                                   float8* weights) {
+  const float8 from = corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
+  const float8 visible = *weights * visible_shares(cascade.occluded + points->visibility_point[i], from);
+  const float total = sum_lanes(visible);
   if (!(total > CLPV_MIN_VISIBLE)) return 1.0f;
   *weights = visible;
   return 1.0f / total;
 }
 #endif
 
-CLPV_INLINE float clpv_sample(const PackedCascade cascade, const SamplePoints* points, const int i, Sampled* r) {
+CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i, Sampled* r) {
   __global const float8* v = cascade.cells + points->number[i] * CLPV_PAIRS;
-  float8 w = clpv_corner_weights(points->x[i], points->y[i], points->z[i]);
+  float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
   float scale = 1.0f;
 #if CLPV_VISIBLE
-  scale = clpv_apply_visibility(cascade, points, i, &w);
+  scale = apply_visibility(cascade, points, i, &w);
 #endif
 #define CLPV_DO(j, even, odd)                                                                          \
   r->p##j = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] + w.s3 * v[j + CLPV_DX + CLPV_DY] + \
@@ -124,7 +123,7 @@ CLPV_INLINE float clpv_sample(const PackedCascade cascade, const SamplePoints* p
 // uninitialised while it is built.
 #define CLPV_PAIR(a, b) ((float8)(a, a, a, a, b, b, b, b))
 
-CLPV_INLINE float4 clpv_weigh(const Coefficients weights, const Sampled sampled) {
+CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   float8 sum = 0.0f;
 #define CLPV_DO(j, even, odd) sum = fma(CLPV_PAIR(even(weights), odd(weights)), sampled.p##j, sum);
   CLPV_EACH_PAIR(CLPV_DO)

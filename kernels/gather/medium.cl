@@ -38,62 +38,62 @@
 // Parts of the rays of eight pixels in the medium.
 typedef struct {
   Vec origin, direction;  // unit
-  float8 start, end;      // [m]
-  int8 inside;            // the ray is in the medium
+  realW start, end;      // [m]
+  intW inside;            // the ray is in the medium
 } AirRays;
 
-CLPV_INLINE void air_rays(const ClpvView view, const PixelRow p, const float8 depth, const ClpvMedium medium,
-                          AirRays* a) {
-  const Vec eye = vec_of(view.eye), along = vec_minus(positions(view, p, (float8)(1.0f)), eye);
-  const float8 length = sqrt(vec_dot(along, along)), none = (float8)(0.0f);
+CLPV_INLINE void find_air_rays(const ClpvView view, const PixelRow p, const realW depth, const ClpvMedium medium,
+                               AirRays* a) {
+  const Vec eye = vec_of(view.eye), along = vec_minus(row_positions(view, p, ONE), eye);
+  const realW length = sqrt(vec_dot(along, along));
   a->origin = eye;
   a->direction = vec_times(along, 1.0f / length);
   const MediumPart part =
-      clpv_medium_part(medium, eye, a->direction, depth > none ? depth * length : (float8)(INFINITY));
+      find_medium_part(medium, eye, a->direction, depth > ZERO ? depth * length : (realW)(INFINITY));
   a->inside = part.end > part.start;
-  a->start = a->inside ? part.start : none;
-  a->end = a->inside ? part.end : none;
+  a->start = a->inside ? part.start : ZERO;
+  a->end = a->inside ? part.end : ZERO;
 }
 
 // Rays of the pixels of a row of planes; none in the border.
-CLPV_INLINE void plane_rays(const ClpvView view, const NearRow r, __global const float* depths, const ClpvMedium medium,
-                            AirRays* a) {
-  const int8 column = r.x + (int8)(0, 1, 2, 3, 4, 5, 6, 7), last = (int8)((int)r.width - 1);
-  const int8 x = min(column, last) * CLPV_NEAR_STEP;
-  const uint8 pixel = as_uint8(r.y * CLPV_NEAR_STEP * (int)view.width + x);
+CLPV_INLINE void find_plane_rays(const ClpvView view, const NearRow r, __global const float* depths, const ClpvMedium medium,
+                                 AirRays* a) {
+  const intW column = r.x + lane_numbers(), last = (intW)((int)r.width - 1);
+  const intW x = min(column, last) * CLPV_NEAR_STEP;
+  const uintW pixel = as_uintW(r.y * CLPV_NEAR_STEP * (int)view.width + x);
   PixelRow p;
-  p.x = convert_float8(x);
-  p.y = (float8)((float)(r.y * CLPV_NEAR_STEP));
-  air_rays(view, p, (float8)CLPV_GATHER(depths, pixel), medium, a);
+  p.x = to_realW(x);
+  p.y = (realW)((float)(r.y * CLPV_NEAR_STEP));
+  find_air_rays(view, p, (realW)CLPV_GATHER(depths, pixel), medium, a);
   a->inside &= column <= last;
-  a->end = a->inside ? a->end : (float8)(0.0f);
+  a->end = a->inside ? a->end : ZERO;
 }
 
 // Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile (Bayer 1973).
-CLPV_INLINE float8 place_in_interval(const NearRow r) {
+CLPV_INLINE realW place_in_interval(const NearRow r) {
   const float4 rows[CLPV_NEAR_TILE] = {(float4)(0, 8, 2, 10), (float4)(12, 4, 14, 6), (float4)(3, 11, 1, 9),
                                        (float4)(15, 7, 13, 5)};
   const float4 row = rows[r.y % CLPV_NEAR_TILE];
-  return ((float8)(row.x, row.y, row.z, row.w, row.x, row.y, row.z, row.w) + 0.5f) * (1.0f / 16.0f);
+  return ((realW)(row.x, row.y, row.z, row.w, row.x, row.y, row.z, row.w) + 0.5f) * (1.0f / 16.0f);
 }
 
 // A point of each ray.
 typedef struct {
-  float8 at;           // distance from the camera [m]
-  float8 path, step;   // t, its way through the medium, and dt exp(-sigma t), sigma the mean extinction [m]
+  realW at;           // distance from the camera [m]
+  realW path, step;   // t, its way through the medium, and dt exp(-sigma t), sigma the mean extinction [m]
   float sigma;
 } AirPoint;
 
 // Point k of `steps` of each ray.
-CLPV_INLINE void air_point(const AirRays* a, const ClpvMedium medium, const float8 place, const int k, const int steps,
-                           AirPoint* p) {
+CLPV_INLINE void find_air_point(const AirRays* a, const ClpvMedium medium, const realW place, const int k, const int steps,
+                                AirPoint* p) {
   const float sigma = (medium.extinction[0] + medium.extinction[1] + medium.extinction[2]) * (1.0f / 3.0f);
-  const float8 length = a->end - a->start, x = (place + (float)k) * (1.0f / (float)steps);
-  const float8 reached = 1.0f - exp(-sigma * length);
-  const int8 thin = sigma * length < (float8)(CLPV_THIN);
-  const float8 deep = -log(1.0f - x * reached) * (1.0f / sigma);
-  const float8 t = thin ? x * length : (deep < length ? deep : length);
-  const float8 spread = thin ? length * exp(-sigma * t) : reached * (1.0f / sigma);
+  const realW length = a->end - a->start, x = (place + (float)k) * (1.0f / (float)steps);
+  const realW reached = 1.0f - exp(-sigma * length);
+  const intW thin = sigma * length < (realW)(CLPV_THIN);
+  const realW deep = -log(1.0f - x * reached) * (1.0f / sigma);
+  const realW t = thin ? x * length : (deep < length ? deep : length);
+  const realW spread = thin ? length * exp(-sigma * t) : reached * (1.0f / sigma);
   p->at = a->start + t;
   p->path = t;
   p->step = spread * (1.0f / (float)steps);
@@ -101,8 +101,8 @@ CLPV_INLINE void air_point(const AirRays* a, const ClpvMedium medium, const floa
 }
 
 // exp(-sigma_t (t + further)) dt of each channel [m]. `further` [m]: way through the medium from the light to the point.
-CLPV_INLINE Vec air_share(const AirPoint* p, const ClpvMedium medium, const float8 further) {
-  const float8 way = p->path + (further > (float8)(0.0f) ? further : (float8)(0.0f)), before = p->sigma * p->path;
+CLPV_INLINE Vec air_share(const AirPoint* p, const ClpvMedium medium, const realW further) {
+  const realW way = p->path + (further > ZERO ? further : ZERO), before = p->sigma * p->path;
   return vec_times(vec(exp(before - medium.extinction[0] * way), exp(before - medium.extinction[1] * way),
                        exp(before - medium.extinction[2] * way)),
                    p->step);
@@ -111,87 +111,87 @@ CLPV_INLINE Vec air_share(const AirPoint* p, const ClpvMedium medium, const floa
 __kernel void medium_light(const ClpvView view, __global const float* depths, const ClpvLight light,
                            __global const ClpvView* views, const uint count, const uint which,
                            __global const float* map, __global float* scattered) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  if (!near_inside(r)) return;
+  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(r)) return;
   AirRays a;
-  plane_rays(view, r, depths, light.medium, &a);
-  const float8 none = (float8)(0.0f), place = place_in_interval(r);
+  find_plane_rays(view, r, depths, light.medium, &a);
+  const realW place = place_in_interval(r);
   const ShadowMap shadow = {views, count, which, map};
   const Vec sigma = vec_of(light.medium.scattering);
-  Vec sum = vec(none, none, none);
+  Vec sum = vec(ZERO, ZERO, ZERO);
   for (int k = 0; k < CLPV_LIGHT_STEPS; ++k) {
     AirPoint p;
-    air_point(&a, light.medium, place, k, CLPV_LIGHT_STEPS, &p);
+    find_air_point(&a, light.medium, place, k, CLPV_LIGHT_STEPS, &p);
     const Vec position = vec_add_scaled(a.origin, p.at, a.direction);
     Vec towards;
-    float8 distance;
-    const Vec irradiance = clpv_clear_irradiance(light, position, &towards, &distance);
-    const MediumPart part = clpv_medium_part(light.medium, position, towards, distance);
+    realW distance;
+    const Vec irradiance = clear_irradiance(light, position, &towards, &distance);
+    const MediumPart part = find_medium_part(light.medium, position, towards, distance);
     const Vec share = air_share(&p, light.medium, part.end - part.start);
-    const float8 phase = clpv_phase(light.medium.anisotropy, vec_dot(towards, a.direction));
-    const float8 seen = phase * clpv_light_reaches(shadow, position);
+    const realW phase = phase_function(light.medium.anisotropy, vec_dot(towards, a.direction));
+    const realW seen = phase * light_reaches(shadow, position);
     sum = vec_add_scaled(sum, seen, vec_product(share, irradiance));
   }
-  const Vec before = near_vectors(scattered, r.plane, r.at), added = vec_masked(a.inside, vec_product(sigma, sum));
-  store_near_vectors(vec_add_scaled(before, (float8)(1.0f), added), scattered, r.plane, r.at);
+  const Vec before = load_near_vectors(scattered, r.plane, r.at), added = vec_masked(a.inside, vec_product(sigma, sum));
+  store_near_vectors(vec_add_scaled(before, ONE, added), scattered, r.plane, r.at);
 }
 
 __kernel void medium_volumes(const ClpvView view, __global const float* depths, const ClpvMedium medium,
                              __global float* ends, __global float* scattered, CLPV_RADIANCE) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  if (!near_inside(r)) return;
+  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(r)) return;
   AirRays a;
-  plane_rays(view, r, depths, medium, &a);
-  vstore8(a.end, 0, ends + r.at);
-  const float8 none = (float8)(0.0f), place = place_in_interval(r);
+  find_plane_rays(view, r, depths, medium, &a);
+  store_lanes(a.end, ends + r.at);
+  const realW place = place_in_interval(r);
   const VecLanes w = unpack(a.inside, a.direction);
   const float g = medium.anisotropy, gg = g * g;
-  Vec sum = vec(none, none, none);
+  Vec sum = vec(ZERO, ZERO, ZERO);
   for (int k = 0; k < CLPV_VOLUME_STEPS; ++k) {
     AirPoint p;
-    air_point(&a, medium, place, k, CLPV_VOLUME_STEPS, &p);
-    const Vec share = air_share(&p, medium, none);
+    find_air_point(&a, medium, place, k, CLPV_VOLUME_STEPS, &p);
+    const Vec share = air_share(&p, medium, ZERO);
     RadianceField field;
-    clpv_radiance_field(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), none, a.direction, a.inside,
-                        &field);
-    float red[CLPV_ABREAST], green[CLPV_ABREAST], blue[CLPV_ABREAST];
-    for (int i = 0; i < CLPV_ABREAST; ++i) {
-      Coefficients y = clpv_basis(-w.x[i], -w.y[i], -w.z[i]);
+    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), ZERO, a.direction, a.inside,
+                    &field);
+    float red[W], green[W], blue[W];
+    for (int i = 0; i < W; ++i) {
+      Coefficients y = basis_functions(-w.x[i], -w.y[i], -w.z[i]);
       y.c1 *= g, y.c2 *= g, y.c3 *= g;
       y.c4 *= gg, y.c5 *= gg, y.c6 *= gg, y.c7 *= gg, y.c8 *= gg;
-      const float4 arriving = max(clpv_weigh(y, field.at[i]), 0.0f);
+      const float4 arriving = max(weigh(y, field.at[i]), 0.0f);
       red[i] = arriving.x, green[i] = arriving.y, blue[i] = arriving.z;
     }
-    const Vec arriving = vec(vload8(0, red), vload8(0, green), vload8(0, blue));
-    sum = vec_add_scaled(sum, (float8)(1.0f), vec_product(share, arriving));
+    const Vec arriving = vec(load_lanes(red), load_lanes(green), load_lanes(blue));
+    sum = vec_add_scaled(sum, ONE, vec_product(share, arriving));
   }
   store_near_vectors(vec_masked(a.inside, vec_product(vec_of(medium.scattering), sum)), scattered, r.plane, r.at);
 }
 
 // Weight of pixels whose rays end at `other`, for rays that end at `end`: 1 for equal ends; 0 outside the medium.
-CLPV_INLINE float8 alike(const float8 end, const float8 other) {
-  const float8 none = (float8)(0.0f), off = fabs(end - other), most = end > other ? end : other;
-  const float8 weight = 1.0f - off / (CLPV_SAME_END * most);
-  return other > none ? (weight > none ? weight : none) : none;
+CLPV_INLINE realW similarity(const realW end, const realW other) {
+  const realW off = fabs(end - other), most = end > other ? end : other;
+  const realW weight = 1.0f - off / (CLPV_SAME_END * most);
+  return other > ZERO ? (weight > ZERO ? weight : ZERO) : ZERO;
 }
 
 __kernel void medium_blur(const ClpvView view, __global const float* ends, __global const float* scattered,
                           __global float* blurred) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  if (!near_inside(r)) return;
-  const float8 none = (float8)(0.0f), end = vload8(0, ends + r.at);
-  Vec sum = vec(none, none, none);
-  float8 weights = none;
+  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(r)) return;
+  const realW end = load_lanes(ends + r.at);
+  Vec sum = vec(ZERO, ZERO, ZERO);
+  realW weights = ZERO;
   for (int dy = -2; dy <= 2; ++dy) {
     for (int dx = -2; dx <= 2; ++dx) {
       const float share = (dy == -2 || dy == 2 ? 0.5f : 1.0f) * (dx == -2 || dx == 2 ? 0.5f : 1.0f);
       const uint at = (uint)((int)r.at + dy * (int)r.pitch + dx);
-      const float8 weight = share * alike(end, vload8(0, ends + at));
-      sum = vec_add_scaled(sum, weight, near_vectors(scattered, r.plane, at));
+      const realW weight = share * similarity(end, load_lanes(ends + at));
+      sum = vec_add_scaled(sum, weight, load_near_vectors(scattered, r.plane, at));
       weights += weight;
     }
   }
-  store_near_vectors(vec_times(sum, weights > none ? 1.0f / weights : none), blurred, r.plane, r.at);
+  store_near_vectors(vec_times(sum, weights > ZERO ? 1.0f / weights : ZERO), blurred, r.plane, r.at);
 }
 
 #define CLPV_WIDEN(v) (right ? (v).s01122334 : (v).s00112233)
@@ -199,28 +199,27 @@ __kernel void medium_blur(const ClpvView view, __global const float* ends, __glo
 __kernel void medium_add(const ClpvView view, __global const float* depths, const ClpvMedium medium,
                          __global const float* ends, __global const float* blurred, const uint alone,
                          __global float4* image) {
-  const PixelRow p = this_row(view);
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   const uint first = p.py * view.width + p.px;
-  const uint8 pixel = first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
+  const uintW pixel = first + min(as_uintW(lane_numbers()), (uintW)(p.count - 1));
   AirRays a;
-  air_rays(view, p, (float8)CLPV_GATHER(depths, pixel), medium, &a);
-  const NearRow r = near_row(view, (int)p.px / CLPV_ABREAST, (int)p.py / CLPV_NEAR_STEP);
-  const float8 none = (float8)(0.0f);
-  Vec sum = vec(none, none, none);
-  float8 weights = none;
+  find_air_rays(view, p, (realW)CLPV_GATHER(depths, pixel), medium, &a);
+  const NearRow r = find_near_row(view, (int)p.px / W, (int)p.py / CLPV_NEAR_STEP);
+  Vec sum = vec(ZERO, ZERO, ZERO);
+  realW weights = ZERO;
   for (uint corner = 0; corner < 4; ++corner) {
     const bool right = corner % 2 == 1;
     const uint at = r.at - p.px / 2 + (corner / 2) * (p.py % 2) * r.pitch;
-    const float8 end = vload8(0, ends + at), red = vload8(0, blurred + at), green = vload8(0, blurred + r.plane + at),
-                 blue = vload8(0, blurred + 2 * r.plane + at);
+    const realW end = load_lanes(ends + at), red = load_lanes(blurred + at), green = load_lanes(blurred + r.plane + at),
+                 blue = load_lanes(blurred + 2 * r.plane + at);
     const Vec light = vec(CLPV_WIDEN(red), CLPV_WIDEN(green), CLPV_WIDEN(blue));
-    const float8 weight = alike(a.end, CLPV_WIDEN(end)) + (corner == 0 ? CLPV_UNLIKE : 0.0f);
+    const realW weight = similarity(a.end, CLPV_WIDEN(end)) + (corner == 0 ? CLPV_UNLIKE : 0.0f);
     sum = vec_add_scaled(sum, weight, light);
     weights += weight;
   }
   const VecLanes added = unpack(a.inside, vec_times(sum, 1.0f / weights));
-  const VecLanes kept = unpack(a.end >= none, clpv_transmittance(medium, a.end - a.start));
+  const VecLanes kept = unpack(a.end >= ZERO, medium_transmittance(medium, a.end - a.start));
   for (uint i = 0; i < p.count; ++i) {
     const float4 light = (float4)(added.x[i], added.y[i], added.z[i], 0.0f), before = image[first + i];
     image[first + i] = alone ? (float4)(light.x, light.y, light.z, 1.0f)

@@ -9,36 +9,36 @@
 
 // Part of a ray inside the medium: from `start` to `end`, in lengths of the ray's direction. Empty: end <= start.
 typedef struct {
-  float8 start, end;
+  realW start, end;
 } MediumPart;
 
-// Part of the ray origin + t direction with t in (0, end). fmin and fmax return the other number for 0 times infinity, of rays within
-// a face's plane.
-CLPV_INLINE MediumPart clpv_medium_part(const ClpvMedium medium, const Vec origin, const Vec direction,
-                                        const float8 end) {
+// Part of the ray origin + t direction with t in (0, end). fmin and fmax return the other number for 0 times infinity, of
+// rays within a face's plane.
+CLPV_INLINE MediumPart find_medium_part(const ClpvMedium medium, const Vec origin, const Vec direction,
+                                        const realW end) {
   const Vec lower = vec_of(medium.lower), upper = vec_of(medium.upper);
   const Vec inverse = vec(1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z);
   const Vec first = vec_product(vec_minus(lower, origin), inverse), last = vec_product(vec_minus(upper, origin), inverse);
   MediumPart part;
-  part.start = fmax(fmax(fmin(first.x, last.x), fmin(first.y, last.y)), fmax(fmin(first.z, last.z), (float8)(0.0f)));
+  part.start = fmax(fmax(fmin(first.x, last.x), fmin(first.y, last.y)), fmax(fmin(first.z, last.z), ZERO));
   part.end = fmin(fmin(fmax(first.x, last.x), fmax(first.y, last.y)), fmin(fmax(first.z, last.z), end));
   return part;
 }
 
 // exp(-sigma_t l) for each channel, l [m].
-CLPV_INLINE Vec clpv_transmittance(const ClpvMedium medium, const float8 length) {
-  const float8 l = length > (float8)(0.0f) ? length : (float8)(0.0f);
+CLPV_INLINE Vec medium_transmittance(const ClpvMedium medium, const realW length) {
+  const realW l = length > ZERO ? length : ZERO;
   return vec(exp(-medium.extinction[0] * l), exp(-medium.extinction[1] * l), exp(-medium.extinction[2] * l));
 }
 
 // sigma_s / sigma_t of a channel, the part of attenuated light that is scattered; 0 where nothing is attenuated.
-CLPV_INLINE float clpv_albedo(const ClpvMedium medium, const int channel) {
+CLPV_INLINE float medium_albedo(const ClpvMedium medium, const int channel) {
   return medium.extinction[channel] > 0.0f ? medium.scattering[channel] / medium.extinction[channel] : 0.0f;
 }
 
 // p for the cosine of the angle between both directions [1/sr].
-CLPV_INLINE float8 clpv_phase(const float g, const float8 cosine) {
-  const float8 d = 1.0f + g * g - 2.0f * g * cosine;
+CLPV_INLINE realW phase_function(const float g, const realW cosine) {
+  const realW d = 1.0f + g * g - 2.0f * g * cosine;
   return (1.0f - g * g) / (4.0f * M_PI_F * d * sqrt(d));
 }
 

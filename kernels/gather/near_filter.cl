@@ -28,53 +28,51 @@
 // Surfaces of eight neighbours.
 typedef struct {
   Vec position, normal, difference;
-  float8 reach;
+  realW reach;
 } Neighbours;
 
-CLPV_INLINE void neighbours(__global const float* points, __global const float* differences, const uint plane,
-                            const uint at, Neighbours* n) {
-  n->position = near_vectors(points + CLPV_NEAR_POSITION * plane, plane, at);
-  n->normal = near_vectors(points + CLPV_NEAR_NORMAL * plane, plane, at);
-  n->reach = vload8(0, points + CLPV_NEAR_REACH * plane + at);
-  n->difference = near_vectors(differences, plane, at);
+CLPV_INLINE void load_neighbours(__global const float* points, __global const float* differences, const uint plane,
+                                 const uint at, Neighbours* n) {
+  n->position = load_near_vectors(points + CLPV_NEAR_POSITION * plane, plane, at);
+  n->normal = load_near_vectors(points + CLPV_NEAR_NORMAL * plane, plane, at);
+  n->reach = load_lanes(points + CLPV_NEAR_REACH * plane + at);
+  n->difference = load_near_vectors(differences, plane, at);
 }
 
 // Weight of neighbours: 1 on the same surface, else 0.
-CLPV_INLINE float8 same_surface(const Neighbours n, const Vec position, const Vec normal) {
-  const float8 off = fabs(vec_dot(vec_minus(n.position, position), normal));
-  const int8 same = (vec_dot(normal, n.normal) > (float8)(CLPV_SAME_NORMAL)) & (off < CLPV_SAME_PLANE * n.reach);
-  return same ? (float8)(1.0f) : (float8)(0.0f);
+CLPV_INLINE realW same_surface(const Neighbours n, const Vec position, const Vec normal) {
+  const realW off = fabs(vec_dot(vec_minus(n.position, position), normal));
+  const intW same = (vec_dot(normal, n.normal) > (realW)(CLPV_SAME_NORMAL)) & (off < CLPV_SAME_PLANE * n.reach);
+  return same ? ONE : ZERO;
 }
 
 // Sums of differences and weights.
 typedef struct {
   Vec difference;
-  float8 weight;
+  realW weight;
 } WeightedSum;
 
-CLPV_INLINE void add_weighted(const Neighbours n, const float8 weight, WeightedSum* sum) {
+CLPV_INLINE void add_weighted(const Neighbours n, const realW weight, WeightedSum* sum) {
   sum->difference = vec_add_scaled(sum->difference, weight, n.difference);
   sum->weight += weight;
 }
 
 CLPV_INLINE Vec mean_of(const WeightedSum sum) {
-  const float8 none = (float8)(0.0f);
-  return vec_times(sum.difference, sum.weight > none ? 1.0f / sum.weight : none);
+  return vec_times(sum.difference, sum.weight > ZERO ? 1.0f / sum.weight : ZERO);
 }
 
 __kernel void near_blur(const ClpvView view, __global const float* points, __global const float* differences,
                         __global float* blurred) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  if (!near_inside(r)) return;
-  const float8 none = (float8)(0.0f);
-  const Vec position = near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  const Vec normal = near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
-  WeightedSum sum = {{none, none, none}, none};
+  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(r)) return;
+  const Vec position = load_near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  const Vec normal = load_near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+  WeightedSum sum = {{ZERO, ZERO, ZERO}, ZERO};
   for (int dy = -2; dy <= 2; ++dy) {
     for (int dx = -2; dx <= 2; ++dx) {
       const float share = (dy == -2 || dy == 2 ? 0.5f : 1.0f) * (dx == -2 || dx == 2 ? 0.5f : 1.0f);
       Neighbours n;
-      neighbours(points, differences, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
+      load_neighbours(points, differences, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
       add_weighted(n, share * same_surface(n, position, normal), &sum);
     }
   }
@@ -83,19 +81,18 @@ __kernel void near_blur(const ClpvView view, __global const float* points, __glo
 
 __kernel void near_widen(const ClpvView view, __global const float* points, __global const float* blurred,
                          __global float* widened) {
-  const NearRow r = near_row(view, get_global_id(0), get_global_id(1));
-  if (!near_inside(r)) return;
-  const float8 none = (float8)(0.0f);
-  const Vec position = near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  const Vec normal = near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
-  const float8 reach = CLPV_WIDENED * vload8(0, points + CLPV_NEAR_REACH * r.plane + r.at);
-  WeightedSum sum = {{none, none, none}, none};
+  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(r)) return;
+  const Vec position = load_near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  const Vec normal = load_near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+  const realW reach = CLPV_WIDENED * load_lanes(points + CLPV_NEAR_REACH * r.plane + r.at);
+  WeightedSum sum = {{ZERO, ZERO, ZERO}, ZERO};
   for (int dy = -3; dy <= 3; dy += 3) {
     for (int dx = -3; dx <= 3; dx += 3) {
       Neighbours n;
-      neighbours(points, blurred, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
+      load_neighbours(points, blurred, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
       const Vec apart = vec_minus(n.position, position);
-      add_weighted(n, vec_dot(apart, apart) < reach * reach ? same_surface(n, position, normal) : none, &sum);
+      add_weighted(n, vec_dot(apart, apart) < reach * reach ? same_surface(n, position, normal) : ZERO, &sum);
     }
   }
   store_near_vectors(mean_of(sum), widened, r.plane, r.at);
@@ -114,26 +111,25 @@ CLPV_INLINE void widen(Neighbours* n, const bool right) {
 
 __kernel void near_add(const ClpvView view, __global const float* depths, __global const float4* normals,
                        __global const float* points, __global const float* widened, __global float4* irradiance) {
-  const PixelRow p = this_row(view);
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Surfaces s;
-  surfaces(view, p, depths, normals, &s);
-  const NearRow r = near_row(view, (int)p.px / CLPV_ABREAST, (int)p.py / CLPV_NEAR_STEP);
+  load_surfaces(view, p, depths, normals, &s);
+  const NearRow r = find_near_row(view, (int)p.px / W, (int)p.py / CLPV_NEAR_STEP);
 #if CLPV_NEAR_STEP == 1
-  const Vec difference = near_vectors(widened, r.plane, r.at);
+  const Vec difference = load_near_vectors(widened, r.plane, r.at);
 #else
-  const float8 none = (float8)(0.0f);
-  WeightedSum sum = {{none, none, none}, none};
+  WeightedSum sum = {{ZERO, ZERO, ZERO}, ZERO};
   const uint first = r.at - p.px / 2;
   for (uint corner = 0; corner < 4; ++corner) {
     Neighbours n;
-    neighbours(points, widened, r.plane, first + (corner / 2) * (p.py % 2) * r.pitch, &n);
+    load_neighbours(points, widened, r.plane, first + (corner / 2) * (p.py % 2) * r.pitch, &n);
     widen(&n, corner % 2 == 1);
     add_weighted(n, same_surface(n, s.position, s.normal), &sum);
   }
   const Vec difference = mean_of(sum);
 #endif
-  const VecLanes added = unpack(s.depth > (float8)(0.0f), difference);
+  const VecLanes added = unpack(s.depth > ZERO, difference);
   for (uint i = 0; i < p.count; ++i) {
     const float4 e = irradiance[s.first + i];
     irradiance[s.first + i] = max(e + (float4)(added.x[i], added.y[i], added.z[i], 0.0f), 0.0f);

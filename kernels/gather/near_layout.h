@@ -23,68 +23,68 @@ static inline uint near_pixels(const uint pixels) {
 }
 
 // The pixels from (8 column, row) on.
-static inline NearRow near_row(const ClpvView view, const int column, const int row) {
+static inline NearRow find_near_row(const ClpvView view, const int column, const int row) {
   NearRow r;
   r.width = near_pixels(view.width);
   r.height = near_pixels(view.height);
   r.pitch = CLPV_NEAR_PITCH_OF(r.width);
   r.plane = CLPV_NEAR_PLANE_OF(r.width, r.height);
-  r.x = column * CLPV_ABREAST;
+  r.x = column * W;
   r.y = row;
   r.at = (uint)(row + CLPV_NEAR_ROWS) * r.pitch + (uint)(r.x + CLPV_NEAR_COLUMNS);
   return r;
 }
 
 // True if a row has pixels.
-static inline bool near_inside(const NearRow r) {
+static inline bool row_has_pixels(const NearRow r) {
   return r.x < (int)r.width && r.y < (int)r.height;
 }
 
-// Tile of CLPV_ABREAST x CLPV_NEAR_TILE pixels of this work-item.
+// Tile of W x CLPV_NEAR_TILE pixels of this work-item.
 #define CLPV_NO_TILE 0xffffffffu
-static inline uint near_tile(const ClpvView view) {
-  const uint across = (near_pixels(view.width) + CLPV_ABREAST - 1) / CLPV_ABREAST,
+static inline uint find_near_tile(const ClpvView view) {
+  const uint across = (near_pixels(view.width) + W - 1) / W,
              down = (near_pixels(view.height) + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE,
              x = get_global_id(0), y = get_global_id(1);
   return x < across && y < down ? y * across + x : CLPV_NO_TILE;
 }
 
-// Largest number of hits of a tile. They lie in groups of CLPV_ABREAST, whose numbers have rows (shared/near.h).
-#define CLPV_TILE_HITS (CLPV_ABREAST * CLPV_NEAR_TILE * CLPV_NEAR_RAYS)
+// Largest number of hits of a tile. They lie in groups of W, whose numbers have rows (shared/near.h).
+#define CLPV_TILE_HITS (W * CLPV_NEAR_TILE * CLPV_NEAR_RAYS)
 
 // Vectors from three planes.
-CLPV_INLINE Vec near_vectors(__global const float* planes, const uint plane, const uint at) {
-  return vec(vload8(0, planes + at), vload8(0, planes + plane + at), vload8(0, planes + 2 * plane + at));
+CLPV_INLINE Vec load_near_vectors(__global const float* planes, const uint plane, const uint at) {
+  return vec(load_lanes(planes + at), load_lanes(planes + plane + at), load_lanes(planes + 2 * plane + at));
 }
 CLPV_INLINE void store_near_vectors(const Vec v, __global float* planes, const uint plane, const uint at) {
-  vstore8(v.x, 0, planes + at);
-  vstore8(v.y, 0, planes + plane + at);
-  vstore8(v.z, 0, planes + 2 * plane + at);
+  store_lanes(v.x, planes + at);
+  store_lanes(v.y, planes + plane + at);
+  store_lanes(v.z, planes + 2 * plane + at);
 }
 
 // Points of eight pixels.
 typedef struct {
   Vec position, normal, tangent, bitangent;
-  float8 reach;
+  realW reach;
 } NearPoints;
 
 // Loads points. The tangents make an orthonormal frame without a branch (Duff et al., 'Building an Orthonormal Basis,
 // Revisited', JCGT 6(1), 2017).
-CLPV_INLINE void near_points_at(__global const float* points, const NearRow r, NearPoints* p) {
-  p->position = near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  p->normal = near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
-  p->reach = vload8(0, points + CLPV_NEAR_REACH * r.plane + r.at);
+CLPV_INLINE void load_near_points(__global const float* points, const NearRow r, NearPoints* p) {
+  p->position = load_near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  p->normal = load_near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+  p->reach = load_lanes(points + CLPV_NEAR_REACH * r.plane + r.at);
   const Vec n = p->normal;
-  const float8 one = (float8)(1.0f), sign = n.z < (float8)(0.0f) ? -one : one;
-  const float8 a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+  const realW sign = n.z < ZERO ? -ONE : ONE;
+  const realW a = -1.0f / (sign + n.z), b = n.x * n.y * a;
   p->tangent = vec(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
   p->bitangent = vec(b, sign + n.y * n.y * a, -n.y);
 }
 
 // Unit directions of ray k of eight pixels. `directions`: about +z, by row of the tile, ray and axis; the four pixels of
 // a tile's row twice.
-CLPV_INLINE Vec near_directions(__global const float8* directions, const NearRow r, const NearPoints* p, const uint k) {
-  __global const float8* about_z = directions + ((uint)r.y % CLPV_NEAR_TILE * CLPV_NEAR_RAYS + k) * 3;
+CLPV_INLINE Vec find_near_directions(__global const realW* directions, const NearRow r, const NearPoints* p, const uint k) {
+  __global const realW* about_z = directions + ((uint)r.y % CLPV_NEAR_TILE * CLPV_NEAR_RAYS + k) * 3;
   return vec_blend(vec(about_z[0], about_z[1], about_z[2]), p->tangent, p->bitangent, p->normal);
 }
 

@@ -24,62 +24,62 @@
 #endif
 
 typedef struct {
-  int8 hit;
-  uint8 radiance;        // place among the radiances
+  intW hit;
+  uintW radiance;        // place among the radiances
   Vec position, normal;  // [m]; unit, towards the ray's origin
   Vec albedo, emitted;   // [W/m^2/sr]
 } HitSurface;
 
 // The surfaces of this work-item's hits. Returns false if there are none.
-CLPV_INLINE bool hit_surfaces(const ClpvView view, __global const float* points, __global const uint* counts,
-                              __global const float8* hits, CLPV_SCENE, HitSurface* s) {
-  const uint tile = near_tile(view), first = get_global_id(2) * CLPV_ABREAST;
+CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* points, __global const uint* counts,
+                                   __global const realW* hits, CLPV_SCENE, HitSurface* s) {
+  const uint tile = find_near_tile(view), first = get_global_id(2) * W;
   if (tile == CLPV_NO_TILE || first >= counts[tile]) return false;
-  hits += (tile * CLPV_TILE_HITS + first) / CLPV_ABREAST * CLPV_HIT_ROWS;
-  const int8 listed = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < (int8)((int)(counts[tile] - first));
-  const float8 none = (float8)(0.0f), u = listed ? hits[CLPV_HIT_U] : none, v = listed ? hits[CLPV_HIT_V] : none,
-               distance = listed ? hits[CLPV_HIT_DISTANCE] : none;
-  const uint8 zero = (uint8)(0u), triangle = listed ? as_uint8(hits[CLPV_HIT_TRIANGLE]) : zero,
-              pixel = listed ? as_uint8(hits[CLPV_HIT_PIXEL]) : zero;
-  s->radiance = as_uint8(hits[CLPV_HIT_RADIANCE]);
+  hits += (tile * CLPV_TILE_HITS + first) / W * CLPV_HIT_ROWS;
+  const intW listed = lane_numbers() < (intW)((int)(counts[tile] - first));
+  const realW u = listed ? hits[CLPV_HIT_U] : ZERO, v = listed ? hits[CLPV_HIT_V] : ZERO,
+               distance = listed ? hits[CLPV_HIT_DISTANCE] : ZERO;
+  const uintW zero = (uintW)(0u), triangle = listed ? as_uintW(hits[CLPV_HIT_TRIANGLE]) : zero,
+              pixel = listed ? as_uintW(hits[CLPV_HIT_PIXEL]) : zero;
+  s->radiance = as_uintW(hits[CLPV_HIT_RADIANCE]);
   const uint plane = CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_pixels(view.height));
-  const Vec origin = vec((float8)CLPV_GATHER(points, pixel), (float8)CLPV_GATHER(points, pixel + plane),
-                         (float8)CLPV_GATHER(points, pixel + 2 * plane));
-  const float8 reach = (float8)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
+  const Vec origin = vec((realW)CLPV_GATHER(points, pixel), (realW)CLPV_GATHER(points, pixel + plane),
+                         (realW)CLPV_GATHER(points, pixel + 2 * plane));
+  const realW reach = (realW)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
   Rows indices;
   gather_rows(triangles, triangle, &indices);
   VertexAttributes a, b, c;
-  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, x)), &a);
-  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, y)), &b);
-  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, z)), &c);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), &a);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), &b);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), &c);
   MaterialLanes material;
-  material_of(materials, as_uint8(CLPV_COLUMN(indices, w)), &material);
+  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &material);
   const Vec w = vec(1.0f - u - v, u, v);
   const Vec edge1 = vec_minus(b.position, a.position), edge2 = vec_minus(c.position, a.position);
   const Vec across = vec_cross(edge1, edge2);
-  const float8 area2 = sqrt(vec_dot(across, across)), height = vec_dot(vec_minus(origin, a.position), across);
-  const int8 back = height < none;
+  const realW area2 = sqrt(vec_dot(across, across)), height = vec_dot(vec_minus(origin, a.position), across);
+  const intW back = height < ZERO;
   // Rays start CLPV_NEAR_LIFT R above their own triangle.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
   s->position = vec_blend(w, a.position, b.position, c.position);
-  s->normal = normal_towards(vec_times(across, back ? (float8)(-1.0f) : (float8)(1.0f)),
+  s->normal = normal_towards(vec_times(across, back ? (realW)(-1.0f) : ONE),
                              vec_blend(w, a.normal, b.normal, c.normal));
   s->albedo = material.base_colour;
 #if CLPV_COLOURED
   s->albedo = vec_product(s->albedo, vec_blend(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_EMISSIVE
-  const int8 emits = ~back | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
+  const intW emits = ~back | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
   s->emitted = vec_masked(emits, material.emissive);
 #else
-  s->emitted = vec(none, none, none);
+  s->emitted = vec(ZERO, ZERO, ZERO);
 #endif
 #if CLPV_TEXTURED
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
-  const float8 uv_area2 = fabs(uv1.u * uv2.v - uv1.v * uv2.u);
-  const float8 step = distance * CLPV_NEAR_CONE * sqrt(uv_area2 / area2);
-  const Uv step_x = {step, none}, step_y = {none, step};
+  const realW uv_area2 = fabs(uv1.u * uv2.v - uv1.v * uv2.u);
+  const realW step = distance * CLPV_NEAR_CONE * sqrt(uv_area2 / area2);
+  const Uv step_x = {step, ZERO}, step_y = {ZERO, step};
   apply_texture(textures, texels, material.texture, uv, step_x, step_y, &s->albedo);
 #if CLPV_EMISSIVE
   apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &s->emitted);
@@ -89,14 +89,14 @@ CLPV_INLINE bool hit_surfaces(const ClpvView view, __global const float* points,
 }
 
 // Adds radiance, 0 outside the mask `lit`.
-CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const int8 lit, const Vec radiance, const uint fresh,
+CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const intW lit, const Vec radiance, const uint fresh,
                               __global const uint* counts, __global float* radiances) {
   const uint plane = CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_pixels(view.height));
-  const uint left = counts[near_tile(view)] - get_global_id(2) * CLPV_ABREAST;
+  const uint left = counts[find_near_tile(view)] - get_global_id(2) * W;
   const VecLanes added = unpack(lit, radiance);
-  uint at[CLPV_ABREAST];
-  vstore8(s.radiance, 0, at);
-  for (uint i = 0; i < min(left, (uint)CLPV_ABREAST); ++i) {
+  uint at[W];
+  store_lanes(s.radiance, at);
+  for (uint i = 0; i < min(left, (uint)W); ++i) {
     __global float* to = radiances + at[i];
     to[0] = fresh ? added.x[i] : to[0] + added.x[i];
     to[plane] = fresh ? added.y[i] : to[plane] + added.y[i];
@@ -105,7 +105,7 @@ CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const int
 }
 
 #define CLPV_NEAR_HITS                                                                                              \
-  const ClpvView view, __global const float *points, __global const uint *counts, __global const float8 *hits,      \
+  const ClpvView view, __global const float *points, __global const uint *counts, __global const realW *hits,      \
       CLPV_SCENE, const uint fresh, __global float *radiances
 #define CLPV_PASS_HITS view, points, counts, hits, CLPV_PASS_SCENE
 
@@ -114,33 +114,33 @@ CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const int
 __kernel void near_light(CLPV_NEAR_HITS, const ClpvLight light, __global const ClpvView* views, const uint count,
                          const uint which, __global const float* map) {
   HitSurface s;
-  if (!hit_surfaces(CLPV_PASS_HITS, &s)) return;
+  if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   const ShadowMap shadow = {views, count, which, map};
-  int8 lit = s.hit;
-  const Vec irradiance = clpv_shadowed_irradiance(light, shadow, s.position, s.normal, &lit);
-  add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (float8)(M_1_PI_F)), fresh, counts, radiances);
+  intW lit = s.hit;
+  const Vec irradiance = shadowed_irradiance(light, shadow, s.position, s.normal, &lit);
+  add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh, counts, radiances);
 }
 
 __kernel void near_emit(CLPV_NEAR_HITS) {
   HitSurface s;
-  if (hit_surfaces(CLPV_PASS_HITS, &s)) add_radiance(view, s, s.hit, s.emitted, fresh, counts, radiances);
+  if (load_hit_surfaces(CLPV_PASS_HITS, &s)) add_radiance(view, s, s.hit, s.emitted, fresh, counts, radiances);
 }
 
 #else
 
 __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   HitSurface s;
-  if (!hit_surfaces(CLPV_PASS_HITS, &s)) return;
+  if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
-  clpv_radiance_field(CLPV_PASS_RADIANCE, s.position, (float8)(CLPV_GATHER_OFFSET), s.normal, s.hit, &field);
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), s.normal, s.hit, &field);
   const VecLanes n = unpack(s.hit, s.normal);
-  float x[CLPV_ABREAST], y[CLPV_ABREAST], z[CLPV_ABREAST];
-  for (int i = 0; i < CLPV_ABREAST; ++i) {
-    const float4 e = clpv_field_irradiance(&field.at[i], n.x[i], n.y[i], n.z[i]);
+  float x[W], y[W], z[W];
+  for (int i = 0; i < W; ++i) {
+    const float4 e = field_irradiance(&field.at[i], n.x[i], n.y[i], n.z[i]);
     x[i] = e.x, y[i] = e.y, z[i] = e.z;
   }
-  const Vec irradiance = vec(vload8(0, x), vload8(0, y), vload8(0, z));
-  add_radiance(view, s, s.hit, vec_times(vec_product(s.albedo, irradiance), (float8)(M_1_PI_F)), fresh, counts, radiances);
+  const Vec irradiance = vec(load_lanes(x), load_lanes(y), load_lanes(z));
+  add_radiance(view, s, s.hit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh, counts, radiances);
 }
 
 #endif

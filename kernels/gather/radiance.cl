@@ -12,13 +12,13 @@
 
 __kernel void radiance(const ClpvView view, __global const float4* places, __global const float4* directions,
                        __global float4* radiances, CLPV_RADIANCE) {
-  const PixelRow p = this_row(view);
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Surfaces s;
-  points(view, p, places, directions, &s);
+  load_points(view, p, places, directions, &s);
   RadianceField field;
-  clpv_radiance_field(CLPV_PASS_RADIANCE, s.position, (float8)(0.0f), s.normal, (int8)(-1), &field);
-  const VecLanes w = unpack((int8)(-1), s.normal);
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, ZERO, s.normal, (intW)(-1), &field);
+  const VecLanes w = unpack((intW)(-1), s.normal);
   for (uint i = 0; i < p.count; ++i)
-    radiances[s.first + i] = clpv_radiance(&field.at[i], w.x[i], w.y[i], w.z[i]);
+    radiances[s.first + i] = radiance_along(&field.at[i], w.x[i], w.y[i], w.z[i]);
 }

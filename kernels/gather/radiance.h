@@ -22,17 +22,17 @@
 
 // C at eight points.
 typedef struct {
-  Sampled at[CLPV_ABREAST];
+  Sampled at[W];
 } RadianceField;
 
-CLPV_INLINE void clpv_add_field(const PackedCascade cascade, const SamplePoints* points, const float8 weight,
-                                RadianceField* field) {
-  float weights[CLPV_ABREAST];
-  vstore8(weight, 0, weights);
-  for (int i = 0; i < CLPV_ABREAST; ++i) {
+CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* points, const realW weight,
+                           RadianceField* field) {
+  float weights[W];
+  store_lanes(weight, weights);
+  for (int i = 0; i < W; ++i) {
     if (!(weights[i] > 0.0f)) continue;
     Sampled sampled;
-    const float scale = weights[i] * clpv_sample(cascade, points, i, &sampled);
+    const float scale = weights[i] * sample_cells(cascade, points, i, &sampled);
 #define CLPV_DO(j, even, odd) field->at[i].p##j += scale * sampled.p##j;
     CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
@@ -41,35 +41,35 @@ CLPV_INLINE void clpv_add_field(const PackedCascade cascade, const SamplePoints*
 
 // C at the points position + offset * s * lift of each cascade, s its cell; cascades have their shares at `position`. 0
 // outside the mask `wanted`.
-CLPV_INLINE void clpv_radiance_field(CLPV_RADIANCE, const Vec position, const float8 offset, const Vec lift,
-                                     const int8 wanted, RadianceField* field) {
-  float8 remaining = wanted ? (float8)(unit) : (float8)(0.0f);
-  for (int i = 0; i < CLPV_ABREAST; ++i) {
+CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW offset, const Vec lift,
+                                 const intW wanted, RadianceField* field) {
+  realW remaining = wanted ? (realW)(unit) : ZERO;
+  for (int i = 0; i < W; ++i) {
 #define CLPV_DO(j, even, odd) field->at[i].p##j = 0.0f;
     CLPV_EACH_PAIR(CLPV_DO)
 #undef CLPV_DO
   }
   for (uint c = 0; c < cascades; ++c) {
     const ClpvGrid grid = grids[c];
-    const float8 share = clpv_cascade_share(grid, position);
-    const float8 weight = share * remaining * (1.0f / (grid.cell * grid.cell));
+    const realW share = cascade_share(grid, position);
+    const realW weight = share * remaining * (1.0f / (grid.cell * grid.cell));
     remaining *= 1.0f - share;
-    if (none(weight > (float8)(0.0f))) continue;
+    if (no_lane(weight > ZERO)) continue;
     SamplePoints points;
-    clpv_cascade_points(grid, position, offset, lift, &points);
+    find_cascade_points(grid, position, offset, lift, &points);
     const PackedCascade cascade = CLPV_PACKED_CASCADE(c);
-    clpv_add_field(cascade, &points, weight, field);
+    add_field(cascade, &points, weight, field);
   }
 }
 
 // L(p, w) for each channel, and 0; (x, y, z) = w.
-CLPV_INLINE float4 clpv_radiance(const Sampled* field, const float x, const float y, const float z) {
-  return clpv_weigh(clpv_basis(x, y, z), *field);
+CLPV_INLINE float4 radiance_along(const Sampled* field, const float x, const float y, const float z) {
+  return weigh(basis_functions(x, y, z), *field);
 }
 
 // E(p, n) for each channel, and 0; (x, y, z) = n.
-CLPV_INLINE float4 clpv_field_irradiance(const Sampled* field, const float x, const float y, const float z) {
-  return max(clpv_weigh(clpv_cosine_integrals(-x, -y, -z), *field), 0.0f);
+CLPV_INLINE float4 field_irradiance(const Sampled* field, const float x, const float y, const float z) {
+  return max(weigh(cosine_integrals(-x, -y, -z), *field), 0.0f);
 }
 
 #endif

@@ -26,16 +26,16 @@ typedef struct {
 
 static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
   const int3 cell = cell_of(CLPV_KEYS(CLPV_GRID), key);
-#define CLPV_DO(channel) const Coefficients projected##channel = clpv_project_sum(sums.k##channel);
+#define CLPV_DO(channel) const Coefficients projected##channel = project_sum(sums.k##channel);
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO
 #if CLPV_GEOMETRY
   geometry_store(volume, 0, cell.x, cell.y, cell.z,
-                 clpv_merge(projected0, geometry_load(volume, 0, cell.x, cell.y, cell.z)));
+                 merge_blockers(projected0, geometry_load(volume, 0, cell.x, cell.y, cell.z)));
 #else
 #define CLPV_DO(channel)                                                                     \
   light_store(volume, channel, cell.x, cell.y, cell.z,                                       \
-              clpv_add_scaled(light_load(volume, channel, cell.x, cell.y, cell.z), M_1_PI_F, \
+              add_scaled(light_load(volume, channel, cell.x, cell.y, cell.z), M_1_PI_F, \
                               projected##channel));
   CLPV_EACH_CHANNEL(CLPV_DO)
 #undef CLPV_DO

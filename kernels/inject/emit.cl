@@ -17,10 +17,9 @@
 #include "raster/texture.h"
 #include "vec.h"
 
-#define CLPV_EIGHT ((float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f))
 
 // Index of the emitter of a point: the last one whose first point is at or before it.
-static inline uint clpv_emitter_of(__global const ClpvEmitter* emitters, const uint count, const uint point) {
+static inline uint find_emitter(__global const ClpvEmitter* emitters, const uint count, const uint point) {
   uint low = 0, high = count - 1;
   while (low < high) {
     const uint middle = high - (high - low) / 2;
@@ -39,7 +38,7 @@ typedef struct {
   float u, v, size;
 } SubTriangle;
 
-static inline SubTriangle clpv_sub_triangle(const ClpvEmitter emitter, const uint i) {
+static inline SubTriangle find_sub_triangle(const ClpvEmitter emitter, const uint i) {
   uint row = (uint)sqrt((float)i);
   row -= row * row > i ? 1u : 0u;
   row += (row + 1u) * (row + 1u) <= i ? 1u : 0u;
@@ -50,11 +49,6 @@ static inline SubTriangle clpv_sub_triangle(const ClpvEmitter emitter, const uin
   return sub;
 }
 
-static inline float clpv_total(const float8 a) {
-  const float4 four = a.lo + a.hi;
-  return (four.x + four.y) + (four.z + four.w);
-}
-
 #if CLPV_TEXTURED || CLPV_MASKED
 
 #define CLPV_BLEND(w1, w2, corner, field) \
@@ -62,9 +56,9 @@ static inline float clpv_total(const float8 a) {
 
 // Mean emission of a material over a sub-triangle, relative to its emissive factor: from CLPV_EMIT_SAMPLES^2 samples of
 // its texture and, if masked, its alpha.
-CLPV_INLINE void clpv_mean_emission(const SubTriangle sub, __global const ClpvVertex* const corner[3],
-                           __global const ClpvMaterial* material, const uint white, __global const float4* textures,
-                           __global const uint* texels, float mean[3]) {
+CLPV_INLINE void mean_emission(const SubTriangle sub, __global const ClpvVertex* const corner[3],
+                               __global const ClpvMaterial* material, const uint white, __global const float4* textures,
+                               __global const uint* texels, float mean[3]) {
   mean[0] = mean[1] = mean[2] = 1.0f;
 #if CLPV_MASKED
   const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
@@ -75,33 +69,32 @@ CLPV_INLINE void clpv_mean_emission(const SubTriangle sub, __global const ClpvVe
   const float step = sub.size * (1.0f / CLPV_EMIT_SAMPLES), reach = CLPV_EMIT_FOOTPRINT * step;
   const float u1 = corner[1]->uv[0] - corner[0]->uv[0], v1 = corner[1]->uv[1] - corner[0]->uv[1];
   const float u2 = corner[2]->uv[0] - corner[0]->uv[0], v2 = corner[2]->uv[1] - corner[0]->uv[1];
-  const Uv to_second = {(float8)(reach * u1), (float8)(reach * v1)};
-  const Uv to_third = {(float8)(reach * u2), (float8)(reach * v2)};
-  float8 red = 0.0f, green = 0.0f, blue = 0.0f;
+  const Uv to_second = {(realW)(reach * u1), (realW)(reach * v1)};
+  const Uv to_third = {(realW)(reach * u2), (realW)(reach * v2)};
+  realW red = 0.0f, green = 0.0f, blue = 0.0f;
   for (int i = 0; i < CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES; i += 8) {
-    const float8 at = (float)i + CLPV_EIGHT;
-    const float8 row = convert_float8(convert_int8(sqrt(at + 0.5f)));
-    const float8 along = at - row * row;
-    const float8 column = convert_float8(convert_int8(0.5f * along)), inverted = along - 2.0f * column;
-    const float8 middle = (1.0f / 3.0f) * (1.0f - 2.0f * inverted);
-    const float8 w1 = sub.u + step * (row - column + middle), w2 = sub.v + step * (column + inverted + middle);
+    const realW at = (float)i + to_realW(lane_numbers());
+    const realW row = to_realW(to_intW(sqrt(at + 0.5f)));
+    const realW along = at - row * row;
+    const realW column = to_realW(to_intW(0.5f * along)), inverted = along - 2.0f * column;
+    const realW middle = (1.0f / 3.0f) * (1.0f - 2.0f * inverted);
+    const realW w1 = sub.u + step * (row - column + middle), w2 = sub.v + step * (column + inverted + middle);
     const Uv uv = {CLPV_BLEND(w1, w2, corner, uv[0]), CLPV_BLEND(w1, w2, corner, uv[1])};
-    Vec sample = vec((float8)(1.0f), (float8)(1.0f), (float8)(1.0f));
+    Vec sample = vec(ONE, ONE, ONE);
     if (material->emissive_texture != white)
-      clpv_trilinear(textures, texels, (uint8)(material->emissive_texture), uv, to_second, to_third, &sample);
+      sample_trilinear(textures, texels, (uintW)(material->emissive_texture), uv, to_second, to_third, &sample);
 #if CLPV_MASKED
     if (masked) {
-      const float8 alpha =
+      const realW alpha =
           material->base_colour[3] * CLPV_BLEND(w1, w2, corner, colour[3]) *
-          clpv_bilinear_alpha(textures, texels, (uint8)(material->texture * CLPV_TEXTURE_LEVELS), uv);
-      const float8 none = (float8)(0.0f), all = (float8)(1.0f);
-      sample = vec_times(sample, alpha >= (float8)(material->alpha_cutoff) ? all : none);
+          sample_alpha(textures, texels, (uintW)(material->texture * CLPV_TEXTURE_LEVELS), uv);
+      sample = vec_times(sample, alpha >= (realW)(material->alpha_cutoff) ? ONE : ZERO);
     }
 #endif
     red += sample.x, green += sample.y, blue += sample.z;
   }
   const float each = 1.0f / (CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES);
-  mean[0] = each * clpv_total(red), mean[1] = each * clpv_total(green), mean[2] = each * clpv_total(blue);
+  mean[0] = each * sum_lanes(red), mean[1] = each * sum_lanes(green), mean[2] = each * sum_lanes(blue);
 }
 
 #endif
@@ -115,12 +108,12 @@ __kernel void emit(__global const ClpvEmitter* emitters, const uint count, const
   if (i >= capacity) return;
   positions[i] = normals[i] = fluxes[i] = (float4)(0.0f);
   if (i >= points) return;
-  const ClpvEmitter emitter = emitters[clpv_emitter_of(emitters, count, i)];
+  const ClpvEmitter emitter = emitters[find_emitter(emitters, count, i)];
   const ClpvTriangle triangle = triangles[emitter.triangle];
   __global const ClpvVertex* const corner[3] = {vertices + triangle.vertex[0], vertices + triangle.vertex[1],
                                                 vertices + triangle.vertex[2]};
   __global const ClpvMaterial* material = materials + triangle.material;
-  const SubTriangle sub = clpv_sub_triangle(emitter, i - emitter.first);
+  const SubTriangle sub = find_sub_triangle(emitter, i - emitter.first);
   const float w1 = sub.u + sub.size * (1.0f / 3.0f), w2 = sub.v + sub.size * (1.0f / 3.0f);
   float e1[3], e2[3], at[3];
   for (int a = 0; a < 3; ++a) {
@@ -133,7 +126,7 @@ __kernel void emit(__global const ClpvEmitter* emitters, const uint count, const
   if (!(twice > 0.0f)) return;
   float mean[3] = {1.0f, 1.0f, 1.0f};
 #if CLPV_TEXTURED || CLPV_MASKED
-  clpv_mean_emission(sub, corner, material, white, textures, texels, mean);
+  mean_emission(sub, corner, material, white, textures, texels, mean);
 #endif
   const float flux = scale * (M_PI_F * 0.5f) * twice * (sub.size * sub.size), facing = emitter.side / twice;
   positions[i] = (float4)(at[0], at[1], at[2], 1.0f);

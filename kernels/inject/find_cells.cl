@@ -35,9 +35,9 @@ static inline int not_zero(const float x, const float y, const float z) {
 
 static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
                                   const float depth, const float3 normal, const uint stride) {
-  const float3 ray = clpv_ray(view, px, py);
+  const float3 ray = pixel_ray(view, px, py);
   const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
-  return (stride * stride) * clpv_footprint(view, px, py, depth) /
+  return (stride * stride) * pixel_footprint(view, px, py, depth) /
          (fmax(cosine, CLPV_MIN_COSINE) * grid.cell * grid.cell);
 }
 
@@ -65,13 +65,13 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
     const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px, i = row * width + column;
-    const float3 normal = clpv_load_normal(normals, texel);
+    const float3 normal = load_normal(normals, texel);
 #if CLPV_POINTS
     const float depth = 1.0f;
     const float3 position = (float3)(positions[4 * texel], positions[4 * texel + 1], positions[4 * texel + 2]);
 #else
     const float depth = depths[texel];
-    const float3 position = clpv_position(view, (float)px, (float)py, depth);
+    const float3 position = surface_position(view, (float)px, (float)py, depth);
 #endif
     float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
           z = (position.z - grid.origin[2]) * per_metre;
@@ -80,7 +80,7 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
     shares[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
 #else
     x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
-    const float3 flux = clpv_load_colour(colours, texel, colour_scale);
+    const float3 flux = load_colour(colours, texel, colour_scale);
     counts = counts & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
 #endif
     x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;

@@ -7,7 +7,7 @@
 // docs/method.md, 'Injection' and 'Blockers'; Kaplanyan and Dachsbacher 2010. P [W] is the flux of a texel's virtual
 // point light, c(n) the clamped cosine about its normal, B the blocked share (find_cells.cl) and b(n) the function of
 // host/basis/blocking.hpp. c(n) = A^-1 alpha(n) is linear in alpha: a cell sums weighted alphas, and A^-1 is applied
-// once per cell. Sources of blockers see the same walls, so clpv_merge takes a maximum.
+// once per cell. Sources of blockers see the same walls, so merge_blockers takes a maximum.
 //
 //   find_cells.cl    cell of each texel
 //   sort_by_cell.cl  texels sorted by cell
@@ -72,19 +72,19 @@ static inline uint taken_index(const uint width, const uint i, const uint stride
 }
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
-  const float3 n = clpv_load_normal(normals, taken_index(width, texel, stride));
-  sums.k0 = add_lobe(sums.k0, shares[texel], clpv_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
+  const float3 n = load_normal(normals, taken_index(width, texel, stride));
+  sums.k0 = add_lobe(sums.k0, shares[texel], surfel_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
 
 #else
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
-  const float3 n = clpv_load_normal(normals, texel);
-  const Coefficients lobe = clpv_lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE);
-  float3 flux = clpv_load_colour(colours, texel, colour_scale);
+  const float3 n = load_normal(normals, texel);
+  const Coefficients lobe = lobe_integrals(n.x, n.y, n.z CLPV_PASS_TABLE);
+  float3 flux = load_colour(colours, texel, colour_scale);
 #if CLPV_UNIT_FLUX
-  flux *= M_PI_F / clpv_flux(lobe);
+  flux *= M_PI_F / lobe_flux(lobe);
 #endif
   sums.k0 = add_lobe(sums.k0, flux.x, lobe);
   sums.k1 = add_lobe(sums.k1, flux.y, lobe);

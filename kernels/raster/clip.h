@@ -13,11 +13,11 @@
 #define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may add a few more
 
 // Point of the first lane.
-static inline float4 clpv_polygon_corner(const ViewPoint p) { return (float4)(p.x.s0, p.y.s0, p.w.s0, p.z.s0); }
+static inline float4 polygon_corner(const ViewPoint p) { return (float4)(p.x.s0, p.y.s0, p.w.s0, p.z.s0); }
 
 // Signed distance of a point from a clipping plane; negative outside.
-static inline float clpv_clip_distance(const ClpvView view, const float4 p, const int plane) {
-  const float2 guard = clpv_guard(view);
+static inline float clip_distance(const ClpvView view, const float4 p, const int plane) {
+  const float2 guard = guard_band(view);
   if (plane == 0) return guard.x * p.z - p.x;
   if (plane == 1) return guard.x * p.z + p.x;
   if (plane == 2) return guard.y * p.z - p.y;
@@ -26,12 +26,12 @@ static inline float clpv_clip_distance(const ClpvView view, const float4 p, cons
 }
 
 // Clips the convex polygon `from` to the positive side of a plane. Returns the number of corners.
-static inline int clpv_clip_plane(const ClpvView view, const float4* from, const int count, const int plane,
-                                  float4* to) {
+static inline int clip_by_plane(const ClpvView view, const float4* from, const int count, const int plane,
+                                float4* to) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const float4 a = from[i], b = from[i + 1 == count ? 0 : i + 1];
-    const float da = clpv_clip_distance(view, a, plane), db = clpv_clip_distance(view, b, plane);
+    const float da = clip_distance(view, a, plane), db = clip_distance(view, b, plane);
     if (da >= 0.0f && kept < CLPV_CLIP_CORNERS) to[kept++] = a;
     if ((da >= 0.0f) != (db >= 0.0f) && kept < CLPV_CLIP_CORNERS) {
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
@@ -46,11 +46,11 @@ static inline int clpv_clip_plane(const ClpvView view, const float4* from, const
 
 // Clips the triangle in polygon[0..2]. Returns the number of corners in `polygon`; 0 if nothing is left. The near plane
 // comes first, since the guard planes intersect in the eye.
-static inline int clpv_clip(const ClpvView view, float4* polygon) {
+static inline int clip_polygon(const ClpvView view, float4* polygon) {
   float4 other[CLPV_CLIP_CORNERS];
   int count = 3;
   for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane) {
-    count = clpv_clip_plane(view, polygon, count, plane, other);
+    count = clip_by_plane(view, polygon, count, plane, other);
     for (int i = 0; i < count; ++i) polygon[i] = other[i];
   }
   return count < 3 ? 0 : count;

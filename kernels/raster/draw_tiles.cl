@@ -36,51 +36,51 @@ typedef struct {
   Face face;
   Weights weights;
   Uv a, b, c;  // texture coordinates of the corners
-  float8 alpha_a, alpha_b, alpha_c;
+  realW alpha_a, alpha_b, alpha_c;
   Level level;
   float base_alpha, cutoff;
 } Mask;
 
-CLPV_INLINE void mask_corner(__global const ClpvVertex* vertex, Vec* position, Uv* uv, float8* alpha) {
+CLPV_INLINE void load_mask_corner(__global const ClpvVertex* vertex, Vec* position, Uv* uv, realW* alpha) {
   *position = vec_load(vertex->position);
-  uv->u = (float8)(vertex->uv[0]);
-  uv->v = (float8)(vertex->uv[1]);
-  *alpha = (float8)(vertex->colour[3]);
+  uv->u = (realW)(vertex->uv[0]);
+  uv->v = (realW)(vertex->uv[1]);
+  *alpha = (realW)(vertex->colour[3]);
 }
 
-CLPV_INLINE void mask_of(const ClpvView view, const uint triangle, const Scene scene, Mask* mask) {
+CLPV_INLINE void load_mask(const ClpvView view, const uint triangle, const Scene scene, Mask* mask) {
   const ClpvTriangle t = scene.triangles[triangle];
   __global const ClpvMaterial* material = scene.materials + t.material;
   Vec a, b, c;
-  mask_corner(scene.vertices + t.vertex[0], &a, &mask->a, &mask->alpha_a);
-  mask_corner(scene.vertices + t.vertex[1], &b, &mask->b, &mask->alpha_b);
-  mask_corner(scene.vertices + t.vertex[2], &c, &mask->c, &mask->alpha_c);
-  mask->face = clpv_face(view, a, b, c);
-  mask->weights = clpv_weights(mask->face);
-  clpv_level_for_all(scene.textures, material->texture * CLPV_TEXTURE_LEVELS, &mask->level);
+  load_mask_corner(scene.vertices + t.vertex[0], &a, &mask->a, &mask->alpha_a);
+  load_mask_corner(scene.vertices + t.vertex[1], &b, &mask->b, &mask->alpha_b);
+  load_mask_corner(scene.vertices + t.vertex[2], &c, &mask->c, &mask->alpha_c);
+  mask->face = make_face(view, a, b, c);
+  mask->weights = find_weights(mask->face);
+  load_level_for_all(scene.textures, material->texture * CLPV_TEXTURE_LEVELS, &mask->level);
   mask->base_alpha = material->base_colour[3];
   mask->cutoff = material->alpha_cutoff;
 }
 
-static inline float8 blended(const Vec w, const float8 a, const float8 b, const float8 c) {
+static inline realW blended(const Vec w, const realW a, const realW b, const realW c) {
   return w.x * a + w.y * b + w.z * c;
 }
 
 // Mask of the pixels from (px, py) on whose alpha, at `depth` [m], reaches the cutoff: no hole.
-CLPV_INLINE int8 solid(const ClpvView view, const Mask* mask, const float px, const float py, const float8 depth,
+CLPV_INLINE intW solid(const ClpvView view, const Mask* mask, const float px, const float py, const realW depth,
                        __global const uint* texels) {
-  const float8 x = px + (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
-  const Vec w = clpv_weights_at(view, mask->face, mask->weights, x, (float8)(py), depth);
+  const realW x = px + to_realW(lane_numbers());
+  const Vec w = weights_at(view, mask->face, mask->weights, x, (realW)(py), depth);
   const Uv uv = {blended(w, mask->a.u, mask->b.u, mask->c.u), blended(w, mask->a.v, mask->b.v, mask->c.v)};
-  const float8 alpha = mask->base_alpha * blended(w, mask->alpha_a, mask->alpha_b, mask->alpha_c) *
-                       clpv_level_alpha(mask->level, texels, uv);
+  const realW alpha = mask->base_alpha * blended(w, mask->alpha_a, mask->alpha_b, mask->alpha_c) *
+                       sample_level_alpha(mask->level, texels, uv);
   return alpha >= mask->cutoff;
 }
 
 // Edge functions of a triangle in a tile, divided by 256: a centre is inside where none is negative. The sign is exact,
 // since steps are multiples of 256. Values far from 0 keep their sign throughout the tile and are clamped to 32 bits.
 typedef struct {
-  int8 e0, e1, e2;          // at eight pixels of a row
+  intW e0, e1, e2;          // at eight pixels of a row
   int step0, step1, step2;  // change to the row below
 } Edges;
 
@@ -88,7 +88,7 @@ typedef struct {
 
 // Edge functions at the row of eight pixels from (px, py) on.
 CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, const int py, Edges* edges) {
-  const int8 lane = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const intW lane = lane_numbers();
   const int4 x = vload4(0, r->x), y = vload4(0, r->y);
   const int4 dx = x.yzwx - x, dy = y.yzwx - y;
   const int4 top_left = (dy < 0) | ((dy == 0) & (dx > 0));
@@ -103,17 +103,17 @@ CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, co
 
 // Mask of the eight pixels from (px, py) on that a giant triangle covers. Not inlined: giants are few, and their code
 // would take registers from all others.
-__attribute__((noinline)) int8 covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
-  const long8 lane = (long8)(0, 1, 2, 3, 4, 5, 6, 7);
+__attribute__((noinline)) intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
+  const longW lane = to_longW(lane_numbers());
   const Edge e0 = edge_at(r, 0, px, py), e1 = edge_at(r, 1, px, py), e2 = edge_at(r, 2, px, py);
-  const long8 v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
-  return convert_int8((v0 | v1 | v2) >= 0L);
+  const longW v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
+  return to_intW((v0 | v1 | v2) >= 0L);
 }
 
 // A tile of the view and its buffers.
 typedef struct {
-  __global float8* keys;
-  __global uint8* seen;
+  __global realW* keys;
+  __global uintW* seen;
   int x, y;  // first pixel
   float far_key;
 } Tile;
@@ -121,32 +121,32 @@ typedef struct {
 // Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: null for an opaque material.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
                       const Mask* mask, __global const uint* texels) {
-  const float8 column = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f);
+  const realW column = to_realW(lane_numbers());
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
   const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
   const int top = max(first_y - tile.y, 0), bottom = min((int)(r->last >> 16) - tile.y, CLPV_TILE - 1);
   Edges edges;
   edges_at(r, tile.x, tile.y + top, &edges);
-  const float8 key_left = r->key + r->key_x * (column + (float)(tile.x - first_x));
-  const float8 nearest = (float8)(r->nearest), farthest = (float8)(r->farthest);
+  const realW key_left = r->key + r->key_x * (column + (float)(tile.x - first_x));
+  const realW nearest = (realW)(r->nearest), farthest = (realW)(r->farthest);
   const float key_y = r->key_y;
   for (int row = top; row <= bottom; ++row) {
-    int8 closer = (edges.e0 | edges.e1 | edges.e2) >= 0;
+    intW closer = (edges.e0 | edges.e1 | edges.e2) >= 0;
     edges.e0 += edges.step0, edges.e1 += edges.step1, edges.e2 += edges.step2;
     if (kind & CLPV_TRIANGLE_GIANT) closer = covered_by_giant(r, tile.x, tile.y + row);
-    float8 key = key_left + key_y * (float)(tile.y + row - first_y);
+    realW key = key_left + key_y * (float)(tile.y + row - first_y);
     key = key > nearest ? key : nearest;
     key = key < farthest ? key : farthest;
-    const float8 old = tile.keys[row];
-    const uint8 old_seen = tile.seen[row];
+    const realW old = tile.keys[row];
+    const uintW old_seen = tile.seen[row];
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
     if (mask) {
-      if (none(closer)) continue;
-      const float8 depth = hit_depth(view, key);
+      if (no_lane(closer)) continue;
+      const realW depth = hit_depth(view, key);
       closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
     }
     tile.keys[row] = select(old, key, closer);
-    tile.seen[row] = select(old_seen, (uint8)(triangle), closer);
+    tile.seen[row] = select(old_seen, (uintW)(triangle), closer);
   }
 }
 
@@ -155,17 +155,15 @@ __attribute__((noinline)) void draw_masked(const ClpvView view, const Tile tile,
                                            __global const ClpvRasterTriangle* r, const uint kind,
                                            const Scene scene) {
   Mask mask;
-  mask_of(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
+  load_mask(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
   draw(view, tile, r, kind, &mask, scene.texels);
 }
 
 // Largest key of a tile's pixels.
-static inline float farthest_of(__global const float8* keys) {
-  float8 largest = keys[0];
+static inline float farthest_of(__global const realW* keys) {
+  realW largest = keys[0];
   for (int row = 1; row < CLPV_TILE; ++row) largest = keys[row] > largest ? keys[row] : largest;
-  const float4 four = largest.lo > largest.hi ? largest.lo : largest.hi;
-  const float2 two = four.lo > four.hi ? four.lo : four.hi;
-  return two.x > two.y ? two.x : two.y;
+  return -min_lane(-largest);
 }
 
 // Triangles of a tile are scattered over the list: prefetch the one that is drawn this many later.
@@ -175,7 +173,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
                          __global const uint* starts, __global const uint2* binned,
                          __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                          __global const ClpvMaterial* materials, __global const float4* textures,
-                         __global const uint* texels, __global float8* keys, __global uint8* seen) {
+                         __global const uint* texels, __global realW* keys, __global uintW* seen) {
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0), y = get_global_id(1);
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
   const uint at = y * tiles_x + x;
@@ -184,8 +182,8 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
                      CLPV_PARALLEL(view) ? view.far_depth : -1.0f / view.far_depth};
   if (fresh) {
     for (int row = 0; row < CLPV_TILE; ++row) {
-      tile.keys[row] = (float8)(INFINITY);
-      tile.seen[row] = (uint8)(UINT_MAX);
+      tile.keys[row] = (realW)(INFINITY);
+      tile.seen[row] = (uintW)(UINT_MAX);
     }
   }
   const uint end = starts[(at + 1) * CLPV_SLICES];
@@ -208,8 +206,8 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
 }
 
 // Only depths: a shadow map. One work-item a row of a tile.
-__kernel void resolve_depth(const ClpvView view, __global const float8* keys, __global float* depths) {
-  const PixelRow p = this_row(view);
+__kernel void resolve_depth(const ClpvView view, __global const realW* keys, __global float* depths) {
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   store_depth(view, p, keys[p.row], depths);
 }

@@ -9,7 +9,7 @@
 
 // Eight ClpvRasterTriangles, word by word.
 typedef struct {
-  int word[CLPV_RASTER_WORDS][CLPV_ABREAST];
+  int word[CLPV_RASTER_WORDS][W];
 } RasterWords;
 
 // Capacities of the lists of triangles and of entries.
@@ -91,14 +91,14 @@ static inline uint take_entries(volatile __global uint* counts, const uint wante
 }
 
 // Appends the triangles of the lanes in `mask`, with their entries. Beyond the capacity it only counts them.
-CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const int8 mask,
+CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
                             volatile __global uint* counts, const Capacity capacity,
                             __global ClpvRasterTriangle* list, __global uint* entries,
                             volatile __global uint* slice_counts) {
-  int listed[CLPV_ABREAST];
-  vstore8(mask, 0, listed);
+  int listed[W];
+  store_lanes(mask, listed);
   uint triangles = 0, room = 0;
-  for (int lane = 0; lane < CLPV_ABREAST; ++lane) {
+  for (int lane = 0; lane < W; ++lane) {
     if (!listed[lane]) continue;
     const TileRange tiles = tiles_of(words, lane);
     ++triangles;
@@ -107,7 +107,7 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
   uint index = atomic_add(counts + CLPV_LISTED, triangles), at = take_entries(counts, room);
   const uint end = at + room;
   if (index + triangles > capacity.list || end > capacity.entries || end < at) return;
-  for (int lane = 0; lane < CLPV_ABREAST; ++lane) {
+  for (int lane = 0; lane < W; ++lane) {
     if (!listed[lane]) continue;
     __global int* to = (__global int*)(list + index);
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];

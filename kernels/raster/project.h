@@ -13,8 +13,8 @@
 
 // Points in the coordinates of a view.
 typedef struct {
-  float8 x, y, z;  // along right, up and forward [m]
-  float8 w;        // divisor of x and y: the depth z in perspective, 1 in orthographic views
+  realW x, y, z;  // along right, up and forward [m]
+  realW w;        // divisor of x and y: the depth z in perspective, 1 in orthographic views
 } ViewPoint;
 
 static inline ViewPoint view_point(const ClpvView view, const Vec position) {
@@ -23,34 +23,34 @@ static inline ViewPoint view_point(const ClpvView view, const Vec position) {
   point.x = vec_dot(p, vec_of(view.right));
   point.y = vec_dot(p, vec_of(view.up));
   point.z = vec_dot(p, vec_of(view.forward));
-  point.w = CLPV_PARALLEL(view) ? (float8)(1.0f) : point.z;
+  point.w = CLPV_PARALLEL(view) ? ONE : point.z;
   return point;
 }
 
-// Extent of the guard band on the screen, in units of clpv_screen().
-static inline float2 clpv_guard(const ClpvView view) {
+// Extent of the guard band on the screen, in units of screen_point().
+static inline float2 guard_band(const ClpvView view) {
   return (float2)(view.half_width / (float)view.width, view.half_height / (float)view.height) *
          (2.0f * CLPV_GUARD_PIXELS);
 }
 
 // Outcodes of the points: CLPV_LEFT and so on.
-static inline int8 where_is(const ClpvView view, const ViewPoint p) {
-  const float2 guard = clpv_guard(view);
-  const float8 width = view.half_width * p.w, height = view.half_height * p.w;
-  int8 where = ((p.x < -width) & CLPV_LEFT) | ((p.x > width) & CLPV_RIGHT) | ((p.y > height) & CLPV_ABOVE) |
+static inline intW where_is(const ClpvView view, const ViewPoint p) {
+  const float2 guard = guard_band(view);
+  const realW width = view.half_width * p.w, height = view.half_height * p.w;
+  intW where = ((p.x < -width) & CLPV_LEFT) | ((p.x > width) & CLPV_RIGHT) | ((p.y > height) & CLPV_ABOVE) |
                ((p.y < -height) & CLPV_BELOW) | ((p.z > view.far_depth) & CLPV_BEYOND);
   if (!CLPV_PARALLEL(view)) where |= (p.z < view.near_depth) & CLPV_BEHIND;
-  const int8 in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
+  const intW in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
   return where | (~in_guard & CLPV_OUT_OF_GUARD);
 }
 
 // One corner of eight triangles on the screen.
 typedef struct {
-  int8 x, y;   // [1/CLPV_SUBPIXELS pixel] from the left and top border
-  float8 key;  // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
+  intW x, y;   // [1/CLPV_SUBPIXELS pixel] from the left and top border
+  realW key;  // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
 } ScreenCorner;
 
-static inline int8 subpixel(const float8 screen, const float half_extent, const float pixels) {
+static inline intW subpixel(const realW screen, const float half_extent, const float pixels) {
   return convert_int8_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
 }
 

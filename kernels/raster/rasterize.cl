@@ -26,55 +26,55 @@
 typedef struct {
   ScreenCorner a, b, c;
   Face face;
-  uint8 triangle;  // index in the scene
-  uint8 flags;     // of the material
+  uintW triangle;  // index in the scene
+  uintW flags;     // of the material
 } ScreenTriangles;
 
 // Box of pixels whose centres lie between the corners of a triangle.
 typedef struct {
-  int8 left, right, top, bottom;
-  int8 small, giant;  // masks: no side above CLPV_SMALL_PIXELS; a side above CLPV_GIANT_PIXELS
+  intW left, right, top, bottom;
+  intW small, giant;  // masks: no side above CLPV_SMALL_PIXELS; a side above CLPV_GIANT_PIXELS
 } Box;
 
-static inline int8 smallest(const int8 a, const int8 b, const int8 c) { return min(a, min(b, c)); }
-static inline int8 largest(const int8 a, const int8 b, const int8 c) { return max(a, max(b, c)); }
+static inline intW smallest(const intW a, const intW b, const intW c) { return min(a, min(b, c)); }
+static inline intW largest(const intW a, const intW b, const intW c) { return max(a, max(b, c)); }
 
 // First pixel whose centre is at or after a sub-pixel coordinate, and last pixel whose centre is at or before it.
-static inline int8 first_centre(const int8 at) { return (at + CLPV_SUBPIXELS / 2 - 1) >> 8; }
-static inline int8 last_centre(const int8 at) { return (at - CLPV_SUBPIXELS / 2) >> 8; }
+static inline intW first_centre(const intW at) { return (at + CLPV_SUBPIXELS / 2 - 1) >> 8; }
+static inline intW last_centre(const intW at) { return (at - CLPV_SUBPIXELS / 2) >> 8; }
 
 static inline Box box_of(const ClpvView view, const ScreenTriangles t) {
-  const int8 min_x = smallest(t.a.x, t.b.x, t.c.x), min_y = smallest(t.a.y, t.b.y, t.c.y);
-  const int8 max_x = largest(t.a.x, t.b.x, t.c.x), max_y = largest(t.a.y, t.b.y, t.c.y);
+  const intW min_x = smallest(t.a.x, t.b.x, t.c.x), min_y = smallest(t.a.y, t.b.y, t.c.y);
+  const intW max_x = largest(t.a.x, t.b.x, t.c.x), max_y = largest(t.a.y, t.b.y, t.c.y);
   Box box;
-  box.left = max(first_centre(min_x), (int8)(0));
-  box.right = min(last_centre(max_x), (int8)((int)view.width - 1));
-  box.top = max(first_centre(min_y), (int8)(0));
-  box.bottom = min(last_centre(max_y), (int8)((int)view.height - 1));
-  const int8 longest = max(max_x - min_x, max_y - min_y);
+  box.left = max(first_centre(min_x), (intW)(0));
+  box.right = min(last_centre(max_x), (intW)((int)view.width - 1));
+  box.top = max(first_centre(min_y), (intW)(0));
+  box.bottom = min(last_centre(max_y), (intW)((int)view.height - 1));
+  const intW longest = max(max_x - min_x, max_y - min_y);
   box.small = longest <= CLPV_SMALL_PIXELS * CLPV_SUBPIXELS;
   box.giant = longest > CLPV_GIANT_PIXELS * CLPV_SUBPIXELS;
   return box;
 }
 
 // Sign of the area on the screen; positive is clockwise, with y downwards.
-static inline int8 winding(const ScreenTriangles t) {
-  const long8 area = convert_long8(t.b.x - t.a.x) * convert_long8(t.c.y - t.a.y) -
-                     convert_long8(t.c.x - t.a.x) * convert_long8(t.b.y - t.a.y);
-  return (convert_int8(area > 0L) & 1) | convert_int8(area < 0L);
+static inline intW winding(const ScreenTriangles t) {
+  const longW area = to_longW(t.b.x - t.a.x) * to_longW(t.c.y - t.a.y) -
+                     to_longW(t.c.x - t.a.x) * to_longW(t.b.y - t.a.y);
+  return (to_intW(area > 0L) & 1) | to_intW(area < 0L);
 }
 
 // Edge function at the upper left pixel of a box of at most 2 x 2 pixels, and its change across the box. 0 in lanes
 // outside `tiny`, whose coordinates may not fit 32 bits.
 typedef struct {
-  int8 value, step_x, step_y;
+  intW value, step_x, step_y;
 } TinyEdge;
 
-static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, const Box box, const int8 tiny) {
-  const int8 dx = (q.x - p.x) & tiny, dy = (q.y - p.y) & tiny;
-  const int8 to_x = (box.left * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.x) & tiny;
-  const int8 to_y = (box.top * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.y) & tiny;
-  const int8 top_left = (dy < 0) | ((dy == 0) & (dx > 0));
+static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, const Box box, const intW tiny) {
+  const intW dx = (q.x - p.x) & tiny, dy = (q.y - p.y) & tiny;
+  const intW to_x = (box.left * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.x) & tiny;
+  const intW to_y = (box.top * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.y) & tiny;
+  const intW top_left = (dy < 0) | ((dy == 0) & (dx > 0));
   TinyEdge edge;
   edge.value = dx * to_y - dy * to_x - 1 - top_left;
   edge.step_x = -dy * ((box.right - box.left) * CLPV_SUBPIXELS & tiny);
@@ -84,12 +84,12 @@ static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, con
 
 // Mask of the triangles with a box of at most 2 x 2 pixels that cover none of its centres. Exact; about 33 % of them
 // miss.
-static inline int8 misses(const ScreenTriangles t, const Box box) {
-  const int8 tiny = box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1);
+static inline intW misses(const ScreenTriangles t, const Box box) {
+  const intW tiny = box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1);
   const TinyEdge e0 = tiny_edge(t.a, t.b, box, tiny), e1 = tiny_edge(t.b, t.c, box, tiny),
                  e2 = tiny_edge(t.c, t.a, box, tiny);
-  const int8 right0 = e0.value + e0.step_x, right1 = e1.value + e1.step_x, right2 = e2.value + e2.step_x;
-  const int8 out = (e0.value | e1.value | e2.value) & (right0 | right1 | right2) &
+  const intW right0 = e0.value + e0.step_x, right1 = e1.value + e1.step_x, right2 = e2.value + e2.step_x;
+  const intW out = (e0.value | e1.value | e2.value) & (right0 | right1 | right2) &
                    (e0.value + e0.step_y | e1.value + e1.step_y | e2.value + e2.step_y) &
                    (right0 + e0.step_y | right1 + e1.step_y | right2 + e2.step_y);
   return tiny & (out < 0);
@@ -97,64 +97,63 @@ static inline int8 misses(const ScreenTriangles t, const Box box) {
 
 // Converts to the words of ClpvRasterTriangle.
 CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const Box box, RasterWords* words) {
-  const float8 nearest = fmin(t.a.key, fmin(t.b.key, t.c.key)), farthest = fmax(t.a.key, fmax(t.b.key, t.c.key));
-  const Vec plane = clpv_key_plane(view, t.face, convert_float8(box.left), convert_float8(box.top));
-  const int8 edge_on = ~(isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z));
-  const float8 none = (float8)(0.0f);
-  const uint8 kinds = (as_uint8(box.giant) & CLPV_TRIANGLE_GIANT) |
-                      ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uint8)(CLPV_TRIANGLE_MASKED) : (uint8)(0u));
-  vstore8(t.a.x, 0, words->word[0]);
-  vstore8(t.b.x, 0, words->word[1]);
-  vstore8(t.c.x, 0, words->word[2]);
-  vstore8(t.a.x, 0, words->word[3]);
-  vstore8(t.a.y, 0, words->word[4]);
-  vstore8(t.b.y, 0, words->word[5]);
-  vstore8(t.c.y, 0, words->word[6]);
-  vstore8(t.a.y, 0, words->word[7]);
-  vstore8(as_int8(edge_on ? nearest : plane.x), 0, words->word[8]);
-  vstore8(as_int8(edge_on ? none : plane.y), 0, words->word[9]);
-  vstore8(as_int8(edge_on ? none : plane.z), 0, words->word[10]);
-  vstore8(as_int8(nearest), 0, words->word[11]);
-  vstore8(as_int8(farthest), 0, words->word[12]);
-  vstore8(box.left + (box.top << 16), 0, words->word[13]);
-  vstore8(box.right + (box.bottom << 16), 0, words->word[14]);
-  vstore8(as_int8(t.triangle | kinds), 0, words->word[15]);
+  const realW nearest = fmin(t.a.key, fmin(t.b.key, t.c.key)), farthest = fmax(t.a.key, fmax(t.b.key, t.c.key));
+  const Vec plane = find_key_plane(view, t.face, to_realW(box.left), to_realW(box.top));
+  const intW edge_on = ~(isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z));
+  const uintW kinds = (as_uintW(box.giant) & CLPV_TRIANGLE_GIANT) |
+                      ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uintW)(CLPV_TRIANGLE_MASKED) : (uintW)(0u));
+  store_lanes(t.a.x, words->word[0]);
+  store_lanes(t.b.x, words->word[1]);
+  store_lanes(t.c.x, words->word[2]);
+  store_lanes(t.a.x, words->word[3]);
+  store_lanes(t.a.y, words->word[4]);
+  store_lanes(t.b.y, words->word[5]);
+  store_lanes(t.c.y, words->word[6]);
+  store_lanes(t.a.y, words->word[7]);
+  store_lanes(as_intW(edge_on ? nearest : plane.x), words->word[8]);
+  store_lanes(as_intW(edge_on ? ZERO : plane.y), words->word[9]);
+  store_lanes(as_intW(edge_on ? ZERO : plane.z), words->word[10]);
+  store_lanes(as_intW(nearest), words->word[11]);
+  store_lanes(as_intW(farthest), words->word[12]);
+  store_lanes(box.left + (box.top << 16), words->word[13]);
+  store_lanes(box.right + (box.bottom << 16), words->word[14]);
+  store_lanes(as_intW(t.triangle | kinds), words->word[15]);
 }
 
 // Appends the triangles of the lanes in `mask`, except those that cover no pixel's centre and culled back faces.
-CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, int8 mask, const uint cull, volatile __global uint* counts,
+CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const uint cull, volatile __global uint* counts,
                         const Capacity capacity, __global ClpvRasterTriangle* list, __global uint* entries,
                         volatile __global uint* slice_counts) {
-  const int8 wound = winding(t);
-  const int8 one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;
+  const intW wound = winding(t);
+  const intW one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;
   mask &= (wound < 0) | ((wound > 0) & ((cull ? 0 : -1) | ~one_sided));
   const Box box = box_of(view, t);
   mask &= (box.left <= box.right) & (box.top <= box.bottom);
-  if (none(mask)) return;
+  if (no_lane(mask)) return;
   const ScreenCorner b = t.b, c = t.c;
   t.b.x = wound < 0 ? c.x : b.x, t.b.y = wound < 0 ? c.y : b.y;
   t.c.x = wound < 0 ? b.x : c.x, t.c.y = wound < 0 ? b.y : c.y;
   mask &= ~misses(t, box);
-  if (none(mask)) return;
+  if (no_lane(mask)) return;
   RasterWords words;
   write_words(view, t, box, &words);
   list_lanes(view, &words, mask, counts, capacity, list, entries, slice_counts);
 }
 
-CLPV_INLINE void position_of(__global const float4* vertices, const uint8 vertex, Vec* position) {
+CLPV_INLINE void load_position(__global const float4* vertices, const uintW vertex, Vec* position) {
   Rows rows;
   gather_rows(vertices, 3u * vertex, &rows);
   *position = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
 }
 
 // Defers the triangles of some lanes to set_up_clipped.
-static inline void defer(const int8 lanes, const uint8 triangle, volatile __global uint* counts,
-                             __global uint* to_clip) {
-  int deferred[CLPV_ABREAST];
-  uint index[CLPV_ABREAST];
-  vstore8(lanes, 0, deferred);
-  vstore8(triangle, 0, index);
-  for (int lane = 0; lane < CLPV_ABREAST; ++lane) {
+static inline void defer(const intW lanes, const uintW triangle, volatile __global uint* counts,
+                         __global uint* to_clip) {
+  int deferred[W];
+  uint index[W];
+  store_lanes(lanes, deferred);
+  store_lanes(triangle, index);
+  for (int lane = 0; lane < W; ++lane) {
     if (deferred[lane]) to_clip[atomic_inc(counts + CLPV_TO_CLIP)] = index[lane];
   }
 }
@@ -165,29 +164,29 @@ __kernel void set_up(const ClpvView view, __global const uint* clusters, const u
                      volatile __global uint* counts, const uint most_listed,
                      __global ClpvRasterTriangle* list, const uint most_entered, __global uint* entries,
                      volatile __global uint* slice_counts, __global uint* to_clip) {
-  const uint item = get_global_id(0), cluster = item / (CLPV_CLUSTER / CLPV_ABREAST);
+  const uint item = get_global_id(0), cluster = item / (CLPV_CLUSTER / W);
   if (cluster >= count) return;
-  const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
-  const uint8 number =
-      clusters[first + cluster] * CLPV_CLUSTER + item % (CLPV_CLUSTER / CLPV_ABREAST) * CLPV_ABREAST + lane;
-  const uint8 triangle = min(number, (uint8)(last - 1));
+  const uintW lane = as_uintW(lane_numbers());
+  const uintW number =
+      clusters[first + cluster] * CLPV_CLUSTER + item % (CLPV_CLUSTER / W) * W + lane;
+  const uintW triangle = min(number, (uintW)(last - 1));
   Rows rows;
   gather_rows(triangles, triangle, &rows);
   Vec a, b, c;
-  position_of(vertices, as_uint8(CLPV_COLUMN(rows, x)), &a);
-  position_of(vertices, as_uint8(CLPV_COLUMN(rows, y)), &b);
-  position_of(vertices, as_uint8(CLPV_COLUMN(rows, z)), &c);
+  load_position(vertices, as_uintW(CLPV_COLUMN(rows, x)), &a);
+  load_position(vertices, as_uintW(CLPV_COLUMN(rows, y)), &b);
+  load_position(vertices, as_uintW(CLPV_COLUMN(rows, z)), &c);
   const ViewPoint p = view_point(view, a), q = view_point(view, b), r = view_point(view, c);
-  const int8 p_is = where_is(view, p), q_is = where_is(view, q), r_is = where_is(view, r);
-  const int8 visible = (number < last) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
-  if (none(visible)) return;
-  const int8 clipped = visible & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);
-  if (!none(clipped)) defer(clipped, triangle, counts, to_clip);
-  const uint8 material = as_uint8(CLPV_COLUMN(rows, w));
+  const intW p_is = where_is(view, p), q_is = where_is(view, q), r_is = where_is(view, r);
+  const intW visible = (number < last) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
+  if (no_lane(visible)) return;
+  const intW clipped = visible & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);
+  if (!no_lane(clipped)) defer(clipped, triangle, counts, to_clip);
+  const uintW material = as_uintW(CLPV_COLUMN(rows, w));
 #define CLPV_FLAGS(lane) materials[material.s##lane].flags
-  const uint8 flags = (uint8)(CLPV_FLAGS(0), CLPV_FLAGS(1), CLPV_FLAGS(2), CLPV_FLAGS(3), CLPV_FLAGS(4), CLPV_FLAGS(5),
+  const uintW flags = (uintW)(CLPV_FLAGS(0), CLPV_FLAGS(1), CLPV_FLAGS(2), CLPV_FLAGS(3), CLPV_FLAGS(4), CLPV_FLAGS(5),
                               CLPV_FLAGS(6), CLPV_FLAGS(7));
-  const ScreenTriangles t = {project(view, p), project(view, q), project(view, r), clpv_face(view, a, b, c),
+  const ScreenTriangles t = {project(view, p), project(view, q), project(view, r), make_face(view, a, b, c),
                              triangle,         flags};
   const Capacity capacity = {most_listed, most_entered};
   append(view, t, visible & ~clipped, cull, counts, capacity, list, entries, slice_counts);
@@ -195,14 +194,14 @@ __kernel void set_up(const ClpvView view, __global const uint* clusters, const u
 
 // Corners of a clipped triangle, padded so that eight lanes can be loaded from any of them.
 typedef struct {
-  int x[CLPV_CLIP_CORNERS + CLPV_ABREAST], y[CLPV_CLIP_CORNERS + CLPV_ABREAST];
-  float key[CLPV_CLIP_CORNERS + CLPV_ABREAST];
+  int x[CLPV_CLIP_CORNERS + W], y[CLPV_CLIP_CORNERS + W];
+  float key[CLPV_CLIP_CORNERS + W];
 } Outline;
 
 static inline void project_polygon(const ClpvView view, const float4* polygon, const int corners, Outline* outline) {
-  for (int k = 0; k < CLPV_CLIP_CORNERS + CLPV_ABREAST; ++k) {
+  for (int k = 0; k < CLPV_CLIP_CORNERS + W; ++k) {
     const float4 at = polygon[k < corners ? k : 0];
-    const ViewPoint point = {(float8)(at.x), (float8)(at.y), (float8)(at.w), (float8)(at.z)};
+    const ViewPoint point = {(realW)(at.x), (realW)(at.y), (realW)(at.w), (realW)(at.z)};
     const ScreenCorner corner = project(view, point);
     outline->x[k] = corner.x.s0;
     outline->y[k] = corner.y.s0;
@@ -210,13 +209,13 @@ static inline void project_polygon(const ClpvView view, const float4* polygon, c
   }
 }
 
-static inline ScreenCorner outline_from(const Outline* outline, const int k) {
-  const ScreenCorner corner = {vload8(0, outline->x + k), vload8(0, outline->y + k), vload8(0, outline->key + k)};
+static inline ScreenCorner load_outline(const Outline* outline, const int k) {
+  const ScreenCorner corner = {load_lanes(outline->x + k), load_lanes(outline->y + k), load_lanes(outline->key + k)};
   return corner;
 }
 
-static inline ScreenCorner outline_apex(const Outline* outline) {
-  const ScreenCorner corner = {(int8)(outline->x[0]), (int8)(outline->y[0]), (float8)(outline->key[0])};
+static inline ScreenCorner load_outline_apex(const Outline* outline) {
+  const ScreenCorner corner = {(intW)(outline->x[0]), (intW)(outline->y[0]), (realW)(outline->key[0])};
   return corner;
 }
 
@@ -227,25 +226,25 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
                              const uint most_entered, __global uint* entries, volatile __global uint* slice_counts,
                              __global uint* to_clip) {
   const Capacity capacity = {most_listed, most_entered};
-  const int8 lane = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const intW lane = lane_numbers();
   for (uint i = get_global_id(0); i < counts[CLPV_TO_CLIP]; i += get_global_size(0)) {
     const uint triangle = to_clip[i];
     const uint4 t = as_uint4(triangles[triangle]);
     float4 polygon[CLPV_CLIP_CORNERS];
     Vec a, b, c;
-    position_of(vertices, (uint8)(t.x), &a);
-    position_of(vertices, (uint8)(t.y), &b);
-    position_of(vertices, (uint8)(t.z), &c);
-    polygon[0] = clpv_polygon_corner(view_point(view, a));
-    polygon[1] = clpv_polygon_corner(view_point(view, b));
-    polygon[2] = clpv_polygon_corner(view_point(view, c));
-    const int corners = clpv_clip(view, polygon);
+    load_position(vertices, (uintW)(t.x), &a);
+    load_position(vertices, (uintW)(t.y), &b);
+    load_position(vertices, (uintW)(t.z), &c);
+    polygon[0] = polygon_corner(view_point(view, a));
+    polygon[1] = polygon_corner(view_point(view, b));
+    polygon[2] = polygon_corner(view_point(view, c));
+    const int corners = clip_polygon(view, polygon);
     if (corners == 0) continue;
     Outline outline;
     project_polygon(view, polygon, corners, &outline);
-    for (int k = 1; k + 1 < corners; k += CLPV_ABREAST) {
-      const ScreenTriangles fan = {outline_apex(&outline), outline_from(&outline, k), outline_from(&outline, k + 1),
-                         clpv_face(view, a, b, c), (uint8)(triangle), (uint8)(materials[t.w].flags)};
+    for (int k = 1; k + 1 < corners; k += W) {
+      const ScreenTriangles fan = {load_outline_apex(&outline), load_outline(&outline, k), load_outline(&outline, k + 1),
+                         make_face(view, a, b, c), (uintW)(triangle), (uintW)(materials[t.w].flags)};
       append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries, slice_counts);
     }
   }

@@ -37,29 +37,29 @@ typedef struct {
 static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by, const Uv uv1,
                          const Uv uv2) {
   const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
-  const float8 w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
+  const realW w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
   const Uv step = {w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
   return step;
 }
 
 // Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
-CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const float8 depth, const uint8 triangle,
+CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const realW depth, const uintW triangle,
                                   CLPV_SCENE, PixelSurface* surface) {
   Rows indices;
   gather_rows(triangles, triangle, &indices);
   VertexAttributes a, b, c;
-  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, x)), &a);
-  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, y)), &b);
-  corner_at(vertices, as_uint8(CLPV_COLUMN(indices, z)), &c);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), &a);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), &b);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), &c);
   MaterialLanes material;
-  material_of(materials, as_uint8(CLPV_COLUMN(indices, w)), &material);
-  const Face face = clpv_face(view, a.position, b.position, c.position);
-  const Weights weights = clpv_weights(face);
-  const Vec w = clpv_weights_at(view, face, weights, p.x, p.y, depth);
-  const Vec ray = clpv_along(view, p.x, p.y);
-  const float8 facing = vec_dot(face.normal, ray);
+  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &material);
+  const Face face = make_face(view, a.position, b.position, c.position);
+  const Weights weights = find_weights(face);
+  const Vec w = weights_at(view, face, weights, p.x, p.y, depth);
+  const Vec ray = along_ray(view, p.x, p.y);
+  const realW facing = vec_dot(face.normal, ray);
 
-  const float8 towards_viewer = facing > (float8)(0.0f) ? (float8)(-1.0f) : (float8)(1.0f);
+  const realW towards_viewer = facing > ZERO ? (realW)(-1.0f) : ONE;
   surface->normal = normal_towards(vec_times(face.normal, towards_viewer), vec_blend(w, a.normal, b.normal, c.normal));
   surface->albedo = material.base_colour;
 #if CLPV_EMISSIVE
@@ -71,10 +71,10 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const f
 #if CLPV_TEXTURED
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
-  const float8 scale = CLPV_PARALLEL(view) ? (float8)(1.0f) : depth;
+  const realW scale = CLPV_PARALLEL(view) ? ONE : depth;
   const Vec along = vec_times(ray, 1.0f / facing);
-  const Vec right = vec_times(vec_of(view.right), scale * clpv_step_x(view));
-  const Vec down = vec_times(vec_of(view.up), scale * clpv_step_y(view));
+  const Vec right = vec_times(vec_of(view.right), scale * pixel_step_x(view));
+  const Vec down = vec_times(vec_of(view.up), scale * pixel_step_y(view));
   const Uv step_x = uv_step(face, weights, along, right, uv1, uv2);
   const Uv step_y = uv_step(face, weights, along, down, uv1, uv2);
   apply_texture(textures, texels, material.texture, uv, step_x, step_y, &surface->albedo);
@@ -85,18 +85,18 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const f
 }
 
 // Evaluates the surfaces of eight pixels and stores their depths. `hit`: mask of the pixels that are not empty.
-CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const float8* keys, __global const uint8* seen,
-                         CLPV_SCENE, __global float* depths, int8* hit, PixelSurface* surface) {
-  const float8 key = keys[p.row];
-  *hit = key < (float8)(INFINITY);
-  evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uint8)(0u), CLPV_PASS_SCENE, surface);
+CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const realW* keys, __global const uintW* seen,
+                         CLPV_SCENE, __global float* depths, intW* hit, PixelSurface* surface) {
+  const realW key = keys[p.row];
+  *hit = key < (realW)(INFINITY);
+  evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uintW)(0u), CLPV_PASS_SCENE, surface);
   store_depth(view, p, key, depths);
 }
 
 #if !CLPV_FROM_LIGHT
 
-__kernel void resolve_camera(const ClpvView view, __global const float8* keys,
-                             __global const uint8* seen, __global const float4* vertices,
+__kernel void resolve_camera(const ClpvView view, __global const realW* keys,
+                             __global const uintW* seen, __global const float4* vertices,
                              __global const float4* triangles, __global const float4* materials,
                              __global const float4* textures, __global const uint* texels, __global float* depths,
                              __global SurfaceTexel* normals, __global SurfaceTexel* colours
@@ -105,9 +105,9 @@ __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
                              __global float4* emissives
 #endif
 ) {
-  const PixelRow p = this_row(view);
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
-  int8 hit;
+  intW hit;
   PixelSurface surface;
   resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
   const uint first = p.py * view.width + p.px;
@@ -122,21 +122,21 @@ __kernel void resolve_camera(const ClpvView view, __global const float8* keys,
 
 #else
 
-__kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const float8* keys,
-                          __global const uint8* seen, __global const float4* vertices,
+__kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const realW* keys,
+                          __global const uintW* seen, __global const float4* vertices,
                           __global const float4* triangles, __global const float4* materials,
                           __global const float4* textures, __global const uint* texels, __global float* depths,
                           __global SurfaceTexel* normals, __global SurfaceTexel* fluxes,
                           const float colour_scale) {
-  const PixelRow p = this_row(view);
+  const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
-  int8 hit;
+  intW hit;
   PixelSurface surface;
   resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
-  const float8 depth = stored_depth(view, keys[p.row]);
+  const realW depth = stored_depth(view, keys[p.row]);
   Vec towards;
-  const Vec incident = vec_times(clpv_light_irradiance(light, positions(view, p, depth), &towards),
-                             footprints(view, p, depth));
+  const Vec incident = vec_times(light_irradiance(light, row_positions(view, p, depth), &towards),
+                                 row_footprints(view, p, depth));
   const uint first = p.py * view.width + p.px;
   store_normals(p, vec_masked(hit, surface.normal), normals + first);
   store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale, fluxes + first);

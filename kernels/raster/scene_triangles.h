@@ -28,7 +28,7 @@ typedef struct {
   Vec colour;
 } VertexAttributes;
 
-CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, VertexAttributes* corner) {
+CLPV_INLINE void load_corner(__global const float4* vertices, const uintW index, VertexAttributes* corner) {
   Rows first, second;
   gather_rows(vertices, 3u * index, &first);
   gather_rows(vertices + 1, 3u * index, &second);
@@ -45,39 +45,38 @@ CLPV_INLINE void corner_at(__global const float4* vertices, const uint8 index, V
 
 typedef struct {
   Vec base_colour, emissive;
-  uint8 texture, emissive_texture, flags;
+  uintW texture, emissive_texture, flags;
 } MaterialLanes;
 
-CLPV_INLINE void material_of(__global const float4* materials, const uint8 index, MaterialLanes* material) {
+CLPV_INLINE void load_material(__global const float4* materials, const uintW index, MaterialLanes* material) {
   Rows base, textures;
   gather_rows(materials, 3u * index, &base);
   gather_rows(materials + 2, 3u * index, &textures);
   material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
-  material->texture = as_uint8(CLPV_COLUMN(textures, x));
-  material->flags = as_uint8(CLPV_COLUMN(textures, z));
+  material->texture = as_uintW(CLPV_COLUMN(textures, x));
+  material->flags = as_uintW(CLPV_COLUMN(textures, z));
 #if CLPV_EMISSIVE
   Rows emissive;
   gather_rows(materials + 1, 3u * index, &emissive);
   material->emissive = vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
-  material->emissive_texture = as_uint8(CLPV_COLUMN(textures, y));
+  material->emissive_texture = as_uintW(CLPV_COLUMN(textures, y));
 #endif
 }
 
 // Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the interpolated normal itself may
 // point to the other side.
 static inline Vec normal_towards(const Vec front, const Vec interpolated) {
-  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
-  const int8 usable = vec_dot(interpolated, interpolated) > none;
+  const intW usable = vec_dot(interpolated, interpolated) > ZERO;
   const Vec normal = vec(usable ? interpolated.x : front.x, usable ? interpolated.y : front.y,
                          usable ? interpolated.z : front.z);
-  return vec_times(normal, (vec_dot(normal, front) < none ? -one : one) / sqrt(vec_dot(normal, normal)));
+  return vec_times(normal, (vec_dot(normal, front) < ZERO ? -ONE : ONE) / sqrt(vec_dot(normal, normal)));
 }
 
 CLPV_INLINE void apply_texture(__global const float4* textures, __global const uint* texels,
-                               const uint8 texture, const Uv uv, const Uv step_x, const Uv step_y,
+                               const uintW texture, const Uv uv, const Uv step_x, const Uv step_y,
                                Vec* colour) {
   Vec factor;
-  clpv_trilinear(textures, texels, texture, uv, step_x, step_y, &factor);
+  sample_trilinear(textures, texels, texture, uv, step_x, step_y, &factor);
   *colour = vec_product(*colour, factor);
 }
 

@@ -21,13 +21,13 @@
 __kernel void light_surfaces(const ClpvView camera, __global const float* depths, __global const float4* normals,
                              const ClpvLight light, __global const ClpvView* views, const uint count, const uint which,
                              __global const float* map, const uint fresh, __global float4* direct) {
-  const PixelRow p = this_row(camera);
+  const PixelRow p = find_pixel_row(camera);
   if (p.count == 0) return;
   Surfaces seen;
-  surfaces(camera, p, depths, normals, &seen);
-  int8 lit = seen.depth > (float8)(0.0f);
+  load_surfaces(camera, p, depths, normals, &seen);
+  intW lit = seen.depth > ZERO;
   const ShadowMap shadow = {views, count, which, map};
-  const Vec irradiance = clpv_shadowed_irradiance(light, shadow, seen.position, seen.normal, &lit);
+  const Vec irradiance = shadowed_irradiance(light, shadow, seen.position, seen.normal, &lit);
   const VecLanes lanes = unpack(lit, irradiance);
   for (uint i = 0; i < p.count; ++i) {
     const float4 added = (float4)(lanes.x[i], lanes.y[i], lanes.z[i], 0.0f);
@@ -46,7 +46,7 @@ __kernel void shade(const uint show, const uint pixels, __global const float* de
     image[pixel] = (float4)(0.0f);
     return;
   }
-  const float3 albedo = clpv_load_colour(albedos, pixel, 1.0f);
+  const float3 albedo = load_colour(albedos, pixel, 1.0f);
   float3 shown = 0.0f;
   if (show == CLPV_SHOW_FULL || show == CLPV_SHOW_DIRECT) {
     shown += albedo * M_1_PI_F * direct[pixel].xyz;
@@ -55,7 +55,7 @@ __kernel void shade(const uint show, const uint pixels, __global const float* de
   if (show == CLPV_SHOW_FULL || show == CLPV_SHOW_INDIRECT) shown += albedo * M_1_PI_F * indirect[pixel].xyz;
   if (show == CLPV_SHOW_IRRADIANCE) shown = indirect[pixel].xyz;
   if (show == CLPV_SHOW_ALBEDO) shown = albedo;
-  if (show == CLPV_SHOW_NORMAL) shown = clpv_load_normal(normals, pixel);
+  if (show == CLPV_SHOW_NORMAL) shown = load_normal(normals, pixel);
   if (show == CLPV_SHOW_DEPTH) shown = depth;
   image[pixel] = (float4)(shown.x, shown.y, shown.z, 1.0f);
 }

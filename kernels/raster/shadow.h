@@ -18,27 +18,27 @@
 // Eight receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the receiver a plane
 // has depth d with d (a + per_depth g) = b - (1 - per_depth) g,  g = dx slope_x + dy slope_y.
 typedef struct {
-  float8 x, y;  // pixel coordinates
-  float8 slope_x, slope_y;
-  float8 a, b;
-  float8 depth;     // of the plane at (x, y)
+  realW x, y;  // pixel coordinates
+  realW slope_x, slope_y;
+  realW a, b;
+  realW depth;     // of the plane at (x, y)
   float per_depth;  // 1: perspective, 0: orthographic
 } Receivers;
 
 // Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `cosine`: between normal and direction to the
 // light.
-CLPV_INLINE void receivers(const ClpvView view, const Vec offset, const Vec normal, const float8 cosine,
-                           Receivers* r) {
+CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec normal, const realW cosine,
+                                Receivers* r) {
   const Vec right = vec_of(view.right), up = vec_of(view.up), forward = vec_of(view.forward);
-  const float8 scale = view.orthographic != 0.0f ? (float8)(1.0f) : vec_dot_unfused(offset, forward);
-  const float8 sx = vec_dot_unfused(offset, right) / scale, sy = vec_dot_unfused(offset, up) / scale;
+  const realW scale = view.orthographic != 0.0f ? ONE : vec_dot_unfused(offset, forward);
+  const realW sx = vec_dot_unfused(offset, right) / scale, sy = vec_dot_unfused(offset, up) / scale;
   const float width = (float)view.width, height = (float)view.height;
   const float edge_x = 2.0f * view.half_width / width, edge_y = -2.0f * view.half_height / height;  // at depth 1
-  const float8 none = (float8)(0.0f), square = 1.0f - cosine * cosine;
-  const float8 sine = sqrt(square > none ? square : none);
-  const float8 lift = scale * edge_x * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
-  const float8 along_x = vec_dot_unfused(normal, right), along_y = vec_dot_unfused(normal, up);
-  const float8 across = sx * along_x + sy * along_y;
+  const realW square = 1.0f - cosine * cosine;
+  const realW sine = sqrt(square > ZERO ? square : ZERO);
+  const realW lift = scale * edge_x * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
+  const realW along_x = vec_dot_unfused(normal, right), along_y = vec_dot_unfused(normal, up);
+  const realW across = sx * along_x + sy * along_y;
   r->per_depth = view.orthographic != 0.0f ? 0.0f : 1.0f;
   r->x = (sx / view.half_width + 1.0f) * 0.5f * width - 0.5f;
   r->y = (sy / -view.half_height + 1.0f) * 0.5f * height - 0.5f;
@@ -52,17 +52,17 @@ CLPV_INLINE void receivers(const ClpvView view, const Vec offset, const Vec norm
 // First texel of the filter of each of eight receivers along an axis, and its distance [texels] from the filter's
 // centre.
 typedef struct {
-  int8 first;
-  float8 distance;
+  intW first;
+  realW distance;
 } Taps;
 
-static inline Taps taps(const float8 texel, const int size) {
-  const float8 lowest = (float8)(-(float)CLPV_SHADOW_TAPS), highest = (float8)((float)(size + CLPV_SHADOW_TAPS));
-  const float8 at = texel > lowest ? (texel < highest ? texel : highest) : lowest;
-  const int8 whole = convert_int8(at), below = whole + (convert_float8(whole) > at);
+static inline Taps find_taps(const realW texel, const int size) {
+  const realW lowest = (realW)(-(float)CLPV_SHADOW_TAPS), highest = (realW)((float)(size + CLPV_SHADOW_TAPS));
+  const realW at = texel > lowest ? (texel < highest ? texel : highest) : lowest;
+  const intW whole = to_intW(at), below = to_realW(whole) > at ? whole - 1 : whole;
   Taps t;
-  t.first = min(max(below - 1, (int8)(0)), (int8)(size - CLPV_SHADOW_TAPS));
-  t.distance = convert_float8(t.first) - at;
+  t.first = min(max(below - 1, (intW)(0)), (intW)(size - CLPV_SHADOW_TAPS));
+  t.distance = to_realW(t.first) - at;
   return t;
 }
 
@@ -84,7 +84,7 @@ static inline float8 side_by_side(const float4 a, const float4 b) {
 static inline float8 two_rows(const float2 a) { return (float8)(a.x, a.x, a.x, a.x, a.y, a.y, a.y, a.y); }
 
 // Filter weights of the occluding texels of two rows; 0 for the others. `d`: depths of the texels [m].
-CLPV_INLINE float8 blocking_rows(const Receiver r, const float8 d, const float2 dy, const float8 wx, const float2 wy) {
+CLPV_INLINE float8 blocked_weights(const Receiver r, const float8 d, const float2 dy, const float8 wx, const float2 wy) {
   const float8 weights = wx * two_rows(wy);
   const float8 g = side_by_side(r.dx, r.dx) * r.slope_x + two_rows(dy) * r.slope_y;
   const int8 before = d * (r.a + r.per_depth * g) > r.b - (1.0f - r.per_depth) * g;
@@ -93,50 +93,50 @@ CLPV_INLINE float8 blocking_rows(const Receiver r, const float8 d, const float2 
 
 // Weight of a receiver's occluding texels; `whole`: weight of all of its texels, 0 outside the map. `row`: first row of
 // the filter.
-CLPV_INLINE float blocking(const Receiver r, __global const float* row, const uint width, float* whole) {
+CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, const uint width, float* whole) {
   const float4 wx = tap_weights(r.dx), wy = tap_weights(r.dy), one = 1.0f;
   const float8 upper = side_by_side(vload4(0, row), vload4(0, row + width));
   const float8 lower = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
-  const float8 above = blocking_rows(r, upper, r.dy.lo, side_by_side(wx, wx), wy.lo);
-  const float8 below = blocking_rows(r, lower, r.dy.hi, side_by_side(wx, wx), wy.hi);
+  const float8 above = blocked_weights(r, upper, r.dy.lo, side_by_side(wx, wx), wy.lo);
+  const float8 below = blocked_weights(r, lower, r.dy.hi, side_by_side(wx, wx), wy.hi);
   const float4 blocked = above.lo + above.hi + below.lo + below.hi;
   *whole = dot(wx, one) * dot(wy, one);
   return dot(blocked, one);
 }
 
 // Visible share of the light at eight receivers in [0, 1]; 1 outside the map and outside the mask `lit`.
-CLPV_INLINE float8 visibilities(const ClpvView view, __global const float* map, const Receivers r, const int8 lit) {
-  const Taps tx = taps(r.x, (int)view.width), ty = taps(r.y, (int)view.height);
-  int wanted[CLPV_ABREAST], first[CLPV_ABREAST];
-  float distance_x[CLPV_ABREAST], distance_y[CLPV_ABREAST], slope_x[CLPV_ABREAST], slope_y[CLPV_ABREAST];
-  float a[CLPV_ABREAST], b[CLPV_ABREAST], depth[CLPV_ABREAST], blocked[CLPV_ABREAST], whole[CLPV_ABREAST];
-  vstore8(lit, 0, wanted);
-  vstore8(ty.first * (int)view.width + tx.first, 0, first);
-  vstore8(tx.distance, 0, distance_x), vstore8(ty.distance, 0, distance_y);
-  vstore8(r.slope_x, 0, slope_x), vstore8(r.slope_y, 0, slope_y);
-  vstore8(r.a, 0, a), vstore8(r.b, 0, b), vstore8(r.depth, 0, depth);
+CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map, const Receivers r, const intW lit) {
+  const Taps tx = find_taps(r.x, (int)view.width), ty = find_taps(r.y, (int)view.height);
+  int wanted[W], first[W];
+  float distance_x[W], distance_y[W], slope_x[W], slope_y[W];
+  float a[W], b[W], depth[W], blocked[W], whole[W];
+  store_lanes(lit, wanted);
+  store_lanes(ty.first * (int)view.width + tx.first, first);
+  store_lanes(tx.distance, distance_x), store_lanes(ty.distance, distance_y);
+  store_lanes(r.slope_x, slope_x), store_lanes(r.slope_y, slope_y);
+  store_lanes(r.a, a), store_lanes(r.b, b), store_lanes(r.depth, depth);
   const float4 step = (float4)(0.0f, 1.0f, 2.0f, 3.0f);
-  for (int i = 0; i < CLPV_ABREAST; ++i) {
+  for (int i = 0; i < W; ++i) {
     blocked[i] = whole[i] = 0.0f;
     if (!wanted[i]) continue;
     const Receiver receiver = {step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
                                r.per_depth};
-    blocked[i] = blocking(receiver, map + first[i], view.width, whole + i);
+    blocked[i] = blocked_weight(receiver, map + first[i], view.width, whole + i);
   }
-  const float8 all = vload8(0, whole), one = (float8)(1.0f);
-  return all > (float8)(0.0f) ? one - vload8(0, blocked) / all : one;
+  const realW all = load_lanes(whole);
+  return all > ZERO ? ONE - load_lanes(blocked) / all : ONE;
 }
 
 // Mask of the points that view `which` covers: among views sharing an eye, the one facing `offset` most
 // directly; on a tie, the first.
-CLPV_INLINE int8 sees(__global const ClpvView* views, const uint count, const uint which, const Vec offset) {
+CLPV_INLINE intW view_covers(__global const ClpvView* views, const uint count, const uint which, const Vec offset) {
   const ClpvView mine = views[which];
-  const float8 along = vec_dot_unfused(offset, vec_of(mine.forward));
-  int8 seen = (int8)(-1);
+  const realW along = vec_dot_unfused(offset, vec_of(mine.forward));
+  intW seen = (intW)(-1);
   for (uint v = 0; v < count; ++v) {
     const ClpvView other = views[v];
-    const float8 rival = vec_dot_unfused(offset, vec_of(other.forward));
-    seen &= ~((rival > along) | ((rival == along) & (v < which ? -1 : 0)));
+    const realW rival = vec_dot_unfused(offset, vec_of(other.forward));
+    seen &= ((rival > along) | ((rival == along) & (v < which ? -1 : 0))) == 0;
   }
   return seen;
 }
@@ -151,39 +151,38 @@ typedef struct {
 
 // Irradiance [W/m^2] of a light on the surfaces that its view covers. `lit`: mask of the surfaces to light; becomes that
 // of the lit ones, outside which the result is undefined.
-CLPV_INLINE Vec clpv_shadowed_irradiance(const ClpvLight light, const ShadowMap shadow, const Vec position,
-                                         const Vec normal, int8* lit) {
+CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shadow, const Vec position,
+                                    const Vec normal, intW* lit) {
   Vec towards;
-  Vec irradiance = clpv_light_irradiance(light, position, &towards);
-  const float8 cosine = vec_dot_unfused(normal, towards);
-  *lit &= cosine > (float8)(0.0f);
+  Vec irradiance = light_irradiance(light, position, &towards);
+  const realW cosine = vec_dot_unfused(normal, towards);
+  *lit &= cosine > ZERO;
   irradiance = vec_times(irradiance, cosine);
   if (shadow.count == 0) return irradiance;
   const ClpvView view = shadow.views[shadow.which];
   const Vec offset = vec_minus(position, vec_of(view.eye));
-  if (shadow.count > 1) *lit &= sees(shadow.views, shadow.count, shadow.which, offset);
+  if (shadow.count > 1) *lit &= view_covers(shadow.views, shadow.count, shadow.which, offset);
   Receivers r;
-  receivers(view, offset, normal, cosine, &r);
-  return vec_times(irradiance, visibilities(view, shadow.map, r, *lit));
+  find_receivers(view, offset, normal, cosine, &r);
+  return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 
 // 1 where the light reaches points in the air, else 0: the nearest texel of its map.
-CLPV_INLINE float8 clpv_light_reaches(const ShadowMap shadow, const Vec position) {
-  const float8 none = (float8)(0.0f), all = (float8)(1.0f);
-  if (shadow.count == 0) return all;
+CLPV_INLINE realW light_reaches(const ShadowMap shadow, const Vec position) {
+  if (shadow.count == 0) return ONE;
   const ClpvView view = shadow.views[shadow.which];
   const Vec offset = vec_minus(position, vec_of(view.eye));
-  const float8 depth = vec_dot_unfused(offset, vec_of(view.forward));
-  const float8 scale = view.orthographic != 0.0f ? all : depth;
+  const realW depth = vec_dot_unfused(offset, vec_of(view.forward));
+  const realW scale = view.orthographic != 0.0f ? ONE : depth;
   const float width = (float)view.width, height = (float)view.height;
-  const float8 x = (vec_dot_unfused(offset, vec_of(view.right)) / (scale * view.half_width) + 1.0f) * (0.5f * width);
-  const float8 y = (1.0f - vec_dot_unfused(offset, vec_of(view.up)) / (scale * view.half_height)) * (0.5f * height);
-  const int8 in_map = (x >= none) & (y >= none) & (x < (float8)(width)) & (y < (float8)(height)) & (depth > none);
-  const uint8 texel = in_map ? convert_uint8(y) * view.width + convert_uint8(x) : (uint8)(0u);
-  const float8 nearest = (float8)CLPV_GATHER(shadow.map, texel);
-  const int8 blocked = in_map & (nearest > none) & (nearest < depth);
-  const float8 lit = blocked ? none : all;
-  return shadow.count > 1 ? (sees(shadow.views, shadow.count, shadow.which, offset) ? lit : none) : lit;
+  const realW x = (vec_dot_unfused(offset, vec_of(view.right)) / (scale * view.half_width) + 1.0f) * (0.5f * width);
+  const realW y = (1.0f - vec_dot_unfused(offset, vec_of(view.up)) / (scale * view.half_height)) * (0.5f * height);
+  const intW in_map = (x >= ZERO) & (y >= ZERO) & (x < (realW)(width)) & (y < (realW)(height)) & (depth > ZERO);
+  const uintW texel = in_map ? to_uintW(y) * view.width + to_uintW(x) : (uintW)(0u);
+  const realW nearest = (realW)CLPV_GATHER(shadow.map, texel);
+  const intW blocked = in_map & (nearest > ZERO) & (nearest < depth);
+  const realW lit = blocked ? ZERO : ONE;
+  return shadow.count > 1 ? (view_covers(shadow.views, shadow.count, shadow.which, offset) ? lit : ZERO) : lit;
 }
 
 #endif

@@ -29,14 +29,14 @@ typedef float4 SurfaceTexel;
 #endif
 
 // Screen coordinates (sx, sy) of a pixel's centre.
-static inline float2 clpv_screen(const ClpvView view, const float px, const float py) {
+static inline float2 screen_point(const ClpvView view, const float px, const float py) {
   return (float2)((2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width,
                   (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height);
 }
 
 // Point [m] at `depth` [m] behind pixel (px, py).
-static inline float3 clpv_position(const ClpvView view, const float px, const float py, const float depth) {
-  const float2 s = clpv_screen(view, px, py);
+static inline float3 surface_position(const ClpvView view, const float px, const float py, const float depth) {
+  const float2 s = screen_point(view, px, py);
   const float scale = view.orthographic != 0.0f ? 1.0f : depth;
   const float sx = scale * s.x, sy = scale * s.y;
 #define CLPV_AT(a) (view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a])
@@ -45,8 +45,8 @@ static inline float3 clpv_position(const ClpvView view, const float px, const fl
 }
 
 // Unit direction of a pixel's ray, away from the eye.
-static inline float3 clpv_ray(const ClpvView view, const float px, const float py) {
-  const float2 s = clpv_screen(view, px, py);
+static inline float3 pixel_ray(const ClpvView view, const float px, const float py) {
+  const float2 s = screen_point(view, px, py);
   const float sx = view.orthographic != 0.0f ? 0.0f : s.x, sy = view.orthographic != 0.0f ? 0.0f : s.y;
   const float scale = rsqrt(1.0f + sx * sx + sy * sy);
 #define CLPV_ALONG(a) (scale * (view.forward[a] + sx * view.right[a] + sy * view.up[a]))
@@ -55,14 +55,14 @@ static inline float3 clpv_ray(const ClpvView view, const float px, const float p
 }
 
 // Footprint [m^2] of a pixel across its ray: distance^2 times the pixel's solid angle in perspective.
-static inline float clpv_footprint(const ClpvView view, const float px, const float py, const float depth) {
+static inline float pixel_footprint(const ClpvView view, const float px, const float py, const float depth) {
   const float pixel = 4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
   if (view.orthographic != 0.0f) return pixel;
-  const float2 s = clpv_screen(view, px, py);
+  const float2 s = screen_point(view, px, py);
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
 }
 
-static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, const uint pixel) {
+static inline float3 load_normal(__global const SurfaceTexel* normals, const uint pixel) {
 #if CLPV_SURFACE_PAPER
   __global const uchar* n = (__global const uchar*)(normals + pixel);
   const float x = n[0] * (2.0f / 255.0f) - 1.0f, y = n[1] * (2.0f / 255.0f) - 1.0f,
@@ -77,8 +77,8 @@ static inline float3 clpv_load_normal(__global const SurfaceTexel* normals, cons
 
 // `scale`: value of a stored 1 (largest flux of a texel of the light [W]; 1 for albedo). Used by the 8-bit format
 // alone.
-static inline float3 clpv_load_colour(__global const SurfaceTexel* colours, const uint pixel,
-                                      const float scale) {
+static inline float3 load_colour(__global const SurfaceTexel* colours, const uint pixel,
+                                 const float scale) {
 #if CLPV_SURFACE_PAPER
   __global const uchar* c = (__global const uchar*)(colours + pixel);
   return (float3)(c[0] * (scale / 255.0f), c[1] * (scale / 255.0f), c[2] * (scale / 255.0f));

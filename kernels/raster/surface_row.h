@@ -10,93 +10,93 @@
 
 // Screen coordinates (sx, sy) of the pixels' centres.
 typedef struct {
-  float8 x, y;
+  realW x, y;
 } ScreenPoints;
 
-static inline ScreenPoints on_screen(const ClpvView view, const PixelRow p) {
+static inline ScreenPoints find_screen_points(const ClpvView view, const PixelRow p) {
   const ScreenPoints s = {(2.0f * (p.x + 0.5f) / (float)view.width - 1.0f) * view.half_width,
                       (1.0f - 2.0f * (p.y + 0.5f) / (float)view.height) * view.half_height};
   return s;
 }
 
 // Points [m] at `depth` [m] behind the pixels.
-static inline Vec positions(const ClpvView view, const PixelRow p, const float8 depth) {
-  const ScreenPoints s = on_screen(view, p);
-  const float8 scale = view.orthographic != 0.0f ? (float8)(1.0f) : depth;
-  const float8 sx = scale * s.x, sy = scale * s.y;
+static inline Vec row_positions(const ClpvView view, const PixelRow p, const realW depth) {
+  const ScreenPoints s = find_screen_points(view, p);
+  const realW scale = view.orthographic != 0.0f ? ONE : depth;
+  const realW sx = scale * s.x, sy = scale * s.y;
 #define CLPV_AT(a) (view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a])
   return vec(CLPV_AT(0), CLPV_AT(1), CLPV_AT(2));
 #undef CLPV_AT
 }
 
 // Footprints [m^2] of the pixels across their rays.
-static inline float8 footprints(const ClpvView view, const PixelRow p, const float8 depth) {
+static inline realW row_footprints(const ClpvView view, const PixelRow p, const realW depth) {
   const float pixel = 4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
-  if (view.orthographic != 0.0f) return (float8)(pixel);
-  const ScreenPoints s = on_screen(view, p);
+  if (view.orthographic != 0.0f) return (realW)(pixel);
+  const ScreenPoints s = find_screen_points(view, p);
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
 }
 
 // Surfaces of eight pixels.
 typedef struct {
   uint first;  // index of the first pixel in the view
-  float8 depth;
+  realW depth;
   Vec position, normal;
 } Surfaces;
 
 // Loads the surfaces of eight pixels. Lanes outside the view repeat the last pixel.
-static inline void surfaces(const ClpvView view, const PixelRow p, __global const float* depths,
-                            __global const float4* normals, Surfaces* s) {
+static inline void load_surfaces(const ClpvView view, const PixelRow p, __global const float* depths,
+                                 __global const float4* normals, Surfaces* s) {
   s->first = p.py * view.width + p.px;
-  const uint8 pixel = s->first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
+  const uintW pixel = s->first + min(as_uintW(lane_numbers()), (uintW)(p.count - 1));
   Rows rows;
   gather_rows(normals, pixel, &rows);
-  s->depth = (float8)CLPV_GATHER(depths, pixel);
+  s->depth = (realW)CLPV_GATHER(depths, pixel);
   s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
-  s->position = positions(view, p, s->depth);
+  s->position = row_positions(view, p, s->depth);
 }
 
 // Loads eight points without a view; depth 1.
-static inline void points(const ClpvView view, const PixelRow p, __global const float4* at,
-                          __global const float4* normals, Surfaces* s) {
+static inline void load_points(const ClpvView view, const PixelRow p, __global const float4* at,
+                               __global const float4* normals, Surfaces* s) {
   s->first = p.py * view.width + p.px;
-  const uint8 pixel = s->first + min((uint8)(0, 1, 2, 3, 4, 5, 6, 7), (uint8)(p.count - 1));
+  const uintW pixel = s->first + min(as_uintW(lane_numbers()), (uintW)(p.count - 1));
   Rows rows;
   gather_rows(at, pixel, &rows);
   s->position = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
   gather_rows(normals, pixel, &rows);
   s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
-  s->depth = (float8)(1.0f);
+  s->depth = ONE;
 }
 
 #if CLPV_SURFACE_PAPER
-typedef uchar Number;
-typedef uchar8 Numbers;
+typedef uchar Channel;  // of a stored texel
+typedef uchar8 channelW;
 // Same as convert_uchar8_sat(value + 0.5f), which PoCL does not inline (lanes.h).
-static inline uchar8 clpv_bytes(const float8 value) {
-  const float8 none = (float8)(0.0f), all = (float8)(255.0f);
-  return convert_uchar8(convert_int8((value > none ? (value < all ? value : all) : none) + 0.5f));
+static inline uchar8 to_bytes(const realW value) {
+  const realW all = (realW)(255.0f);
+  return convert_uchar8(to_intW((value > ZERO ? (value < all ? value : all) : ZERO) + 0.5f));
 }
 #else
-typedef float Number;
-typedef float8 Numbers;
+typedef float Channel;
+typedef realW channelW;
 #endif
 
 // Interleaved lanes, and interleaved pairs of lanes, of two vectors; compilers turn these into shuffles.
-#define CLPV_INTERLEAVE(a, b, i, j, k, l) ((Numbers)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
+#define CLPV_INTERLEAVE(a, b, i, j, k, l) ((channelW)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
 #define CLPV_INTERLEAVE_PAIRS(a, b, i, j, k, l) \
-  ((Numbers)(a.s##i, a.s##j, b.s##i, b.s##j, a.s##k, a.s##l, b.s##k, b.s##l))
+  ((channelW)(a.s##i, a.s##j, b.s##i, b.s##j, a.s##k, a.s##l, b.s##k, b.s##l))
 
 // Stores `count` texels of four numbers from `to` on.
-CLPV_INLINE void store_texels(const uint count, const Numbers x, const Numbers y, const Numbers z, const Numbers w,
+CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y, const channelW z, const channelW w,
                               __global SurfaceTexel* to) {
-  const Numbers left_xy = CLPV_INTERLEAVE(x, y, 0, 1, 2, 3), left_zw = CLPV_INTERLEAVE(z, w, 0, 1, 2, 3);
-  const Numbers right_xy = CLPV_INTERLEAVE(x, y, 4, 5, 6, 7), right_zw = CLPV_INTERLEAVE(z, w, 4, 5, 6, 7);
-  const Numbers twos[4] = {
+  const channelW left_xy = CLPV_INTERLEAVE(x, y, 0, 1, 2, 3), left_zw = CLPV_INTERLEAVE(z, w, 0, 1, 2, 3);
+  const channelW right_xy = CLPV_INTERLEAVE(x, y, 4, 5, 6, 7), right_zw = CLPV_INTERLEAVE(z, w, 4, 5, 6, 7);
+  const channelW twos[4] = {
       CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 0, 1, 2, 3), CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 4, 5, 6, 7),
       CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 0, 1, 2, 3), CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 4, 5, 6, 7)};
-  __global Number* numbers = (__global Number*)to;
-  if (count == CLPV_ABREAST) {
+  __global Channel* numbers = (__global Channel*)to;
+  if (count == W) {
     for (int i = 0; i < 4; ++i) vstore8(twos[i], i, numbers);
     return;
   }
@@ -105,20 +105,20 @@ CLPV_INLINE void store_texels(const uint count, const Numbers x, const Numbers y
 
 CLPV_INLINE void store_normals(const PixelRow p, const Vec n, __global SurfaceTexel* to) {
 #if CLPV_SURFACE_PAPER
-  store_texels(p.count, clpv_bytes(n.x * 127.5f + 127.5f), clpv_bytes(n.y * 127.5f + 127.5f),
-               clpv_bytes(n.z * 127.5f + 127.5f), (uchar8)(255), to);
+  store_texels(p.count, to_bytes(n.x * 127.5f + 127.5f), to_bytes(n.y * 127.5f + 127.5f),
+               to_bytes(n.z * 127.5f + 127.5f), (uchar8)(255), to);
 #else
-  store_texels(p.count, n.x, n.y, n.z, (float8)(0.0f), to);
+  store_texels(p.count, n.x, n.y, n.z, ZERO, to);
 #endif
 }
 
-// `scale`: as in clpv_load_colour().
+// `scale`: as in load_colour().
 CLPV_INLINE void store_colours(const PixelRow p, const Vec c, const float scale, __global SurfaceTexel* to) {
 #if CLPV_SURFACE_PAPER
   const float byte = 255.0f / scale;
-  store_texels(p.count, clpv_bytes(c.x * byte), clpv_bytes(c.y * byte), clpv_bytes(c.z * byte), (uchar8)(255), to);
+  store_texels(p.count, to_bytes(c.x * byte), to_bytes(c.y * byte), to_bytes(c.z * byte), (uchar8)(255), to);
 #else
-  store_texels(p.count, c.x, c.y, c.z, (float8)(1.0f), to);
+  store_texels(p.count, c.x, c.y, c.z, ONE, to);
 #endif
 }
 

@@ -17,7 +17,7 @@ typedef struct {
 } Face;
 
 // Face of the triangle with corners a, b, c [m].
-static inline Face clpv_face(const ClpvView view, const Vec a, const Vec b, const Vec c) {
+static inline Face make_face(const ClpvView view, const Vec a, const Vec b, const Vec c) {
   Face face;
   face.corner = vec_minus(a, vec_of(view.eye));
   face.edge1 = vec_minus(b, a);
@@ -27,44 +27,44 @@ static inline Face clpv_face(const ClpvView view, const Vec a, const Vec b, cons
 }
 
 // Steps in screen coordinates to the pixel on the right, and below.
-static inline float clpv_step_x(const ClpvView view) {
+static inline float pixel_step_x(const ClpvView view) {
   return 2.0f * view.half_width / (float)view.width;
 }
-static inline float clpv_step_y(const ClpvView view) {
+static inline float pixel_step_y(const ClpvView view) {
   return -2.0f * view.half_height / (float)view.height;
 }
 
 // Vector across the view from the screen's centre to a pixel.
-static inline Vec clpv_across(const ClpvView view, const Real px, const Real py) {
-  const Real x = (2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width;
-  const Real y = (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height;
+static inline Vec across_view(const ClpvView view, const realW px, const realW py) {
+  const realW x = (2.0f * (px + 0.5f) / (float)view.width - 1.0f) * view.half_width;
+  const realW y = (1.0f - 2.0f * (py + 0.5f) / (float)view.height) * view.half_height;
   return vec_add_scaled(vec_times(vec_of(view.right), x), y, vec_of(view.up));
 }
 
 // Vector along a pixel's ray, of depth 1 m.
-static inline Vec clpv_along(const ClpvView view, const Real px, const Real py) {
+static inline Vec along_ray(const ClpvView view, const realW px, const realW py) {
   if (CLPV_PARALLEL(view)) return vec_of(view.forward);
-  return vec_add_scaled(clpv_across(view, px, py), (Real)(1.0f), vec_of(view.forward));
+  return vec_add_scaled(across_view(view, px, py), ONE, vec_of(view.forward));
 }
 
 // Vector from the eye to the point at `depth` [m] behind a pixel.
-static inline Vec clpv_to_point(const ClpvView view, const Real px, const Real py, const Real depth) {
-  if (CLPV_PARALLEL(view)) return vec_add_scaled(clpv_across(view, px, py), depth, vec_of(view.forward));
-  return vec_times(clpv_along(view, px, py), depth);
+static inline Vec to_point(const ClpvView view, const realW px, const realW py, const realW depth) {
+  if (CLPV_PARALLEL(view)) return vec_add_scaled(across_view(view, px, py), depth, vec_of(view.forward));
+  return vec_times(along_ray(view, px, py), depth);
 }
 
 // Key (ClpvRasterTriangle) of the face's plane at pixel (px, py), and its change per pixel along x and y. Not finite
 // for a plane that is seen edge-on.
-static inline Vec clpv_key_plane(const ClpvView view, const Face face, const Real px, const Real py) {
-  const Real right = vec_dot(face.normal, vec_of(view.right)) * clpv_step_x(view);
-  const Real down = vec_dot(face.normal, vec_of(view.up)) * clpv_step_y(view);
+static inline Vec find_key_plane(const ClpvView view, const Face face, const realW px, const realW py) {
+  const realW right = vec_dot(face.normal, vec_of(view.right)) * pixel_step_x(view);
+  const realW down = vec_dot(face.normal, vec_of(view.up)) * pixel_step_y(view);
   if (CLPV_PARALLEL(view)) {
-    const Real scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
-    const Vec beside = vec_minus(face.corner, clpv_across(view, px, py));
+    const realW scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
+    const Vec beside = vec_minus(face.corner, across_view(view, px, py));
     return vec(vec_dot(face.normal, beside) * scale, -right * scale, -down * scale);
   }
-  const Real scale = -1.0f / vec_dot(face.normal, face.corner);
-  return vec(vec_dot(face.normal, clpv_along(view, px, py)) * scale, right * scale, down * scale);
+  const realW scale = -1.0f / vec_dot(face.normal, face.corner);
+  return vec(vec_dot(face.normal, along_ray(view, px, py)) * scale, right * scale, down * scale);
 }
 
 // Barycentric weights of the second and third vertex as functions of position: weight = (point - corner) . gradient.
@@ -72,9 +72,9 @@ typedef struct {
   Vec gradient1, gradient2;  // 0 for a triangle without area
 } Weights;
 
-static inline Weights clpv_weights(const Face face) {
-  const Real area2 = vec_dot(face.normal, face.normal);
-  const Real scale = area2 > (Real)(0.0f) ? 1.0f / area2 : (Real)(0.0f);
+static inline Weights find_weights(const Face face) {
+  const realW area2 = vec_dot(face.normal, face.normal);
+  const realW scale = area2 > ZERO ? 1.0f / area2 : ZERO;
   Weights weights;
   weights.gradient1 = vec_times(vec_cross(face.edge2, face.normal), scale);
   weights.gradient2 = vec_times(vec_cross(face.normal, face.edge1), scale);
@@ -83,16 +83,15 @@ static inline Weights clpv_weights(const Face face) {
 
 // Weights of all three vertices at `depth` [m] behind a pixel, clamped to the triangle: snapping to the sub-pixel grid
 // can cover pixel centres just outside.
-static inline Vec clpv_weights_at(const ClpvView view, const Face face, const Weights weights, const Real px,
-                                  const Real py, const Real depth) {
-  const Vec offset = vec_minus(clpv_to_point(view, px, py, depth), face.corner);
-  const Real none = (Real)(0.0f), all = (Real)(1.0f);
-  Real w1 = vec_dot(offset, weights.gradient1), w2 = vec_dot(offset, weights.gradient2);
-  w1 = w1 > none ? w1 : none;
-  w1 = w1 < all ? w1 : all;
-  w2 = w2 > none ? w2 : none;
-  w2 = w2 < all - w1 ? w2 : all - w1;
-  return vec(all - w1 - w2, w1, w2);
+static inline Vec weights_at(const ClpvView view, const Face face, const Weights weights, const realW px,
+                             const realW py, const realW depth) {
+  const Vec offset = vec_minus(to_point(view, px, py, depth), face.corner);
+  realW w1 = vec_dot(offset, weights.gradient1), w2 = vec_dot(offset, weights.gradient2);
+  w1 = w1 > ZERO ? w1 : ZERO;
+  w1 = w1 < ONE ? w1 : ONE;
+  w2 = w2 > ZERO ? w2 : ZERO;
+  w2 = w2 < ONE - w1 ? w2 : ONE - w1;
+  return vec(ONE - w1 - w2, w1, w2);
 }
 
 #endif

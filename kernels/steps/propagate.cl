@@ -4,7 +4,7 @@
 //   F = max(0, Omega_f I(w_f)) T_f,   c += (F / pi) c(n_f)      for the five visible faces f of each neighbour
 //
 // Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'; docs/method.md, 'Propagation'. The transport
-// itself (CLPV_ARRIVE, clpv_expand) is straight-line code with literal constants, from
+// itself (CLPV_ARRIVE, expand_fluxes) is straight-line code with literal constants, from
 // host/codegen/transport_source.cpp.
 //
 // In:   source         light of the previous step (the injected field at first): coefficients [W/sr] per channel, or
@@ -14,7 +14,7 @@
 //       least          with CLPV_FIRST_TOO: lower bound of T; 1 in the first step, which is not blocked, else 0
 // Out:  target         light of this step
 //       sum            sum_so_far + target
-// A work-item computes CLPV_LANES cells of a row, in one channel or in all three (CLPV_CHANNELS), which then share T.
+// A work-item computes W cells of a row, in one channel or in all three (CLPV_CHANNELS), which then share T.
 #include "volume/coefficients.h"
 #include "volume/whole_groups.h"
 
@@ -38,7 +38,7 @@
 #include "volume/transmittance.h"
 #endif
 
-CLPV_INLINE Target clpv_target_sum(const Target a, const Target b) {
+CLPV_INLINE Target target_sum(const Target a, const Target b) {
   Target r;
 #define CLPV_DO(i) r.c##i = a.c##i + b.c##i;
   CLPV_EACH_TARGET(CLPV_DO)
@@ -63,7 +63,7 @@ CLPV_INLINE Target clpv_target_sum(const Target a, const Target b) {
     CLPV_EACH_NEIGHBOUR(CLPV_LOAD_NEIGHBOUR)                                                                 \
     CLPV_ARRIVE                                                                                              \
     target_store(target, channel, x, y, z, gained);                                                          \
-    target_store(sum, channel, x, y, z, clpv_target_sum(target_load(sum_so_far, channel, x, y, z), gained)); \
+    target_store(sum, channel, x, y, z, target_sum(target_load(sum_so_far, channel, x, y, z), gained)); \
   }
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_step(
@@ -78,12 +78,12 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
     , __global const float4* normals, __global const float4* links CLPV_AND_TABLE CLPV_AND_FUNCTIONS
 #endif
 ) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;
+  const int x = W * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;
   CLPV_RETURN_OUTSIDE(x, y);
 #if CLPV_BLOCKING
   Links t = transmittance_load(transmittance, 0, x, y, z);
 #if CLPV_FIRST_TOO
-#define CLPV_DO(i) t.c##i = max(t.c##i, (CLPV_REAL)(least));
+#define CLPV_DO(i) t.c##i = max(t.c##i, (realW)(least));
   CLPV_EACH_LINK(CLPV_DO)
 #undef CLPV_DO
 #endif
@@ -103,9 +103,9 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
 // [W].
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_expand(
     CLPV_VOLUME_IN base, CLPV_VOLUME_IN sum, CLPV_VOLUME_OUT accumulated) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1);
+  const int x = W * (int)get_global_id(0), y = (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   CLPV_RETURN_OUTSIDE(x, y);
-  const Coefficients gained = clpv_expand(target_load(sum, channel, x, y, z));
-  light_store(accumulated, channel, x, y, z, clpv_add(light_load(base, channel, x, y, z), gained));
+  const Coefficients gained = expand_fluxes(target_load(sum, channel, x, y, z));
+  light_store(accumulated, channel, x, y, z, add_coefficients(light_load(base, channel, x, y, z), gained));
 }

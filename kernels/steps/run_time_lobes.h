@@ -7,15 +7,15 @@
 // Each face rotates (or projects) a lobe to its normal. With CLPV_EVALUATE_AT_RUN_TIME the flux, too, uses basis
 // functions evaluated along the link. Normals and links are read from memory, so that compilers cannot fold them;
 // look-up tables are arguments. From the host: CLPV_FACES, CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME,
-// clpv_functions_of(link), and the text of host/codegen/inject_source.hpp.
+// functions_of_link(link), and the text of host/codegen/inject_source.hpp.
 #ifndef CLPV_RUN_TIME_LOBES_H
 #define CLPV_RUN_TIME_LOBES_H
 
 // Coefficients of a lobe of 1 W about a normal.
-CLPV_INLINE Coefficients clpv_run_time_lobe(const float4 normal CLPV_AND_TABLE) {
-  const Coefficients alpha = clpv_lobe_integrals(normal.x, normal.y, normal.z CLPV_PASS_TABLE);
+CLPV_INLINE Coefficients run_time_lobe(const float4 normal CLPV_AND_TABLE) {
+  const Coefficients alpha = lobe_integrals(normal.x, normal.y, normal.z CLPV_PASS_TABLE);
 #if CLPV_UNIT_FLUX
-  const float scale = 1.0f / clpv_flux(alpha);
+  const float scale = 1.0f / lobe_flux(alpha);
 #else
   const float scale = M_1_PI_F;
 #endif
@@ -23,17 +23,17 @@ CLPV_INLINE Coefficients clpv_run_time_lobe(const float4 normal CLPV_AND_TABLE) 
 #define CLPV_DO(i) scaled.c##i = scale * alpha.c##i;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
-  return clpv_project_sum(scaled);
+  return project_sum(scaled);
 }
 
-CLPV_INLINE Target clpv_add_lobe(Target gained, const float flux, const Coefficients lobe) {
+CLPV_INLINE Target add_lobe(Target gained, const float flux, const Coefficients lobe) {
 #define CLPV_DO(i) gained.c##i = fma(flux, lobe.c##i, gained.c##i);
   CLPV_EACH_TARGET(CLPV_DO)
 #undef CLPV_DO
   return gained;
 }
 
-CLPV_INLINE Target clpv_no_gain(void) {
+CLPV_INLINE Target no_gain(void) {
   Target gained;
 #define CLPV_DO(i) gained.c##i = 0.0f;
   CLPV_EACH_TARGET(CLPV_DO)
@@ -43,7 +43,7 @@ CLPV_INLINE Target clpv_no_gain(void) {
 
 #if CLPV_EVALUATE_AT_RUN_TIME
 // Flux [W] of a cell's light through a face. `at`: basis functions along the face's link, times its solid angle.
-CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
+CLPV_INLINE float flux_through(const Source from, const Coefficients at) {
   float flux = 0.0f;
 #define CLPV_DO(i) flux = fma(at.c##i, from.c##i, flux);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
@@ -55,7 +55,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
 #define CLPV_EVALUATE_FUNCTIONS                     \
   Coefficients at[CLPV_FACES];                      \
   for (int face = 0; face < CLPV_FACES; ++face) {   \
-    at[face] = clpv_functions_of(links[face] CLPV_PASS_FUNCTIONS); \
+    at[face] = functions_of_link(links[face] CLPV_PASS_FUNCTIONS); \
   }
 #else
 #define CLPV_EVALUATE_FUNCTIONS
@@ -72,7 +72,7 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
 
 #define CLPV_STORE_CHANNEL(CHANNEL, gained)         \
   target_store(target, CHANNEL, x, y, z, gained); \
-  target_store(sum, CHANNEL, x, y, z, clpv_target_sum(target_load(sum_so_far, CHANNEL, x, y, z), gained));
+  target_store(sum, CHANNEL, x, y, z, target_sum(target_load(sum_so_far, CHANNEL, x, y, z), gained));
 
 // A step of all three channels, which share each lobe.
 #define CLPV_STEP_WITH_LOBES                                                        \
@@ -81,12 +81,12 @@ CLPV_INLINE float clpv_flux_through(const Source from, const Coefficients at) {
   CLPV_CHANNEL_FLUXES(0)                                                            \
   CLPV_CHANNEL_FLUXES(1)                                                            \
   CLPV_CHANNEL_FLUXES(2)                                                            \
-  Target red = clpv_no_gain(), green = red, blue = red;                             \
+  Target red = no_gain(), green = red, blue = red;                             \
   for (int face = 0; face < CLPV_FACES; ++face) {                                   \
-    const Coefficients lobe = clpv_run_time_lobe(normals[face] CLPV_PASS_TABLE);             \
-    red = clpv_add_lobe(red, fluxes[face], lobe);                                   \
-    green = clpv_add_lobe(green, fluxes[CLPV_FACES + face], lobe);                  \
-    blue = clpv_add_lobe(blue, fluxes[2 * CLPV_FACES + face], lobe);                \
+    const Coefficients lobe = run_time_lobe(normals[face] CLPV_PASS_TABLE);             \
+    red = add_lobe(red, fluxes[face], lobe);                                   \
+    green = add_lobe(green, fluxes[CLPV_FACES + face], lobe);                  \
+    blue = add_lobe(blue, fluxes[2 * CLPV_FACES + face], lobe);                \
   }                                                                                 \
   CLPV_STORE_CHANNEL(0, red)                                                        \
   CLPV_STORE_CHANNEL(1, green)                                                      \

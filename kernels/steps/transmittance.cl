@@ -9,7 +9,7 @@
 // In:   blockers       geometry volume, samples at the cells' corners
 // Out:  transmittance  T in [0, 1] of each cell and link
 // From the host (host/codegen/transmittance_source.cpp): CLPV_TRANSMITTANCE, which declares `links`. A work-item
-// computes CLPV_LANES cells of a row.
+// computes W cells of a row.
 #include "volume/coefficients.h"
 #include "volume/geometry.h"
 #include "volume/transmittance.h"
@@ -20,7 +20,7 @@
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void transmit(
     CLPV_VOLUME_IN blockers, CLPV_VOLUME_OUT transmittance) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
+  const int x = W * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
   CLPV_RETURN_OUTSIDE(x, y);
   CLPV_LOAD_CORNER(0) CLPV_LOAD_CORNER(1) CLPV_LOAD_CORNER(2) CLPV_LOAD_CORNER(3)
   CLPV_LOAD_CORNER(4) CLPV_LOAD_CORNER(5) CLPV_LOAD_CORNER(6) CLPV_LOAD_CORNER(7)

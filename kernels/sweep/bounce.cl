@@ -22,8 +22,8 @@
 //       injected          I: light volume [W/sr]
 // Out:  bounced           B: light volume [W/sr]
 // From the host (host/codegen/sweep_source.cpp): Coefficients of the basis; struct Bins; CLPV_EACH_X_BIN, _Y_, _Z_;
-// struct FaceFluxes; FaceFluxes clpv_incident_flux(Bins) [W]; Coefficients clpv_reflected_intensity(FaceFluxes) [W/sr].
-// A work-item computes a tile of CLPV_LANES x CLPV_LANES cells of a slice and channel.
+// struct FaceFluxes; FaceFluxes incident_flux(Bins) [W]; Coefficients reflected_intensity(FaceFluxes) [W/sr].
+// A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
 #include "sweep/coarse_to_fine.h"
 #include "shared/reflectors.h"
@@ -39,7 +39,7 @@
 #include "volume/instance.h"
 
 // Flux [W] that leaves each face of a cell: incident flux times reflectance.
-CLPV_INLINE FaceFluxes clpv_reflected_flux(const FaceFluxes incident, const FaceFluxes reflectance) {
+CLPV_INLINE FaceFluxes reflect_flux(const FaceFluxes incident, const FaceFluxes reflectance) {
   FaceFluxes flux;
 #define CLPV_DO(i) flux.c##i = incident.c##i * reflectance.c##i;
   CLPV_EACH_FACE_FLUX(CLPV_DO)
@@ -47,7 +47,7 @@ CLPV_INLINE FaceFluxes clpv_reflected_flux(const FaceFluxes incident, const Face
   return flux;
 }
 
-CLPV_INLINE FaceFluxes clpv_add_fluxes(const FaceFluxes a, const FaceFluxes b) {
+CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   FaceFluxes sum;
 #define CLPV_DO(i) sum.c##i = a.c##i + b.c##i;
   CLPV_EACH_FACE_FLUX(CLPV_DO)
@@ -56,7 +56,7 @@ CLPV_INLINE FaceFluxes clpv_add_fluxes(const FaceFluxes a, const FaceFluxes b) {
 }
 
 // R (1 + E)
-CLPV_INLINE FaceFluxes clpv_series(const FaceFluxes returned, const FaceFluxes reflectance) {
+CLPV_INLINE FaceFluxes sum_series(const FaceFluxes returned, const FaceFluxes reflectance) {
   FaceFluxes series;
 #define CLPV_DO(i) series.c##i = reflectance.c##i * (1.0f + returned.c##i);
   CLPV_EACH_FACE_FLUX(CLPV_DO)
@@ -66,25 +66,25 @@ CLPV_INLINE FaceFluxes clpv_series(const FaceFluxes returned, const FaceFluxes r
 
 // Declares the tile's first cell (x, y, z), its channel, and the index `first` of the channel's volumes.
 #define CLPV_THIS_TILE                                                                          \
-  const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);     \
+  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);     \
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID; \
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;                                                 \
   const int first = channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
 
 // Incident flux on the cells in row r of tiles of `volumes`.
-#define CLPV_INCIDENT_FLUX(volumes, tiles) clpv_incident_flux(clpv_load_bins(volumes, tiles, r, x, y + r, z))
+#define CLPV_INCIDENT_FLUX(volumes, tiles) incident_flux(load_bins(volumes, tiles, r, x, y + r, z))
 
 __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN injected,
                                const float injected_share, CLPV_VOLUME_OUT bounced) {
   CLPV_THIS_TILE
   SweepTile tiles[CLPV_X_BINS];
-  clpv_load_x_bins(swept + first, x, y, z, tiles);
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  load_x_bins(swept + first, x, y, z, tiles);
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const Coefficients reflected = clpv_reflected_intensity(clpv_reflected_flux(
+    const Coefficients reflected = reflected_intensity(reflect_flux(
         CLPV_INCIDENT_FLUX(swept + first, tiles), faces_load(reflectors, channel, x, y + r, z)));
     light_store(bounced, channel, x, y + r, z,
-                clpv_add_scaled(reflected, injected_share, light_load(injected, channel, x, y + r, z)));
+                add_scaled(reflected, injected_share, light_load(injected, channel, x, y + r, z)));
   }
 }
 
@@ -92,52 +92,52 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
                             CLPV_VOLUME_IN series, CLPV_VOLUME_IN injected, CLPV_VOLUME_OUT bounced) {
   CLPV_THIS_TILE
   SweepTile tiles[CLPV_X_BINS], second[CLPV_X_BINS];
-  clpv_load_x_bins(first_swept + first, x, y, z, tiles);
-  clpv_load_x_bins(second_swept + first, x, y, z, second);
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  load_x_bins(first_swept + first, x, y, z, tiles);
+  load_x_bins(second_swept + first, x, y, z, second);
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
     const FaceFluxes flux =
-        clpv_add_fluxes(clpv_reflected_flux(CLPV_INCIDENT_FLUX(first_swept + first, tiles),
-                                            faces_load(reflectors, channel, x, y + r, z)),
-                        clpv_reflected_flux(CLPV_INCIDENT_FLUX(second_swept + first, second),
-                                            faces_load(series, channel, x, y + r, z)));
+        add_fluxes(reflect_flux(CLPV_INCIDENT_FLUX(first_swept + first, tiles),
+                                faces_load(reflectors, channel, x, y + r, z)),
+                        reflect_flux(CLPV_INCIDENT_FLUX(second_swept + first, second),
+                                     faces_load(series, channel, x, y + r, z)));
     light_store(bounced, channel, x, y + r, z,
-                clpv_add(light_load(injected, channel, x, y + r, z), clpv_reflected_intensity(flux)));
+                add_coefficients(light_load(injected, channel, x, y + r, z), reflected_intensity(flux)));
   }
 }
 
 __kernel void inject_unit(CLPV_VOLUME_IN series, CLPV_VOLUME_OUT bounced) {
   CLPV_THIS_TILE
   (void)first;
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
     light_store(bounced, channel, x, y + r, z,
-                clpv_reflected_intensity(faces_load(series, channel, x, y + r, z)));
+                reflected_intensity(faces_load(series, channel, x, y + r, z)));
   }
 }
 
 __kernel void extend_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_OUT series) {
   CLPV_THIS_TILE
   SweepTile tiles[CLPV_X_BINS];
-  clpv_load_x_bins(swept + first, x, y, z, tiles);
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  load_x_bins(swept + first, x, y, z, tiles);
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
     const FaceFluxes returned = CLPV_INCIDENT_FLUX(swept + first, tiles);
-    faces_store(series, channel, x, y + r, z, clpv_series(returned, faces_load(reflectors, channel, x, y + r, z)));
+    faces_store(series, channel, x, y + r, z, sum_series(returned, faces_load(reflectors, channel, x, y + r, z)));
   }
 }
 
 // Incident flux on one face of a row of finer cells from (x, y, z) on, from the coarser cells' faces: trilinear, and a
 // quarter, since a finer face has a quarter of the area.
-CLPV_INLINE CLPV_REAL clpv_interpolate(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
-  CLPV_BUFFER_IN from = incident + clpv_bordered_at(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
+CLPV_INLINE realW interpolate_flux(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
+  CLPV_BUFFER_IN from = incident + bordered_index(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
   const float tz = CLPV_UPPER_WEIGHT(z), ty = CLPV_UPPER_WEIGHT(y);
 #define CLPV_BILINEAR(at)                                                                                          \
   ((1.0f - tz) * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, at) + ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PITCH)) + \
    tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_BORDERED_PLANE) +                                         \
          ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_BORDERED_PLANE + CLPV_SWEEP_PITCH)))
-  const CLPV_REAL v = CLPV_BILINEAR(0);
-#if CLPV_LANES == 8
+  const realW v = CLPV_BILINEAR(0);
+#if W == 8
   return 0.25f * (x & 1 ? CLPV_ODD(v) : CLPV_EVEN(v));
 #else
   const float tx = CLPV_UPPER_WEIGHT(x);
@@ -145,9 +145,9 @@ CLPV_INLINE CLPV_REAL clpv_interpolate(CLPV_BUFFER_IN incident, const int x, con
 #endif
 }
 
-CLPV_INLINE FaceFluxes clpv_interpolate_faces(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
+CLPV_INLINE FaceFluxes interpolate_faces(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
   FaceFluxes flux;
-#define CLPV_DO(i) flux.c##i = clpv_interpolate(incident + i * CLPV_BORDERED_VOLUME, x, y, z);
+#define CLPV_DO(i) flux.c##i = interpolate_flux(incident + i * CLPV_BORDERED_VOLUME, x, y, z);
   CLPV_EACH_FACE_FLUX(CLPV_DO)
 #undef CLPV_DO
   return flux;
@@ -159,11 +159,11 @@ __kernel void inject_interpolated(CLPV_BUFFER_IN incident, const int dx, const i
   CLPV_THIS_TILE
   (void)first;
   CLPV_BUFFER_IN fluxes = incident + channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const FaceFluxes flux = clpv_reflected_flux(clpv_interpolate_faces(fluxes, x + dx, y + r + dy, z + dz),
-                                                faces_load(reflectors, channel, x, y + r, z));
+    const FaceFluxes flux = reflect_flux(interpolate_faces(fluxes, x + dx, y + r + dy, z + dz),
+                                         faces_load(reflectors, channel, x, y + r, z));
     light_store(bounced, channel, x, y + r, z,
-                clpv_add(light_load(injected, channel, x, y + r, z), clpv_reflected_intensity(flux)));
+                add_coefficients(light_load(injected, channel, x, y + r, z), reflected_intensity(flux)));
   }
 }

@@ -21,29 +21,29 @@
 #include "sweep/sweep_cell.h"
 
 // Stores eight numbers of the halo; cells outside the grid are dark.
-CLPV_INLINE void clpv_store_halo(const CLPV_REAL light, const int first, CLPV_BUFFER_OUT halo_light, const int at) {
-  const int8 i = first + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
-  CLPV_SWEEP_STORE(halo_light, at, select((CLPV_REAL)(0.0f), light, i >= 0 && i < CLPV_GRID));
+CLPV_INLINE void store_halo(const realW light, const int first, CLPV_BUFFER_OUT halo_light, const int at) {
+  const intW i = first + lane_numbers();
+  CLPV_SWEEP_STORE(halo_light, at, select(ZERO, light, i >= 0 && i < CLPV_GRID));
 }
-CLPV_INLINE void clpv_store_halo_row(const ClpvSweepHalo halo, __global const float* d, const int row, const int column,
-                                     CLPV_BUFFER_OUT halo_light, const int at) {
-  for (int i = 0; i < halo.side; i += CLPV_LANES)
-    clpv_store_halo(CLPV_PLANE_LOAD(d, clpv_plane_at(row, column + i)), column + i, halo_light, at + i);
+CLPV_INLINE void store_halo_row(const ClpvSweepHalo halo, __global const float* d, const int row, const int column,
+                                CLPV_BUFFER_OUT halo_light, const int at) {
+  for (int i = 0; i < halo.side; i += W)
+    store_halo(load_lanes(d + plane_index(row, column + i)), column + i, halo_light, at + i);
 }
-CLPV_INLINE void clpv_store_halo_column(const ClpvSweepHalo halo, __global const float* d, const int row,
-                                        const int column, CLPV_BUFFER_OUT halo_light, const int at) {
-  for (int i = 0; i < halo.side; i += CLPV_LANES) {
-#define CLPV_CELL(lane) d[clpv_plane_at(clamp(row + i + lane, -1, CLPV_GRID), column)]
-    const float8 light = {CLPV_CELL(0), CLPV_CELL(1), CLPV_CELL(2), CLPV_CELL(3),
+CLPV_INLINE void store_halo_column(const ClpvSweepHalo halo, __global const float* d, const int row,
+                                   const int column, CLPV_BUFFER_OUT halo_light, const int at) {
+  for (int i = 0; i < halo.side; i += W) {
+#define CLPV_CELL(lane) d[plane_index(clamp(row + i + lane, -1, CLPV_GRID), column)]
+    const realW light = {CLPV_CELL(0), CLPV_CELL(1), CLPV_CELL(2), CLPV_CELL(3),
                           CLPV_CELL(4), CLPV_CELL(5), CLPV_CELL(6), CLPV_CELL(7)};
 #undef CLPV_CELL
-    clpv_store_halo(light, row + i, halo_light, at + i);
+    store_halo(light, row + i, halo_light, at + i);
   }
 }
 
 // Stores the halo's cells of a plane. `d`: the ordinate's plane buffer.
-CLPV_INLINE void clpv_store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int plane,
-                                       __global const float* d) {
+CLPV_INLINE void store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int plane,
+                                  __global const float* d) {
   const ClpvSweepBin bin = s->bin;
   const int p = plane - CLPV_HALO_FIRST(halo, bin.plane_axis);
   if (p < 0 || p >= halo.side) return;
@@ -51,40 +51,40 @@ CLPV_INLINE void clpv_store_halo_plane(const BinSweep* s, const ClpvSweepHalo ha
   const int end = min(first_row + halo.side, CLPV_GRID);
   const int plane_layer = plane - CLPV_HALO_LAYER(halo, bin.plane_axis, bin.plane_sign);
   for (int row = max(first_row, 0); row < end && (plane_layer == 0 || plane_layer == 1); ++row)
-    clpv_store_halo_row(halo, d, row, first_column, s->halo_light,
-                        clpv_halo_at(halo, ordinate, CLPV_BORDER_PLANE, plane_layer, row - first_row, 0));
+    store_halo_row(halo, d, row, first_column, s->halo_light,
+                   halo_index(halo, ordinate, CLPV_BORDER_PLANE, plane_layer, row - first_row, 0));
   for (int layer = 0; layer < 2; ++layer) {
     const int row = CLPV_HALO_LAYER(halo, bin.row_axis, bin.row_sign) + layer;
     if (row >= 0 && row < CLPV_GRID)
-      clpv_store_halo_row(halo, d, row, first_column, s->halo_light,
-                          clpv_halo_at(halo, ordinate, CLPV_BORDER_ROW, layer, p, 0));
+      store_halo_row(halo, d, row, first_column, s->halo_light,
+                     halo_index(halo, ordinate, CLPV_BORDER_ROW, layer, p, 0));
     const int column = CLPV_HALO_LAYER(halo, bin.column_axis, bin.column_sign) + layer;
     if (column >= 0 && column < CLPV_GRID)
-      clpv_store_halo_column(halo, d, first_row, column, s->halo_light,
-                             clpv_halo_at(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, 0));
+      store_halo_column(halo, d, first_row, column, s->halo_light,
+                        halo_index(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, 0));
   }
 }
 
 // Ends a plane: stores its part of the halo, and copies the boundary condition that the next plane reads.
-CLPV_INLINE void clpv_end_plane(const BinSweep* s, const ClpvSweepHalo halo, const int dark,
-                                __global float* plane_buffer, const int plane) {
+CLPV_INLINE void end_plane(const BinSweep* s, const ClpvSweepHalo halo, const int dark,
+                           __global float* plane_buffer, const int plane) {
   const int first = CLPV_ORDINATE(s->number, 0, 0);
   for (int ordinate = first; ordinate < first + 3 * CLPV_PARTS; ++ordinate) {
-    clpv_store_halo_plane(s, halo, ordinate, plane, plane_buffer + ordinate * CLPV_BORDERED_PLANE);
-    for (int at = -1; at <= CLPV_GRID && !dark; at += CLPV_LANES) {
-      clpv_copy_border_row(s, plane_buffer, ordinate, plane, at);
-      clpv_copy_border_column(s, plane_buffer, ordinate, plane, at);
+    store_halo_plane(s, halo, ordinate, plane, plane_buffer + ordinate * CLPV_BORDERED_PLANE);
+    for (int at = -1; at <= CLPV_GRID && !dark; at += W) {
+      copy_border_row(s, plane_buffer, ordinate, plane, at);
+      copy_border_column(s, plane_buffer, ordinate, plane, at);
     }
   }
 }
 
 // Prefetches a row of the next plane in all volumes. Hardware prefetch stops at the end of a page, and two planes of
 // 32 x 32 halves fill one.
-CLPV_INLINE void clpv_prefetch_row(const BinSweep* s, const int plane, const int row) {
+CLPV_INLINE void prefetch_row(const BinSweep* s, const int plane, const int row) {
   const ClpvSweepBin bin = s->bin;
   const int next = clamp(plane + bin.plane_sign, 0, CLPV_GRID - 1);
   for (int column = 0; column < CLPV_SWEEP_ROW; column += CLPV_LINE / (CLPV_STORAGE_HALF ? 2 : 4)) {
-    const int at = clpv_sweep_at(next, row, column);
+    const int at = sweep_index(next, row, column);
     for (int channel = 0; channel < 3; ++channel)
       CLPV_PREFETCH(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME + at);
     for (int k = 0; k < 4 && CLPV_BLOCKING; ++k) CLPV_PREFETCH(s->links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
@@ -100,19 +100,19 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
   const BinSweep s = CLPV_BIN_SWEEP(b);
-  for (int i = 0; i < CLPV_ORDINATE(1, 0, 0) * CLPV_BORDERED_PLANE && dark; i += CLPV_LANES)
-    CLPV_PLANE_STORE(plane_buffer, CLPV_ORDINATE(b, 0, 0) * CLPV_BORDERED_PLANE + i, (CLPV_REAL)(0.0f));
-  const int last_column = (CLPV_GRID - 1) / CLPV_LANES * CLPV_LANES;
+  for (int i = 0; i < CLPV_ORDINATE(1, 0, 0) * CLPV_BORDERED_PLANE && dark; i += W)
+    store_lanes(ZERO, plane_buffer + CLPV_ORDINATE(b, 0, 0) * CLPV_BORDERED_PLANE + i);
+  const int last_column = (CLPV_GRID - 1) / W * W;
   for (int p = 0; p < CLPV_GRID; ++p) {
     const int plane = bin.plane_sign > 0 ? p : CLPV_GRID - 1 - p;
     for (int r = 0; r < CLPV_GRID; ++r) {
       const int row = bin.row_sign > 0 ? CLPV_GRID - 1 - r : r;
-      clpv_prefetch_row(&s, plane, row);
-      for (int c = 0; c <= last_column; c += CLPV_LANES) {
+      prefetch_row(&s, plane, row);
+      for (int c = 0; c <= last_column; c += W) {
         const int column = bin.column_sign > 0 ? last_column - c : c;
-        clpv_sweep_cells(&s, plane_buffer, plane_buffer, plane, row, column);
+        sweep_cells(&s, plane_buffer, plane_buffer, plane, row, column);
       }
     }
-    clpv_end_plane(&s, halo, dark, plane_buffer, plane);
+    end_plane(&s, halo, dark, plane_buffer, plane);
   }
 }

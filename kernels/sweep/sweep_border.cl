@@ -35,16 +35,16 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
   const int pitch = CLPV_SWEEP_HALO_PITCH_OF(halo.side), next = halo.side * pitch;
   const int coarser = ordinate / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
   CLPV_BUFFER_IN light =
-      halo_light + clpv_halo_at(halo, coarser, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
-                                CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
+      halo_light + halo_index(halo, coarser, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
+                              CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
   const float tl = CLPV_UPPER_WEIGHT(layer), tr = CLPV_UPPER_WEIGHT(r);
-  const float8 lower = (1.0f - tr) * CLPV_READ_ROW(light, 0) + tr * CLPV_READ_ROW(light, pitch);
-  const float8 upper = (1.0f - tr) * CLPV_READ_ROW(light, next) + tr * CLPV_READ_ROW(light, next + pitch);
-  const float8 v = direction->from_coarser * ((1.0f - tl) * lower + tl * upper);
-  const float8 in = c & 1 ? CLPV_ODD(v) : CLPV_EVEN(v);
+  const realW lower = (1.0f - tr) * CLPV_READ_ROW(light, 0) + tr * CLPV_READ_ROW(light, pitch);
+  const realW upper = (1.0f - tr) * CLPV_READ_ROW(light, next) + tr * CLPV_READ_ROW(light, next + pitch);
+  const realW v = direction->from_coarser * ((1.0f - tl) * lower + tl * upper);
+  const realW in = c & 1 ? CLPV_ODD(v) : CLPV_EVEN(v);
   if (plane_face) {
-    vstore8(in, 0, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, column));
+    store_lanes(in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
   } else {
-    CLPV_WRITE_ROW(border, clpv_border_at(ordinate, face, row, column), in);
+    CLPV_WRITE_ROW(border, border_index(ordinate, face, row, column), in);
   }
 }

@@ -20,7 +20,7 @@
 
 // Index in `border` of cell `at` (-1 to CLPV_GRID) of the row or column upstream of a plane. Groups of eight start at
 // cell -1.
-CLPV_INLINE int clpv_border_at(const int ordinate, const int face, const int plane, const int at) {
+CLPV_INLINE int border_index(const int ordinate, const int face, const int plane, const int at) {
   const int per_bin = 3 * CLPV_PARTS, planes = ordinate / per_bin * (CLPV_GRID + 2) + plane + 1;
   const int side = 2 * (planes * per_bin + ordinate % per_bin) + face - CLPV_BORDER_ROW;
   return side * CLPV_SWEEP_PITCH + 1 + at;
@@ -33,8 +33,8 @@ CLPV_INLINE int clpv_border_at(const int ordinate, const int face, const int pla
 
 // Index in a halo. (i, j) is (row, column) in CLPV_BORDER_PLANE, (plane, column) in CLPV_BORDER_ROW and (plane, row) in
 // CLPV_BORDER_COLUMN.
-CLPV_INLINE int clpv_halo_at(const ClpvSweepHalo halo, const int ordinate, const int face, const int layer, const int i,
-                             const int j) {
+CLPV_INLINE int halo_index(const ClpvSweepHalo halo, const int ordinate, const int face, const int layer, const int i,
+                           const int j) {
   return (ordinate * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
          (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
 }

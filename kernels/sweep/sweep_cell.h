@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// One step of a sweep: CLPV_LANES cells of a plane, all channels and all directions of a bin. Both forms of the sweep
+// One step of a sweep: W cells of a plane, all channels and all directions of a bin. Both forms of the sweep
 // use it (sweep_bins.cl, sweep_planes.cl).
 //
 //   D = I + sum_k t_k T_k D_k            k: the four cells of the previous plane that light comes from
 //   L s^2 = sum_d share_d D_d            d: the directions of the bin
 //
 // Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light along a direction, I
-// [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k in [0, 1] the transmittance of the link from cell k; t_k and share_d are in
-// ClpvSweepDirection.
+// [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k
+// in [0, 1] the transmittance of the link from cell k; t_k and share_d are in ClpvSweepDirection.
 //
 // With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium scatters light into it:
 //
@@ -62,64 +62,64 @@ typedef struct {
    sums,                                                                                                      \
    halo_light CLPV_MEDIUM_MEMBER}
 
-// Nonzero if CLPV_LANES cells hold sources.
-#if CLPV_SOURCE_LANES >= CLPV_LANES
+// Nonzero if W cells hold sources.
+#if CLPV_SOURCE_LANES >= W
 #define CLPV_LIT(lit, source) ((lit)[(source) / CLPV_SOURCE_LANES])
 #else
 #define CLPV_LIT(lit, source) as_ulong(vload8(0, (lit) + (source)))
 #endif
 
 // Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in these cells.
-CLPV_INLINE void clpv_add_sources(const BinSweep* s, const int source, __global float* planes, CLPV_REAL* sum) {
+CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes, realW* sum) {
   for (int channel = 0; channel < 3; ++channel) {
-    CLPV_REAL injected[CLPV_PARTS];
+    realW injected[CLPV_PARTS];
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
     for (int j = 0; j < CLPV_EMITTING; ++j) {
       const int volume = channel * CLPV_SOURCES + s->coefficients[j];
-      const CLPV_REAL c = CLPV_SWEEP_LOAD(s->sources + volume * CLPV_SWEEP_VOLUME, source);
+      const realW c = CLPV_SWEEP_LOAD(s->sources + volume * CLPV_SWEEP_VOLUME, source);
 #pragma unroll
       for (int part = 0; part < CLPV_PARTS; ++part)
-        injected[part] = fma((CLPV_REAL)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
+        injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
     }
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {
       const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
-      CLPV_PLANE_STORE(planes, ordinate, CLPV_PLANE_LOAD(planes, ordinate) + injected[part]);
-      sum[channel] = fma((CLPV_REAL)(s->directions[part].share), injected[part], sum[channel]);
+      store_lanes(load_lanes(planes + ordinate) + injected[part], planes + ordinate);
+      sum[channel] = fma((realW)(s->directions[part].share), injected[part], sum[channel]);
     }
   }
 }
 
 // `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the same.
-CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from, __global float* to, const int plane,
-                                  const int row, const int column) {
+CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to, const int plane,
+                             const int row, const int column) {
   const ClpvSweepBin bin = s->bin;
-  const int at = clpv_sweep_at(plane, row, column);
-  const int here = CLPV_ORDINATE(s->number, 0, 0) * CLPV_BORDERED_PLANE + clpv_plane_at(row, column);
+  const int at = sweep_index(plane, row, column);
+  const int here = CLPV_ORDINATE(s->number, 0, 0) * CLPV_BORDERED_PLANE + plane_index(row, column);
   __global const float* from0 = from + here;
   __global const float* from1 = from0 - bin.column_sign;
   __global const float* from2 = from0 - bin.row_sign * CLPV_SWEEP_PITCH;
   __global const float* from3 = from2 - bin.column_sign;
 #if CLPV_BLOCKING
-#define CLPV_LINK(k) const CLPV_REAL t##k = CLPV_SWEEP_LOAD(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at)
+#define CLPV_LINK(k) const realW t##k = CLPV_SWEEP_LOAD(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at)
   CLPV_LINK(0);
   CLPV_LINK(1);
   CLPV_LINK(2);
   CLPV_LINK(3);
 #define CLPV_TAP(k) (s->directions[part].taps[k] * t##k)
 #else
-#define CLPV_TAP(k) ((CLPV_REAL)(s->directions[part].taps[k]))
+#define CLPV_TAP(k) ((realW)(s->directions[part].taps[k]))
 #endif
 #if CLPV_MEDIUM
 #define CLPV_INSIDE(axis, i) ((axis)*CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + (i))
   const int upstream = plane - bin.plane_sign;
-  const int scattered_upstream = upstream < 0 || upstream >= CLPV_GRID ? at : clpv_sweep_at(upstream, row, column);
-  const CLPV_REAL across = 0.5f * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
-                           CLPV_PLANE_LOAD(s->inside, CLPV_INSIDE(bin.column_axis, column));
-  const CLPV_REAL inside = across * s->inside[CLPV_INSIDE(bin.plane_axis, plane)],
+  const int scattered_upstream = upstream < 0 || upstream >= CLPV_GRID ? at : sweep_index(upstream, row, column);
+  const realW across = 0.5f * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
+                           load_lanes(s->inside + CLPV_INSIDE(bin.column_axis, column));
+  const realW inside = across * s->inside[CLPV_INSIDE(bin.plane_axis, plane)],
                   inside_upstream = across * s->inside[CLPV_INSIDE(bin.plane_axis, upstream)];
-  CLPV_REAL scattered[3];
+  realW scattered[3];
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel) {
     CLPV_BUFFER_IN volume = s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME;
@@ -127,27 +127,27 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
         inside * CLPV_SWEEP_LOAD(volume, at) + inside_upstream * CLPV_SWEEP_LOAD(volume, scattered_upstream);
   }
 #endif
-  CLPV_REAL sum[3] = {0.0f, 0.0f, 0.0f};
+  realW sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
   for (int part = 0; part < CLPV_PARTS; ++part) {
-    const CLPV_REAL w0 = CLPV_TAP(0), w1 = CLPV_TAP(1), w2 = CLPV_TAP(2), w3 = CLPV_TAP(3);
+    const realW w0 = CLPV_TAP(0), w1 = CLPV_TAP(1), w2 = CLPV_TAP(2), w3 = CLPV_TAP(3);
 #pragma unroll
     for (int channel = 0; channel < 3; ++channel) {
       const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
-      CLPV_REAL d = w0 * CLPV_PLANE_LOAD(from0, ordinate);
-      d = fma(w1, CLPV_PLANE_LOAD(from1, ordinate), d);
-      d = fma(w2, CLPV_PLANE_LOAD(from2, ordinate), d);
-      d = fma(w3, CLPV_PLANE_LOAD(from3, ordinate), d);
+      realW d = w0 * load_lanes(from0 + ordinate);
+      d = fma(w1, load_lanes(from1 + ordinate), d);
+      d = fma(w2, load_lanes(from2 + ordinate), d);
+      d = fma(w3, load_lanes(from3 + ordinate), d);
 #if CLPV_MEDIUM
-      const CLPV_REAL lost = 1.0f - s->directions[part].attenuation[channel];
+      const realW lost = 1.0f - s->directions[part].attenuation[channel];
       d = fma(lost, s->directions[part].flux * scattered[channel] - (inside + inside_upstream) * d, d);
 #endif
-      CLPV_PLANE_STORE(to + here, ordinate, d);
-      sum[channel] = fma((CLPV_REAL)(s->directions[part].share), d, sum[channel]);
+      store_lanes(d, to + here + ordinate);
+      sum[channel] = fma((realW)(s->directions[part].share), d, sum[channel]);
     }
   }
   const int source = plane * bin.plane + row * bin.row + column;
-  if (CLPV_LIT(s->lit, source)) clpv_add_sources(s, source, to + here, sum);
+  if (CLPV_LIT(s->lit, source)) add_sources(s, source, to + here, sum);
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel)
     CLPV_SWEEP_STORE(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at, sum[channel]);
@@ -157,17 +157,17 @@ CLPV_INLINE void clpv_sweep_cells(const BinSweep* s, __global const float* from,
 #define CLPV_UPSTREAM(sign) ((sign) > 0 ? -1 : CLPV_GRID)
 
 // Copy the boundary condition of a plane from the border into the plane buffer, where the next plane reads it:
-// CLPV_LANES cells of the row upstream, and of the column upstream (one cell with one lane).
-CLPV_INLINE void clpv_copy_border_row(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
-                                      const int column) {
-  CLPV_PLANE_STORE(planes, ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(CLPV_UPSTREAM(s->bin.row_sign), column),
-                   CLPV_SWEEP_LOAD(s->border, clpv_border_at(ordinate, CLPV_BORDER_ROW, plane, column)));
+// W cells of the row upstream, and of the column upstream (one cell with one lane).
+CLPV_INLINE void copy_border_row(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
+                                 const int column) {
+  planes += ordinate * CLPV_BORDERED_PLANE + plane_index(CLPV_UPSTREAM(s->bin.row_sign), column);
+  store_lanes(CLPV_SWEEP_LOAD(s->border, border_index(ordinate, CLPV_BORDER_ROW, plane, column)), planes);
 }
-CLPV_INLINE void clpv_copy_border_column(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
-                                         const int row) {
-  const CLPV_REAL light = CLPV_SWEEP_LOAD(s->border, clpv_border_at(ordinate, CLPV_BORDER_COLUMN, plane, row));
-  planes += ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, CLPV_UPSTREAM(s->bin.column_sign));
-#if CLPV_LANES == 8
+CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
+                                    const int row) {
+  const realW light = CLPV_SWEEP_LOAD(s->border, border_index(ordinate, CLPV_BORDER_COLUMN, plane, row));
+  planes += ordinate * CLPV_BORDERED_PLANE + plane_index(row, CLPV_UPSTREAM(s->bin.column_sign));
+#if W == 8
 #define CLPV_DO(lane) \
   if (row + 0x##lane <= CLPV_GRID) planes[0x##lane * CLPV_SWEEP_PITCH] = light.s##lane;
   CLPV_DO(0) CLPV_DO(1) CLPV_DO(2) CLPV_DO(3) CLPV_DO(4) CLPV_DO(5) CLPV_DO(6) CLPV_DO(7)

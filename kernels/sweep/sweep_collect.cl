@@ -9,8 +9,8 @@
 //       incident     with CLPV_WITH_INCIDENT: flux [W] on the six faces of each cell, a bordered volume for each
 //                    channel and face; bounces of the next finer cascade read it (bounce.cl)
 // From the host (host/codegen/sweep_source.cpp): struct Bins, CLPV_EACH_X_BIN, _Y_, _Z_ (sweep_source.cl), Coefficients
-// clpv_project_bins(Bins), and with CLPV_WITH_INCIDENT struct FaceFluxes and FaceFluxes clpv_incident_flux(Bins). A
-// work-item computes a tile of CLPV_LANES x CLPV_LANES cells of a slice and channel.
+// project_bins(Bins), and with CLPV_WITH_INCIDENT struct FaceFluxes and FaceFluxes incident_flux(Bins). A
+// work-item computes a tile of W x W cells of a slice and channel.
 #ifndef CLPV_WITH_INCIDENT
 #define CLPV_WITH_INCIDENT 0
 #endif
@@ -25,19 +25,19 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
                             , CLPV_BUFFER_OUT incident
 #endif
 ) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);
+  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   CLPV_BUFFER_IN volumes = sums + channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
   SweepTile tiles[CLPV_X_BINS];
-  clpv_load_x_bins(volumes, x, y, z, tiles);
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  load_x_bins(volumes, x, y, z, tiles);
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const Bins bins = clpv_load_bins(volumes, tiles, r, x, y + r, z);
-    light_store(accumulated, channel, x, y + r, z, clpv_project_bins(bins));
+    const Bins bins = load_bins(volumes, tiles, r, x, y + r, z);
+    light_store(accumulated, channel, x, y + r, z, project_bins(bins));
 #if CLPV_WITH_INCIDENT
-    const FaceFluxes flux = clpv_incident_flux(bins);
-    const int bordered = clpv_bordered_at(z, y + r, x);
+    const FaceFluxes flux = incident_flux(bins);
+    const int bordered = bordered_index(z, y + r, x);
     CLPV_BUFFER_OUT faces = incident + channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
 #define CLPV_DO(i) CLPV_SWEEP_STORE(faces + i * CLPV_BORDERED_VOLUME, bordered, CLPV_WITHIN(x, flux.c##i));
     CLPV_EACH_FACE_FLUX(CLPV_DO)

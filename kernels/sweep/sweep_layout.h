@@ -9,22 +9,9 @@
 #ifndef CLPV_SWEEP_LAYOUT_H
 #define CLPV_SWEEP_LAYOUT_H
 
+#include "lanes.h"
 #include "shared/sweep.h"
 #include "volume/numbers.h"
-
-#ifndef CLPV_INLINE
-#define CLPV_INLINE static inline __attribute__((always_inline))
-#endif
-#ifndef CLPV_LANES
-#define CLPV_LANES 8
-#endif
-#ifndef CLPV_REAL
-#if CLPV_LANES == 8
-#define CLPV_REAL float8
-#else
-#define CLPV_REAL float
-#endif
-#endif
 
 #define CLPV_SWEEP_ROW CLPV_SWEEP_ROW_OF(CLPV_GRID)
 #define CLPV_SWEEP_PLANE CLPV_SWEEP_PLANE_OF(CLPV_GRID)
@@ -35,28 +22,24 @@
 #define CLPV_BORDERED_PLANE CLPV_SWEEP_BORDERED_PLANE_OF(CLPV_GRID)
 #define CLPV_BORDERED_VOLUME CLPV_SWEEP_BORDERED_VOLUME_OF(CLPV_GRID)
 
-// CLPV_LANES numbers of a row: of a volume (float or half), and of a plane buffer (float).
-#if CLPV_LANES == 8
+// W numbers of a row of a volume, float or half.
+#if W == 8
 #define CLPV_SWEEP_LOAD(from, at) CLPV_READ_ROW(from, at)
 #define CLPV_SWEEP_STORE(to, at, value) CLPV_WRITE_ROW(to, at, value)
-#define CLPV_PLANE_LOAD(from, at) vload8(0, (from) + (at))
-#define CLPV_PLANE_STORE(to, at, value) vstore8(value, 0, (to) + (at))
 #else
 #define CLPV_SWEEP_LOAD(from, at) CLPV_READ(from, at)
 #define CLPV_SWEEP_STORE(to, at, value) CLPV_WRITE(to, at, value)
-#define CLPV_PLANE_LOAD(from, at) (from)[at]
-#define CLPV_PLANE_STORE(to, at, value) (to)[at] = value
 #endif
 
 // Index of a cell in a volume, in a plane buffer and in a bordered volume.
-CLPV_INLINE int clpv_sweep_at(const int plane, const int row, const int column) {
+CLPV_INLINE int sweep_index(const int plane, const int row, const int column) {
   return plane * CLPV_SWEEP_PLANE + row * CLPV_SWEEP_ROW + column;
 }
-CLPV_INLINE int clpv_plane_at(const int row, const int column) {
+CLPV_INLINE int plane_index(const int row, const int column) {
   return (row + 1) * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + column;
 }
-CLPV_INLINE int clpv_bordered_at(const int plane, const int row, const int column) {
-  return (plane + 1) * CLPV_BORDERED_PLANE + clpv_plane_at(row, column);
+CLPV_INLINE int bordered_index(const int plane, const int row, const int column) {
+  return (plane + 1) * CLPV_BORDERED_PLANE + plane_index(row, column);
 }
 
 #endif

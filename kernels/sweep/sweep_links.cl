@@ -7,7 +7,7 @@
 // Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use (sweep_layout.h)
 // From the host (host/codegen/transmittance_source.cpp, sweep_source.cpp): CLPV_TRANSMITTANCE and struct Links, as in
 // transmittance.cl, and CLPV_EACH_X_LINK(DO), _Y_, _Z_, which write DO(volume, link), links across x first.
-// A work-item computes a tile of CLPV_LANES x CLPV_LANES cells of a slice.
+// A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "sweep/sweep_tiles.h"
 #include "volume/geometry.h"
@@ -16,16 +16,16 @@
   const Coefficients g##i = geometry_load(blockers, 0, x + (i & 1), y + r + ((i >> 1) & 1), z + (i >> 2));
 
 __kernel void sweep_links(CLPV_VOLUME_IN blockers, CLPV_BUFFER_OUT transmittance) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);
+  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   SweepTile tiles[CLPV_X_LINKS];
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  for (int r = 0; r < W; ++r) {
     if (y + r < CLPV_GRID) {
       CLPV_LOAD_CORNER(0) CLPV_LOAD_CORNER(1) CLPV_LOAD_CORNER(2) CLPV_LOAD_CORNER(3)
       CLPV_LOAD_CORNER(4) CLPV_LOAD_CORNER(5) CLPV_LOAD_CORNER(6) CLPV_LOAD_CORNER(7)
       CLPV_TRANSMITTANCE
-      const int across_z = clpv_sweep_at(z, y + r, x), across_y = clpv_sweep_at(y + r, z, x);
+      const int across_z = sweep_index(z, y + r, x), across_y = sweep_index(y + r, z, x);
 #define CLPV_DO(volume, link) \
   CLPV_SWEEP_STORE(transmittance + volume * CLPV_SWEEP_VOLUME, across_z, CLPV_WITHIN(x, links.c##link));
       CLPV_EACH_Z_LINK(CLPV_DO)
@@ -43,5 +43,5 @@ __kernel void sweep_links(CLPV_VOLUME_IN blockers, CLPV_BUFFER_OUT transmittance
 #undef CLPV_DO
     }
   }
-  for (int v = 0; v < CLPV_X_LINKS; ++v) clpv_store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);
+  for (int v = 0; v < CLPV_X_LINKS; ++v) store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);
 }

@@ -16,8 +16,8 @@
 //   In:      lit           J s^2 of the lights
 //            swept         L s^2 [W/sr], as written by a sweep
 //   Out:     sources
-// From the host (host/codegen/sweep_source.cpp): struct Bins, CLPV_EACH_X_BIN, _Y_, _Z_, and Bins clpv_scatter(Bins), the
-// product with M. A work-item computes a tile of CLPV_LANES x CLPV_LANES cells of a slice; in scatter_swept of a channel.
+// From the host (host/codegen/sweep_source.cpp): struct Bins, CLPV_EACH_X_BIN, _Y_, _Z_, and Bins scatter_bins(Bins), the
+// product with M. A work-item computes a tile of W x W cells of a slice; in scatter_swept of a channel.
 #include "volume/coefficients.h"
 #include "lanes.h"
 #include "gather/medium.h"
@@ -25,22 +25,11 @@
 #include "shared/grid.h"
 #include "sweep/sweep_tiles.h"
 
-#if CLPV_LANES == 8
-#define CLPV_ROW_OF(numbers) vload8(0, numbers)
-#else
-#define CLPV_ROW_OF(numbers) (numbers)[0]
-#endif
-
 // The light of a tile's row: irradiance in each channel, and the direction in which it travels.
 typedef struct {
-  CLPV_REAL irradiance[3];
-  CLPV_REAL x, y, z;
+  realW irradiance[3];
+  realW x, y, z;
 } LitRow;
-
-CLPV_INLINE float sum_of(const float8 v) {
-  const float4 four = v.lo + v.hi;
-  return four.x + four.y + four.z + four.w;
-}
 
 // Mean irradiance of the part of cell (x, y, z) in the medium, for each channel. A point in a cell with a spot or point
 // light counts as at least a quarter of the cell's edge away.
@@ -53,32 +42,34 @@ CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, con
   *red = *green = *blue = 0.0f;
   for (int axis = 0; axis < 3; ++axis)
     if (lower[axis] >= medium.upper[axis] || lower[axis] + cell <= medium.lower[axis]) return;
-#define CLPV_POINTS(axis, ...) \
-  clamp(lower[axis] + cell * (float8)(__VA_ARGS__), (float8)(medium.lower[axis]), (float8)(medium.upper[axis]))
-  const Vec points = vec(CLPV_POINTS(0, 0.25f, 0.75f, 0.25f, 0.75f, 0.25f, 0.75f, 0.25f, 0.75f),
-                         CLPV_POINTS(1, 0.25f, 0.25f, 0.75f, 0.75f, 0.25f, 0.25f, 0.75f, 0.75f),
-                         CLPV_POINTS(2, 0.25f, 0.25f, 0.25f, 0.25f, 0.75f, 0.75f, 0.75f, 0.75f));
-#undef CLPV_POINTS
-  Vec towards;
-  Vec irradiance = clpv_light_irradiance(light, points, &towards);
-  float8 share = 0.125f * clpv_light_reaches(shadow, points);
-  if (light.kind != CLPV_LIGHT_DIRECTIONAL) {
-    const Vec offset = vec_minus(points, vec_of(light.position));
-    const float8 near = vec_dot(offset, offset) * (16.0f / (cell * cell));
-    share *= near < (float8)(1.0f) ? near : (float8)(1.0f);
+  for (int point = 0; point < 8; point += W) {
+    const intW corner = point + lane_numbers();
+    const Vec at = vec(to_realW(corner & 1), to_realW(corner >> 1 & 1), to_realW(corner >> 2));
+#define CLPV_POINT(axis, c) \
+  clamp(lower[axis] + cell * (0.25f + 0.5f * at.c), (realW)(medium.lower[axis]), (realW)(medium.upper[axis]))
+    const Vec points = vec(CLPV_POINT(0, x), CLPV_POINT(1, y), CLPV_POINT(2, z));
+#undef CLPV_POINT
+    Vec towards;
+    Vec irradiance = light_irradiance(light, points, &towards);
+    realW share = 0.125f * light_reaches(shadow, points);
+    if (light.kind != CLPV_LIGHT_DIRECTIONAL) {
+      const Vec offset = vec_minus(points, vec_of(light.position));
+      const realW near = vec_dot(offset, offset) * (16.0f / (cell * cell));
+      share *= near < ONE ? near : ONE;
+    }
+    irradiance = vec_times(irradiance, share);
+    *red += sum_lanes(irradiance.x), *green += sum_lanes(irradiance.y), *blue += sum_lanes(irradiance.z);
   }
-  irradiance = vec_times(irradiance, share);
-  *red = sum_of(irradiance.x), *green = sum_of(irradiance.y), *blue = sum_of(irradiance.z);
 }
 
 // Fills the lit rows of the tile from cell (x, y, z) on; returns whether any cell is lit.
 CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow, const int x, const int y,
                             const int z, LitRow* rows) {
   float brightest = 0.0f;
-  for (int r = 0; r < CLPV_LANES; ++r) {
-    float red[CLPV_LANES], green[CLPV_LANES], blue[CLPV_LANES], along_x[CLPV_LANES], along_y[CLPV_LANES],
-        along_z[CLPV_LANES];
-    for (int i = 0; i < CLPV_LANES; ++i) {
+  for (int r = 0; r < W; ++r) {
+    float red[W], green[W], blue[W], along_x[W], along_y[W],
+        along_z[W];
+    for (int i = 0; i < W; ++i) {
       red[i] = green[i] = blue[i] = 0.0f;
       float3 along = (float3)(light.direction[0], light.direction[1], light.direction[2]);
       if (light.kind == CLPV_LIGHT_POINT || light.kind == CLPV_LIGHT_SPOT) {
@@ -92,20 +83,20 @@ CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const Sh
       cell_irradiance(grid, light, shadow, x + i, y + r, z, red + i, green + i, blue + i);
       brightest += red[i] + green[i] + blue[i];
     }
-    const LitRow row = {{CLPV_ROW_OF(red), CLPV_ROW_OF(green), CLPV_ROW_OF(blue)},
-                        CLPV_ROW_OF(along_x), CLPV_ROW_OF(along_y), CLPV_ROW_OF(along_z)};
+    const LitRow row = {{load_lanes(red), load_lanes(green), load_lanes(blue)},
+                        load_lanes(along_x), load_lanes(along_y), load_lanes(along_z)};
     rows[r] = row;
   }
   return brightest > 0.0f;
 }
 
 // p_b for light along a row's directions, up to a factor.
-CLPV_INLINE CLPV_REAL phase_to(const LitRow row, const float g, const float4 bin) {
-  const CLPV_REAL d = 1.0f + g * g - 2.0f * g * (bin.x * row.x + bin.y * row.y + bin.z * row.z);
+CLPV_INLINE realW phase_to(const LitRow row, const float g, const float4 bin) {
+  const realW d = 1.0f + g * g - 2.0f * g * (bin.x * row.x + bin.y * row.y + bin.z * row.z);
   return 1.0f / (d * sqrt(d));
 }
 
-CLPV_INLINE void add_to_row(CLPV_BUFFER_OUT volume, const int at, const CLPV_REAL added) {
+CLPV_INLINE void add_to_row(CLPV_BUFFER_OUT volume, const int at, const realW added) {
   CLPV_SWEEP_STORE(volume, at, CLPV_SWEEP_LOAD(volume, at) + added);
 }
 
@@ -113,37 +104,37 @@ CLPV_INLINE void add_to_row(CLPV_BUFFER_OUT volume, const int at, const CLPV_REA
 CLPV_INLINE void add_tile(CLPV_BUFFER_OUT volume, const int bin, const SweepTile tile, const int x, const int y,
                           const int z) {
   if (bin < CLPV_X_BINS) {
-    const SweepTile columns = clpv_transpose(tile);
-    for (int r = 0; r < CLPV_LANES && x + r < CLPV_GRID; ++r)
-      add_to_row(volume, clpv_sweep_at(x + r, z, y), columns.row[r]);
+    const SweepTile columns = transpose_tile(tile);
+    for (int r = 0; r < W && x + r < CLPV_GRID; ++r)
+      add_to_row(volume, sweep_index(x + r, z, y), columns.row[r]);
     return;
   }
-  for (int r = 0; r < CLPV_LANES && y + r < CLPV_GRID; ++r)
-    add_to_row(volume, bin < 2 * CLPV_X_BINS ? clpv_sweep_at(y + r, z, x) : clpv_sweep_at(z, y + r, x), tile.row[r]);
+  for (int r = 0; r < W && y + r < CLPV_GRID; ++r)
+    add_to_row(volume, bin < 2 * CLPV_X_BINS ? sweep_index(y + r, z, x) : sweep_index(z, y + r, x), tile.row[r]);
 }
 
 __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light, __global const ClpvView* views,
                              const uint count, const uint which, __global const float* map,
                              __constant const float4* bins, CLPV_BUFFER_OUT sources) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1), z = (int)get_global_id(2);
+  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1), z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   const ShadowMap shadow = {views, count, which, map};
-  LitRow rows[CLPV_LANES];
+  LitRow rows[W];
   if (!light_tile(grid, light, shadow, x, y, z, rows)) return;
   const float g = light.medium.anisotropy, area = grid.cell * grid.cell;
-  for (int r = 0; r < CLPV_LANES; ++r) {
-    CLPV_REAL all = 0.0f;
+  for (int r = 0; r < W; ++r) {
+    realW all = 0.0f;
     for (int b = 0; b < CLPV_SWEEP_BINS; ++b) all += phase_to(rows[r], g, bins[b]);
-    const CLPV_REAL scale = area * (float)CLPV_SWEEP_BINS / (4.0f * M_PI_F * all);
+    const realW scale = area * (float)CLPV_SWEEP_BINS / (4.0f * M_PI_F * all);
     for (int channel = 0; channel < 3; ++channel)
-      rows[r].irradiance[channel] *= scale * clpv_albedo(light.medium, channel);
+      rows[r].irradiance[channel] *= scale * medium_albedo(light.medium, channel);
   }
   for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
     SweepTile phases;
-    for (int r = 0; r < CLPV_LANES; ++r) phases.row[r] = phase_to(rows[r], g, bins[b]);
+    for (int r = 0; r < W; ++r) phases.row[r] = phase_to(rows[r], g, bins[b]);
     for (int channel = 0; channel < 3; ++channel) {
       SweepTile added;
-      for (int r = 0; r < CLPV_LANES; ++r) added.row[r] = phases.row[r] * rows[r].irradiance[channel];
+      for (int r = 0; r < W; ++r) added.row[r] = phases.row[r] * rows[r].irradiance[channel];
       add_tile(sources + (channel * CLPV_SWEEP_BINS + b) * CLPV_SWEEP_VOLUME, b, added, x, y, z);
     }
   }
@@ -151,29 +142,29 @@ __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light, __globa
 
 __kernel void scatter_swept(const ClpvMedium medium, CLPV_BUFFER_IN lit, CLPV_BUFFER_IN swept,
                             CLPV_BUFFER_OUT sources) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1);
+  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   const int first = channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
-  const float albedo = clpv_albedo(medium, channel);
+  const float albedo = medium_albedo(medium, channel);
   SweepTile tiles[CLPV_X_BINS], before[CLPV_X_BINS];
-  clpv_load_x_bins(swept + first, x, y, z, tiles);
-  clpv_load_x_bins(lit + first, x, y, z, before);
-  for (int r = 0; r < CLPV_LANES && y + r < CLPV_GRID; ++r) {
-    const Bins added = clpv_scatter(clpv_load_bins(swept + first, tiles, r, x, y + r, z));
-    const Bins base = clpv_load_bins(lit + first, before, r, x, y + r, z);
-#define CLPV_DO(b) tiles[b].row[r] = fma((CLPV_REAL)(albedo), added.c##b, base.c##b);
+  load_x_bins(swept + first, x, y, z, tiles);
+  load_x_bins(lit + first, x, y, z, before);
+  for (int r = 0; r < W && y + r < CLPV_GRID; ++r) {
+    const Bins added = scatter_bins(load_bins(swept + first, tiles, r, x, y + r, z));
+    const Bins base = load_bins(lit + first, before, r, x, y + r, z);
+#define CLPV_DO(b) tiles[b].row[r] = fma((realW)(albedo), added.c##b, base.c##b);
     CLPV_EACH_X_BIN(CLPV_DO)
 #undef CLPV_DO
 #define CLPV_STORE(b, at) \
-  CLPV_SWEEP_STORE(sources + first + b * CLPV_SWEEP_VOLUME, at, fma((CLPV_REAL)(albedo), added.c##b, base.c##b));
-#define CLPV_DO(b) CLPV_STORE(b, clpv_sweep_at(y + r, z, x))
+  CLPV_SWEEP_STORE(sources + first + b * CLPV_SWEEP_VOLUME, at, fma((realW)(albedo), added.c##b, base.c##b));
+#define CLPV_DO(b) CLPV_STORE(b, sweep_index(y + r, z, x))
     CLPV_EACH_Y_BIN(CLPV_DO)
 #undef CLPV_DO
-#define CLPV_DO(b) CLPV_STORE(b, clpv_sweep_at(z, y + r, x))
+#define CLPV_DO(b) CLPV_STORE(b, sweep_index(z, y + r, x))
     CLPV_EACH_Z_BIN(CLPV_DO)
 #undef CLPV_DO
 #undef CLPV_STORE
   }
-  for (int b = 0; b < CLPV_X_BINS; ++b) clpv_store_x_tile(sources + first + b * CLPV_SWEEP_VOLUME, tiles[b], x, y, z);
+  for (int b = 0; b < CLPV_X_BINS; ++b) store_x_tile(sources + first + b * CLPV_SWEEP_VOLUME, tiles[b], x, y, z);
 }

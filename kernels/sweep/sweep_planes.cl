@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sweeps one plane of every bin through a cascade, for GPUs: a launch per plane, upstream to downstream; a work-item
-// takes CLPV_LANES cells of a plane and bin.
+// takes W cells of a plane and bin.
 //
 //   D = I + sum_k t_k T_k D_k,   L s^2 = sum_d share_d D_d
 //
@@ -21,21 +21,21 @@
 #include "sweep/sweep_cell.h"
 
 // Stores a cell in each face of the halo that it belongs to.
-CLPV_INLINE void clpv_store_halo_cell(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int3 cell,
-                                      const float d) {
+CLPV_INLINE void store_halo_cell(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int3 cell,
+                                 const float d) {
   const ClpvSweepBin bin = s->bin;
   const int p = cell.z - CLPV_HALO_FIRST(halo, bin.plane_axis), r = cell.y - CLPV_HALO_FIRST(halo, bin.row_axis),
             c = cell.x - CLPV_HALO_FIRST(halo, bin.column_axis);
   if (p < 0 || r < 0 || c < 0 || p >= halo.side || r >= halo.side || c >= halo.side) return;
   int layer = cell.z - CLPV_HALO_LAYER(halo, bin.plane_axis, bin.plane_sign);
   if (layer == 0 || layer == 1)
-    CLPV_WRITE(s->halo_light, clpv_halo_at(halo, ordinate, CLPV_BORDER_PLANE, layer, r, c), d);
+    CLPV_WRITE(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_PLANE, layer, r, c), d);
   layer = cell.y - CLPV_HALO_LAYER(halo, bin.row_axis, bin.row_sign);
   if (layer == 0 || layer == 1)
-    CLPV_WRITE(s->halo_light, clpv_halo_at(halo, ordinate, CLPV_BORDER_ROW, layer, p, c), d);
+    CLPV_WRITE(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_ROW, layer, p, c), d);
   layer = cell.x - CLPV_HALO_LAYER(halo, bin.column_axis, bin.column_sign);
   if (layer == 0 || layer == 1)
-    CLPV_WRITE(s->halo_light, clpv_halo_at(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, r), d);
+    CLPV_WRITE(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, r), d);
 }
 
 __kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
@@ -43,7 +43,7 @@ __kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const 
                           __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
                           const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
                           CLPV_BUFFER_OUT halo_light, const int step CLPV_MEDIUM_PARAMETER) {
-  const int column = CLPV_LANES * (int)get_global_id(0), row = (int)get_global_id(1), b = (int)get_global_id(2);
+  const int column = W * (int)get_global_id(0), row = (int)get_global_id(1), b = (int)get_global_id(2);
   if (column >= CLPV_GRID || row >= CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
   const BinSweep s = CLPV_BIN_SWEEP(b);
@@ -51,18 +51,18 @@ __kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const 
   const int planes = CLPV_ORDINATE(CLPV_SWEEP_BINS, 0, 0) * CLPV_BORDERED_PLANE;  // numbers in all even planes
   __global float* to = plane_buffer + (step % 2) * planes;
   __global const float* from = plane_buffer + (1 - step % 2) * planes;
-  clpv_sweep_cells(&s, from, to, plane, row, column);
+  sweep_cells(&s, from, to, plane, row, column);
   const int first = CLPV_ORDINATE(b, 0, 0);
   const int first_row = row == 0 ? -1 : row, last_row = row == CLPV_GRID - 1 ? CLPV_GRID : row;
   for (int ordinate = first; ordinate < first + 3 * CLPV_PARTS; ++ordinate) {
-    for (int lane = 0; lane < CLPV_LANES; ++lane) {
+    for (int lane = 0; lane < W; ++lane) {
       const int c = column + lane;
       if (c >= CLPV_GRID) break;
-      clpv_store_halo_cell(&s, halo, ordinate, (int3)(c, row, plane),
-                           to[ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, c)]);
-      if (row == 0) clpv_copy_border_row(&s, to, ordinate, plane, c);
+      store_halo_cell(&s, halo, ordinate, (int3)(c, row, plane),
+                      to[ordinate * CLPV_BORDERED_PLANE + plane_index(row, c)]);
+      if (row == 0) copy_border_row(&s, to, ordinate, plane, c);
     }
     if (column != 0) continue;
-    for (int r = first_row; r <= last_row; ++r) clpv_copy_border_column(&s, to, ordinate, plane, r);
+    for (int r = first_row; r <= last_row; ++r) copy_border_column(&s, to, ordinate, plane, r);
   }
 }

@@ -18,10 +18,10 @@ __kernel void sweep_sky(__global const float* sky, const float scale, __global f
   const int column = 8 * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1, face = (int)get_global_id(2) % 3;
   const int ordinate = (int)get_global_id(2) / 3;
   if (column > CLPV_GRID || row > CLPV_GRID) return;
-  const float8 in = scale * sky[ordinate];
+  const realW in = scale * sky[ordinate];
   if (face == CLPV_BORDER_PLANE) {
-    vstore8(in, 0, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + clpv_plane_at(row, column));
+    store_lanes(in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
   } else {
-    CLPV_WRITE_ROW(border, clpv_border_at(ordinate, face, row, column), in);
+    CLPV_WRITE_ROW(border, border_index(ordinate, face, row, column), in);
   }
 }

@@ -5,26 +5,18 @@
 // In:   injected  light volume [W/sr], any basis and layout
 // Out:  sources   coefficients [W/sr], CLPV_N volumes of each of 3 channels across z, then the same across x. A volume
 //                 across z has its rows along x, and serves bins across y too. Dark tiles are not written.
-//       lit       1 for each CLPV_LANES cells of a row that hold light in any channel, else 0; of a volume across z,
+//       lit       1 for each W cells of a row that hold light in any channel, else 0; of a volume across z,
 //                 then of one across x
-// A work-item copies a tile of CLPV_LANES x CLPV_LANES cells of a slice.
+// A work-item copies a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "lanes.h"
 #include "shared/sweep.h"
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
 
-#if CLPV_LANES == 8
-#define CLPV_ANY(v) (!none((v) != 0.0f))
-#define CLPV_NUMBERS(v, out) vstore8(v, 0, out)
-#else
-#define CLPV_ANY(v) ((v) != 0.0f)
-#define CLPV_NUMBERS(v, out) (out)[0] = v
-#endif
-
-// Sum of all numbers' sizes in CLPV_LANES cells of a row.
-CLPV_INLINE CLPV_REAL clpv_light_of(CLPV_VOLUME_IN injected, const int x, const int y, const int z) {
-  CLPV_REAL sum = 0.0f;
+// Sum of all numbers' sizes in W cells of a row.
+CLPV_INLINE realW sum_light(CLPV_VOLUME_IN injected, const int x, const int y, const int z) {
+  realW sum = 0.0f;
   for (int channel = 0; channel < 3; ++channel) {
     const Coefficients c = light_load(injected, channel, x, y, z);
 #define CLPV_DO(i) sum += fabs(c.c##i);
@@ -35,17 +27,17 @@ CLPV_INLINE CLPV_REAL clpv_light_of(CLPV_VOLUME_IN injected, const int x, const 
 }
 
 // Copies a channel of a tile, across z and across x.
-CLPV_INLINE void clpv_copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, const int channel, const int x,
-                                const int y, const int z) {
+CLPV_INLINE void copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, const int channel, const int x,
+                           const int y, const int z) {
   CLPV_BUFFER_OUT across_z = sources + channel * CLPV_N * CLPV_SWEEP_VOLUME;
   CLPV_BUFFER_OUT across_x = across_z + 3 * CLPV_N * CLPV_SWEEP_VOLUME;
   SweepTile tiles[CLPV_N];
-  for (int r = 0; r < CLPV_LANES; ++r) {
-    Coefficients c = clpv_zero();
+  for (int r = 0; r < W; ++r) {
+    Coefficients c = zero_coefficients();
     if (y + r < CLPV_GRID) {
       c = light_load(injected, channel, x, y + r, z);
 #define CLPV_DO(i) \
-  CLPV_SWEEP_STORE(across_z + i * CLPV_SWEEP_VOLUME, clpv_sweep_at(z, y + r, x), CLPV_WITHIN(x, c.c##i));
+  CLPV_SWEEP_STORE(across_z + i * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x), CLPV_WITHIN(x, c.c##i));
       CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
     }
@@ -53,26 +45,26 @@ CLPV_INLINE void clpv_copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources
     CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO
   }
-  for (int i = 0; i < CLPV_N; ++i) clpv_store_x_tile(across_x + i * CLPV_SWEEP_VOLUME, tiles[i], x, y, z);
+  for (int i = 0; i < CLPV_N; ++i) store_x_tile(across_x + i * CLPV_SWEEP_VOLUME, tiles[i], x, y, z);
 }
 
 __kernel void sweep_source(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, __global uchar* lit) {
-  const int x = CLPV_LANES * (int)get_global_id(0), y = CLPV_LANES * (int)get_global_id(1), z = (int)get_global_id(2);
+  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1), z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
-  CLPV_REAL columns = 0.0f;
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  realW columns = 0.0f;
+  for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
-    const CLPV_REAL row = clpv_light_of(injected, x, y + r, z);
-    lit[clpv_sweep_at(z, y + r, x) / CLPV_LANES] = CLPV_ANY(row);
+    const realW row = sum_light(injected, x, y + r, z);
+    lit[sweep_index(z, y + r, x) / W] = !no_lane(row != 0.0f);
     columns += row;
   }
-  float light[CLPV_LANES];
-  CLPV_NUMBERS(columns, light);
-  for (int r = 0; r < CLPV_LANES; ++r) {
+  float light[W];
+  store_lanes(columns, light);
+  for (int r = 0; r < W; ++r) {
     if (x + r >= CLPV_GRID) break;
-    lit[(CLPV_SWEEP_VOLUME + clpv_sweep_at(x + r, z, y)) / CLPV_LANES] = light[r] != 0.0f;
+    lit[(CLPV_SWEEP_VOLUME + sweep_index(x + r, z, y)) / W] = light[r] != 0.0f;
   }
   // A sweep of eight lanes may read single cells (images on a CPU), whose neighbours then need zeros.
-  if (CLPV_LANES == 8 && !CLPV_ANY(columns)) return;
-  for (int channel = 0; channel < 3; ++channel) clpv_copy_tile(injected, sources, channel, x, y, z);
+  if (W == 8 && no_lane(columns != 0.0f)) return;
+  for (int channel = 0; channel < 3; ++channel) copy_tile(injected, sources, channel, x, y, z);
 }

@@ -12,7 +12,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume
                                                            const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
   CLPV_VOLUME_CELL cell;
-#if CLPV_LANES == 8
+#if W == 8
   CLPV_BEFORE_LOAD
 #define CLPV_DO(i) cell.c##i = CLPV_LOAD_LANES(i);
 #else
@@ -26,7 +26,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume
 CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const int channel, const int x, const int y,
                                                 const int z, const CLPV_VOLUME_CELL cell) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
-#if CLPV_LANES == 8
+#if W == 8
 #if CLPV_VOLUME_N % 8  // PoCL compiles even a dead branch, to a thousand instructions
   if (x + 8 > CLPV_VOLUME_N) {  // end of the row: lanes beyond belong to the next one
     for (int lane = 0; lane < CLPV_VOLUME_N - x; ++lane) {

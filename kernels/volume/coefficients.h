@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Arithmetic on the N coefficients of a cell, a struct of named scalars, so that work-items vectorise (lanes.h).
 //
-// From the host (coefficient_macros), since generated text before this file uses them: CLPV_INLINE, CLPV_LANES,
-// CLPV_REAL, CLPV_N, struct Coefficients, and CLPV_EACH_COEFFICIENT(DO), which writes DO(0) DO(1) ... DO(N - 1).
+// From the host (coefficient_macros), since generated text before this file uses them: CLPV_N, type Coefficient (realW,
+// or float where one cell is read at a time), struct Coefficients, and CLPV_EACH_COEFFICIENT(DO), which writes DO(0)
+// DO(1) ... DO(N - 1).
 #ifndef CLPV_COEFFICIENTS_H
 #define CLPV_COEFFICIENTS_H
 
-CLPV_INLINE Coefficients clpv_zero(void) {
+CLPV_INLINE Coefficients zero_coefficients(void) {
   Coefficients r;
 #define CLPV_DO(i) r.c##i = 0.0f;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
@@ -14,7 +15,7 @@ CLPV_INLINE Coefficients clpv_zero(void) {
   return r;
 }
 
-CLPV_INLINE Coefficients clpv_add(const Coefficients a, const Coefficients b) {
+CLPV_INLINE Coefficients add_coefficients(const Coefficients a, const Coefficients b) {
   Coefficients r;
 #define CLPV_DO(i) r.c##i = a.c##i + b.c##i;
   CLPV_EACH_COEFFICIENT(CLPV_DO)
@@ -23,7 +24,7 @@ CLPV_INLINE Coefficients clpv_add(const Coefficients a, const Coefficients b) {
 }
 
 // a + s b
-CLPV_INLINE Coefficients clpv_add_scaled(const Coefficients a, const CLPV_REAL s, const Coefficients b) {
+CLPV_INLINE Coefficients add_scaled(const Coefficients a, const Coefficient s, const Coefficients b) {
   Coefficients r;
 #define CLPV_DO(i) r.c##i = fma(s, b.c##i, a.c##i);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
@@ -31,8 +32,8 @@ CLPV_INLINE Coefficients clpv_add_scaled(const Coefficients a, const CLPV_REAL s
   return r;
 }
 
-CLPV_INLINE CLPV_REAL clpv_dot(const Coefficients a, const Coefficients b) {
-  CLPV_REAL r = 0.0f;
+CLPV_INLINE Coefficient dot_coefficients(const Coefficients a, const Coefficients b) {
+  Coefficient r = 0.0f;
 #define CLPV_DO(i) r = fma(a.c##i, b.c##i, r);
   CLPV_EACH_COEFFICIENT(CLPV_DO)
 #undef CLPV_DO

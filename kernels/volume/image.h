@@ -9,9 +9,9 @@
 #pragma OPENCL EXTENSION cl_khr_3d_image_writes : enable
 #define CLPV_IMAGE_IN __read_only image3d_t
 #define CLPV_IMAGE_OUT __write_only image3d_t
-__constant sampler_t clpv_texels = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_NEAREST;
+__constant sampler_t nearest_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_NEAREST;
 #ifdef CLPV_FILTERED
-__constant sampler_t clpv_filter = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
+__constant sampler_t linear_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
 #endif
 #endif
 
@@ -22,7 +22,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_IMAGE_IN volume,
                                                            const int y, const int z) {
   float4 texels[CLPV_FOURS];
   for (int four = 0; four < CLPV_FOURS; ++four) {
-    texels[four] = read_imagef(volume, clpv_texels, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0));
+    texels[four] = read_imagef(volume, nearest_sampler, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0));
   }
   CLPV_VOLUME_CELL cell;
 #define CLPV_DO(i) cell.c##i = ((const float*)texels)[i];
@@ -53,7 +53,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volum
   float4 texels[CLPV_FOURS];
 #if CLPV_FILTERED
   for (int four = 0; four < CLPV_FOURS; ++four) {
-    texels[four] = read_imagef(volume, clpv_filter,
+    texels[four] = read_imagef(volume, linear_sampler,
                                (float4)(px + 0.5f, py + (channel * CLPV_STEP + 0.5f), pz + (four * CLPV_STEP + 0.5f), 0.0f));
   }
 #else
@@ -63,7 +63,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volum
   for (int four = 0; four < CLPV_FOURS; ++four) {
     const int iz = (int)fz + four * CLPV_STEP;
     // At the last sample the neighbour beyond is zero and has weight 0.
-#define CLPV_AT(dx, dy, dz) read_imagef(volume, clpv_texels, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
+#define CLPV_AT(dx, dy, dz) read_imagef(volume, nearest_sampler, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
 #define CLPV_ROW(dy, dz) mix(CLPV_AT(0, dy, dz), CLPV_AT(1, dy, dz), tx)
     texels[four] = mix(mix(CLPV_ROW(0, 0), CLPV_ROW(1, 0), ty), mix(CLPV_ROW(0, 1), CLPV_ROW(1, 1), ty), tz);
 #undef CLPV_ROW

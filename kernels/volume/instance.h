@@ -2,7 +2,7 @@
 // Template of the volume types: load and store in the layout and storage that the host chooses.
 //
 // Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, with arithmetic in
-// single precision; CLPV_LANES: cells along x of a load or store, 1 or 8.
+// single precision; W: cells along x of a load or store, 1 or 8.
 //
 // Parameters: define before each inclusion, which undefines them
 //   CLPV_VOLUME         prefix of the functions below (light, geometry, ...)

@@ -4,12 +4,14 @@
 #ifndef CLPV_VOLUME_NUMBERS_H
 #define CLPV_VOLUME_NUMBERS_H
 
+#include "lanes.h"
+
 #if CLPV_STORAGE_HALF
 #define CLPV_NUMBER half
-#define CLPV_READ(from, at) clpv_of_bits((ushort8)(((__global const ushort*)(from))[at])).s0
-#define CLPV_WRITE(to, at, value) ((__global ushort*)(to))[at] = clpv_to_bits((float8)(value)).s0
-#define CLPV_READ_ROW(from, at) clpv_read_row((from) + (at))
-#define CLPV_WRITE_ROW(to, at, value) clpv_write_row((to) + (at), value)
+#define CLPV_READ(from, at) halves_to_floats((ushort8)(((__global const ushort*)(from))[at])).s0
+#define CLPV_WRITE(to, at, value) ((__global ushort*)(to))[at] = floats_to_halves((float8)(value)).s0
+#define CLPV_READ_ROW(from, at) read_halves((from) + (at))
+#define CLPV_WRITE_ROW(to, at, value) write_halves((to) + (at), value)
 #else
 #define CLPV_NUMBER float
 #define CLPV_READ(from, at) (from)[at]
@@ -20,10 +22,10 @@
 
 #if CLPV_STORAGE_HALF
 // Conversion through a private vector: PoCL 3.1 assumes 16-byte alignment in vload_half8 and vstore_half8.
-static inline __attribute__((always_inline)) float8 clpv_of_bits(const ushort8 bits) {
+CLPV_INLINE float8 halves_to_floats(const ushort8 bits) {
   return vload_half8(0, (const half*)&bits);
 }
-static inline __attribute__((always_inline)) ushort8 clpv_to_bits(const float8 values) {
+CLPV_INLINE ushort8 floats_to_halves(const float8 values) {
   ushort8 bits;
   vstore_half8(values, 0, (half*)&bits);
   return bits;
@@ -32,11 +34,11 @@ static inline __attribute__((always_inline)) ushort8 clpv_to_bits(const float8 v
 typedef struct __attribute__((packed, aligned(2))) {
   ushort8 bits;
 } HalfRow;
-static inline __attribute__((always_inline)) float8 clpv_read_row(__global const half* from) {
-  return clpv_of_bits(((__global const HalfRow*)from)->bits);
+CLPV_INLINE float8 read_halves(__global const half* from) {
+  return halves_to_floats(((__global const HalfRow*)from)->bits);
 }
-static inline __attribute__((always_inline)) void clpv_write_row(__global half* to, const float8 value) {
-  ((__global HalfRow*)to)->bits = clpv_to_bits(value);
+CLPV_INLINE void write_halves(__global half* to, const float8 value) {
+  ((__global HalfRow*)to)->bits = floats_to_halves(value);
 }
 #endif
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Returns from work-items outside a grid, unless whole work-groups fill it: the branch would prevent vectorisation
 // (lanes.h).
-#if (CLPV_GRID + CLPV_LANES - 1) / CLPV_LANES % CLPV_LOCAL_X
+#if (CLPV_GRID + W - 1) / W % CLPV_LOCAL_X
 #define CLPV_RETURN_OUTSIDE(x, y) if (x >= CLPV_GRID || y >= CLPV_GRID) return
 #else
 #define CLPV_RETURN_OUTSIDE(x, y)

@@ -19,31 +19,29 @@
 
 // Index of the words of a corner, CLPV_NO_WORD outside the region. `corner`: along u, v and the axis, from the base.
 #define CLPV_NO_WORD 0xffffffffu
-static inline uint clpv_blocker_word(const ClpvRegion* region, const uint axis, const int3 corner) {
+static inline uint blocker_word(const ClpvRegion* region, const uint axis, const int3 corner) {
   int at[3];
   at[(axis + 1) % 3] = corner.x;
   at[(axis + 2) % 3] = corner.y;
   at[axis] = corner.z;
   const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
-  if (!clpv_in_region(region, x, y, z)) return CLPV_NO_WORD;
+  if (!in_region(region, x, y, z)) return CLPV_NO_WORD;
   const int n = CLPV_GRID + 1;
   return (uint)((z * n + y) * n + x) * CLPV_BLOCKER_WORDS + axis * 2u;
 }
 
 // Sets the bits of eight samples of row v in column i, one word for each corner that they lie at.
-CLPV_INLINE void clpv_set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int i,
-                              const int v, const int8 covered, const float8 w) {
-  const int2 cells = clpv_cells_along(region, axis);
-  const int8 cell = convert_int8(w + 1.0f) - 1;  // floor(w); a negative number for w below 0
-  const int8 lowest = covered ? cell : (int8)(cells.y + 1), highest = covered ? cell : (int8)(-1);
-  const int4 low4 = min(lowest.lo, lowest.hi), high4 = max(highest.lo, highest.hi);
-  const int first = max(min(min(low4.x, low4.y), min(low4.z, low4.w)), cells.x);
-  const int last = min(max(max(high4.x, high4.y), max(high4.z, high4.w)), cells.y);
+CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int i,
+                         const int v, const intW covered, const realW w) {
+  const int2 cells = cells_along(region, axis);
+  const intW cell = to_intW(w + 1.0f) - 1;  // floor(w); a negative number for w below 0
+  const intW lowest = covered ? cell : (intW)(cells.y + 1), highest = covered ? cell : (intW)(-1);
+  const int first = max(min_lane_int(lowest), cells.x), last = min(max_lane_int(highest), cells.y);
   const int row = v % CLPV_VOXEL_SAMPLES;
   for (int k = first; k <= last; ++k) {
-    const uint bits = clpv_bits(covered & (cell == k));
+    const uint bits = lane_bits(covered & (cell == k));
     if (bits == 0) continue;
-    const uint word = clpv_blocker_word(region, axis, (int3)(i, v / CLPV_VOXEL_SAMPLES, k));
+    const uint word = blocker_word(region, axis, (int3)(i, v / CLPV_VOXEL_SAMPLES, k));
     if (word != CLPV_NO_WORD) atomic_or(masks + word + row / 4, bits << (8 * (row % 4)));
   }
 }
@@ -53,7 +51,7 @@ __kernel void voxelize_blockers(const ClpvRegion region, __global const uint* cl
                                 __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                                 __global const ClpvMaterial* materials, __global const float4* textures,
                                 __global const uint* texels, __global uint* masks, const uint cascade) {
-  const uint number = clpv_triangle_number(clusters, first_cluster, cluster_count, triangle_count);
+  const uint number = triangle_number(clusters, first_cluster, cluster_count, triangle_count);
   if (number >= triangle_count) return;
   const ClpvTriangle triangle = triangles[number];
   __global uint* mine = masks + (size_t)cascade * CLPV_BLOCKER_MASKS;
@@ -64,26 +62,26 @@ __kernel void voxelize_blockers(const ClpvRegion region, __global const uint* cl
   const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
 #endif
   GridCorners corners;
-  if (!clpv_grid_corners(&region, corner, &corners)) return;
+  if (!find_grid_corners(&region, corner, &corners)) return;
   int2 samples[3];  // range of samples along each axis that the triangle may cover
   for (int axis = 0; axis < 3; ++axis) {
     const float* at = corners.at[axis];
-    const int2 cells = clpv_cells_along(&region, axis);
-    samples[axis] = clpv_voxel_range(cells.x, cells.y, at[0], at[1], at[2]);
+    const int2 cells = cells_along(&region, axis);
+    samples[axis] = voxel_range(cells.x, cells.y, at[0], at[1], at[2]);
   }
   for (uint axis = 0; axis < 3; ++axis) {
     const int2 columns = samples[(axis + 1) % 3], rows = samples[(axis + 2) % 3];
     ProjectedTriangle t;
-    if (columns.x > columns.y || rows.x > rows.y || !clpv_project_triangle(&corners, axis, &t)) continue;
+    if (columns.x > columns.y || rows.x > rows.y || !project_triangle(&corners, axis, &t)) continue;
     for (int v = rows.x; v <= rows.y; ++v) {
       for (int i = columns.x / CLPV_VOXEL_SAMPLES; i <= columns.y / CLPV_VOXEL_SAMPLES; ++i) {
         const float u = (float)(i * CLPV_VOXEL_SAMPLES);
-        int8 covered = clpv_voxel_covered(&t, u, (float)v);
-        if (clpv_bits(covered) == 0) continue;
+        intW covered = voxel_covered(&t, u, (float)v);
+        if (lane_bits(covered) == 0) continue;
 #if CLPV_MASKED
-        if (masked) covered &= clpv_voxel_solid(&t, corner, material, textures, texels, u, (float)v);
+        if (masked) covered &= voxel_solid(&t, corner, material, textures, texels, u, (float)v);
 #endif
-        clpv_set_row(&region, mine, axis, i, v, covered, clpv_voxel_depth(&t, u, (float)v));
+        set_row(&region, mine, axis, i, v, covered, voxel_depth(&t, u, (float)v));
       }
     }
   }

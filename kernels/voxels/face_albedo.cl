@@ -14,7 +14,7 @@
 #include "shared/reflectors.h"
 #include "volume/light.h"
 
-static inline float clpv_coverage(__global const uint* face) {
+static inline float face_coverage(__global const uint* face) {
   return (float)(popcount(face[0]) + popcount(face[1])) * (1.0f / 64.0f);
 }
 
@@ -26,14 +26,14 @@ __kernel void face_albedo(__global const uint* faces, CLPV_VOLUME_OUT reflectors
   float remaining[3];  // factor of the two faces across each axis on faces along the other two
   for (int axis = 0; axis < 3; ++axis) {
     __global const uint* up = cell + 2 * axis * CLPV_FACE_WORDS;
-    remaining[axis] = (1.0f - CLPV_EDGE_LOSS * clpv_coverage(up)) *
-                      (1.0f - CLPV_EDGE_LOSS * clpv_coverage(up + CLPV_FACE_WORDS));
+    remaining[axis] = (1.0f - CLPV_EDGE_LOSS * face_coverage(up)) *
+                      (1.0f - CLPV_EDGE_LOSS * face_coverage(up + CLPV_FACE_WORDS));
   }
   Coefficients red, green, blue;
 #define CLPV_DO(i)                                                                                               \
   {                                                                                                              \
     __global const uint* face = cell + (i)*CLPV_FACE_WORDS;                                                      \
-    const float coverage = clpv_coverage(face) * remaining[((i) / 2 + 1) % 3] * remaining[((i) / 2 + 2) % 3];    \
+    const float coverage = face_coverage(face) * remaining[((i) / 2 + 1) % 3] * remaining[((i) / 2 + 2) % 3];    \
     const float per_sample = 1.0f / (CLPV_ALBEDO_UNIT * (float)max(face[CLPV_FACE_SAMPLES], 1u));                \
     red.c##i = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO], 1.0f);                                \
     green.c##i = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO + 1], 1.0f);                          \

@@ -33,48 +33,42 @@ typedef struct {
 
 // Samples of one cell's face that a triangle covers, row by row, with the cell number along the axis at each.
 typedef struct {
-  int8 covered[CLPV_VOXEL_SAMPLES], cell[CLPV_VOXEL_SAMPLES];
+  intW covered[CLPV_VOXEL_SAMPLES], cell[CLPV_VOXEL_SAMPLES];
   int first, last;  // smallest and largest cell number
 } FaceSamples;
 
-static inline int clpv_minimum(const int8 a) {
-  const int4 four = min(a.lo, a.hi);
-  return min(min(four.x, four.y), min(four.z, four.w));
-}
-static inline int clpv_maximum(const int8 a) { return -clpv_minimum(-a); }
-
 // Finds the covered samples of the face in column i and row j. `rows`: range of rows of the triangle; `cells`: range of
 // cells along the axis.
-CLPV_INLINE void clpv_face_samples(const ProjectedTriangle* t, const TriangleSurface* surface, const int i, const int j,
+CLPV_INLINE void find_face_samples(const ProjectedTriangle* t, const TriangleSurface* surface, const int i, const int j,
                                    const int2 rows, const int2 cells, FaceSamples* samples) {
-  int8 lowest = (int8)(cells.y + 1), highest = (int8)(-1);
+  intW lowest = (intW)(cells.y + 1), highest = (intW)(-1);
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; ++row) {
     const int v = CLPV_VOXEL_SAMPLES * j + row;
     const float u = (float)(CLPV_VOXEL_SAMPLES * i);
-    int8 covered = 0;
-    if (v >= rows.x && v <= rows.y) covered = clpv_voxel_covered(t, u, (float)v);
+    intW covered = 0;
+    if (v >= rows.x && v <= rows.y) covered = voxel_covered(t, u, (float)v);
 #if CLPV_MASKED
-    if ((surface->material->flags & CLPV_MATERIAL_MASKED) != 0 && clpv_bits(covered) != 0)
-      covered &= clpv_voxel_solid(t, surface->corner, surface->material, surface->textures, surface->texels, u,
-                                  (float)v);
+    if ((surface->material->flags & CLPV_MATERIAL_MASKED) != 0 && lane_bits(covered) != 0)
+      covered &= voxel_solid(t, surface->corner, surface->material, surface->textures, surface->texels, u,
+                             (float)v);
 #endif
-    const int8 cell = convert_int8(clpv_voxel_depth(t, u, (float)v) + 1.0f) - 1;
+    const intW cell = to_intW(voxel_depth(t, u, (float)v) + 1.0f) - 1;
     samples->covered[row] = covered;
     samples->cell[row] = cell;
-    lowest = min(lowest, covered ? cell : (int8)(cells.y + 1));
-    highest = max(highest, covered ? cell : (int8)(-1));
+    lowest = min(lowest, covered ? cell : (intW)(cells.y + 1));
+    highest = max(highest, covered ? cell : (intW)(-1));
   }
-  samples->first = max(clpv_minimum(lowest), cells.x);
-  samples->last = min(clpv_maximum(highest), cells.y);
+  samples->first = max(min_lane_int(lowest), cells.x);
+  samples->last = min(max_lane_int(highest), cells.y);
 }
 
 // Albedo of the triangle at eight points (u, v), each the centre of a row of `across` samples.
-CLPV_INLINE void clpv_albedo(const ProjectedTriangle* t, const TriangleSurface* surface, const float8 u, const float8 v,
-                             const float8 across, Vec* albedo) {
+CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* surface, const realW u, const realW v,
+                             const realW across, Vec* albedo) {
   __global const ClpvVertex* const* corner = surface->corner;
   *albedo = vec_load(surface->material->base_colour);
 #if CLPV_TEXTURED || CLPV_COLOURED
-  const BarycentricWeights w = clpv_voxel_weights(t, u, v);
+  const BarycentricWeights w = voxel_weights(t, u, v);
 #endif
 #if CLPV_COLOURED
   *albedo = vec_product(*albedo, vec(CLPV_BLEND(w, corner, colour[0]), CLPV_BLEND(w, corner, colour[1]),
@@ -87,89 +81,86 @@ CLPV_INLINE void clpv_albedo(const ProjectedTriangle* t, const TriangleSurface* 
   const float below1 = (t->u[0] - t->u[2]) * t->inverse_area, below2 = (t->u[1] - t->u[0]) * t->inverse_area;
   const Uv at = {CLPV_BLEND(w, corner, uv[0]), CLPV_BLEND(w, corner, uv[1])};
   const Uv right = {across * (right1 * u1 + right2 * u2), across * (right1 * v1 + right2 * v2)};
-  const Uv below = {(float8)(below1 * u1 + below2 * u2), (float8)(below1 * v1 + below2 * v2)};
+  const Uv below = {(realW)(below1 * u1 + below2 * u2), (realW)(below1 * v1 + below2 * v2)};
   Vec factor;
-  clpv_trilinear(surface->textures, surface->texels, (uint8)(surface->material->texture), at, right, below, &factor);
+  sample_trilinear(surface->textures, surface->texels, (uintW)(surface->material->texture), at, right, below, &factor);
   *albedo = vec_product(*albedo, factor);
 #endif
 }
 
 // Sum over lanes of count times share, in fixed point; shares are clamped to [0, 1].
-static inline uint clpv_fixed_sum(const float8 count, const float8 share) {
-  const float8 zero = (float8)(0.0f), one = (float8)(1.0f);
-  const float8 positive = share > zero ? share : zero;
-  const uint8 each = convert_uint8_rte(CLPV_ALBEDO_UNIT * count * (positive < one ? positive : one));
-  const uint4 four = each.lo + each.hi;
-  return four.x + four.y + four.z + four.w;
+static inline uint fixed_sum(const realW count, const realW share) {
+  const realW positive = share > ZERO ? share : ZERO;
+  const uintW each = convert_uint8_rte(CLPV_ALBEDO_UNIT * count * (positive < ONE ? positive : ONE));
+  return sum_lanes_uint(each);
 }
 
 // Adds the samples of cell k in column i and row j to its face. `weight`: the triangle's share of the axis.
-CLPV_INLINE void clpv_add_face(const ProjectedTriangle* t, const TriangleSurface* surface, const FaceSamples* samples,
-                               const int3 cell, const float weight, __global volatile uint* face) {
+CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* surface, const FaceSamples* samples,
+                          const int3 cell, const float weight, __global volatile uint* face) {
   float count[CLPV_VOXEL_SAMPLES], middle[CLPV_VOXEL_SAMPLES];
   uint words[2] = {0, 0}, total = 0;
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; ++row) {
-    const int8 here = samples->covered[row] & (samples->cell[row] == cell.z);
-    const uint bits = clpv_bits(here);
-    const int8 column = here & (int8)(0, 1, 2, 3, 4, 5, 6, 7);
-    const int4 four = column.lo + column.hi;
+    const intW here = samples->covered[row] & (samples->cell[row] == cell.z);
+    const uint bits = lane_bits(here);
+    const uint columns = sum_lanes_uint(as_uintW(here & lane_numbers()));
     const uint of_row = popcount(bits);
     words[row / 4] |= bits << (8 * (row % 4));
     total += of_row;
     count[row] = (float)of_row;
-    middle[row] = of_row > 0 ? (float)(four.x + four.y + four.z + four.w) / (float)of_row : 0.0f;
+    middle[row] = of_row > 0 ? (float)columns / (float)of_row : 0.0f;
   }
   if (total == 0) return;
-  const float8 counts = vload8(0, count), one = (float8)(1.0f);
+  const realW counts = load_lanes(count);
   Vec albedo;
-  clpv_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * cell.x) + 0.5f + vload8(0, middle),
-              (float)(CLPV_VOXEL_SAMPLES * cell.y) + 0.5f + CLPV_EIGHT, counts > one ? counts : one, &albedo);
+  find_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * cell.x) + 0.5f + load_lanes(middle),
+              (float)(CLPV_VOXEL_SAMPLES * cell.y) + 0.5f + to_realW(lane_numbers()), counts > ONE ? counts : ONE, &albedo);
   if (words[0] != 0) atomic_or(face, words[0]);
   if (words[1] != 0) atomic_or(face + 1, words[1]);
   atomic_add(face + CLPV_FACE_SAMPLES, total);
-  atomic_add(face + CLPV_FACE_ALBEDO, clpv_fixed_sum(weight * counts, albedo.x));
-  atomic_add(face + CLPV_FACE_ALBEDO + 1, clpv_fixed_sum(weight * counts, albedo.y));
-  atomic_add(face + CLPV_FACE_ALBEDO + 2, clpv_fixed_sum(weight * counts, albedo.z));
+  atomic_add(face + CLPV_FACE_ALBEDO, fixed_sum(weight * counts, albedo.x));
+  atomic_add(face + CLPV_FACE_ALBEDO + 1, fixed_sum(weight * counts, albedo.y));
+  atomic_add(face + CLPV_FACE_ALBEDO + 2, fixed_sum(weight * counts, albedo.z));
 }
 
 // Index of the words of a face; CLPV_NO_WORD for a cell outside the region. `cell`: along u, v and the axis, from the
 // base. `direction`: 0 towards larger numbers, 1 towards smaller ones.
 #define CLPV_NO_WORD 0xffffffffu
-static inline uint clpv_face_word(const ClpvRegion* region, const uint axis, const int3 cell, const uint direction) {
+static inline uint face_word(const ClpvRegion* region, const uint axis, const int3 cell, const uint direction) {
   int at[3];
   at[(axis + 1) % 3] = cell.x;
   at[(axis + 2) % 3] = cell.y;
   at[axis] = cell.z;
   const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
-  if (!clpv_in_region(region, x, y, z)) return CLPV_NO_WORD;
+  if (!in_region(region, x, y, z)) return CLPV_NO_WORD;
   return (uint)((z * CLPV_GRID + y) * CLPV_GRID + x) * (CLPV_CELL_FACES * CLPV_FACE_WORDS) +
          (2 * axis + direction) * CLPV_FACE_WORDS;
 }
 
 // Adds a triangle, projected along an axis and moved to where it emits and receives, to the faces of one direction.
-CLPV_INLINE void clpv_add_triangle(const ClpvRegion* region, const ProjectedTriangle* t, const TriangleSurface* surface,
-                                   const uint axis, const uint direction, const float weight,
-                                   __global volatile uint* faces) {
-  const int2 cells = clpv_cells_along(region, axis), across = clpv_cells_along(region, (axis + 1) % 3),
-             above = clpv_cells_along(region, (axis + 2) % 3);
+CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle* t, const TriangleSurface* surface,
+                              const uint axis, const uint direction, const float weight,
+                              __global volatile uint* faces) {
+  const int2 cells = cells_along(region, axis), across = cells_along(region, (axis + 1) % 3),
+             above = cells_along(region, (axis + 2) % 3);
   if (t->farthest < (float)cells.x || t->nearest >= (float)(cells.y + 1)) return;
-  const int2 columns = clpv_voxel_range(across.x, across.y, t->u[0], t->u[1], t->u[2]);
-  const int2 rows = clpv_voxel_range(above.x, above.y, t->v[0], t->v[1], t->v[2]);
+  const int2 columns = voxel_range(across.x, across.y, t->u[0], t->u[1], t->u[2]);
+  const int2 rows = voxel_range(above.x, above.y, t->v[0], t->v[1], t->v[2]);
   if (columns.x > columns.y) return;
   for (int j = rows.x / CLPV_VOXEL_SAMPLES; rows.x <= rows.y && j <= rows.y / CLPV_VOXEL_SAMPLES; ++j) {
     for (int i = columns.x / CLPV_VOXEL_SAMPLES; i <= columns.y / CLPV_VOXEL_SAMPLES; ++i) {
       FaceSamples samples;
-      clpv_face_samples(t, surface, i, j, rows, cells, &samples);
+      find_face_samples(t, surface, i, j, rows, cells, &samples);
       for (int k = samples.first; k <= samples.last; ++k) {
-        const uint word = clpv_face_word(region, axis, (int3)(i, j, k), direction);
-        if (word != CLPV_NO_WORD) clpv_add_face(t, surface, &samples, (int3)(i, j, k), weight, faces + word);
+        const uint word = face_word(region, axis, (int3)(i, j, k), direction);
+        if (word != CLPV_NO_WORD) add_face(t, surface, &samples, (int3)(i, j, k), weight, faces + word);
       }
     }
   }
 }
 
 // Moves a triangle half a cell along `normal`, and from the corners' cells of voxelize_triangle.h to light cells.
-static inline ProjectedTriangle clpv_offset(const ProjectedTriangle* from, const float3 normal) {
+static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from, const float3 normal) {
   ProjectedTriangle t = *from;
   const float u = rint(0.5f * CLPV_VOXEL_SAMPLES * normal.x) - CLPV_VOXEL_SAMPLES / 2;
   const float v = rint(0.5f * CLPV_VOXEL_SAMPLES * normal.y) - CLPV_VOXEL_SAMPLES / 2;
@@ -189,7 +180,7 @@ __kernel void voxelize_reflectors(const ClpvRegion region, __global const uint* 
                                   __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                                   __global const ClpvMaterial* materials, __global const float4* textures,
                                   __global const uint* texels, __global uint* faces) {
-  const uint number = clpv_triangle_number(clusters, first_cluster, cluster_count, triangle_count);
+  const uint number = triangle_number(clusters, first_cluster, cluster_count, triangle_count);
   if (number >= triangle_count) return;
   const ClpvTriangle triangle = triangles[number];
   const TriangleSurface surface = {{vertices + triangle.vertex[0], vertices + triangle.vertex[1],
@@ -198,16 +189,16 @@ __kernel void voxelize_reflectors(const ClpvRegion region, __global const uint* 
                                    textures,
                                    texels};
   GridCorners corners;
-  if (!clpv_grid_corners(&region, surface.corner, &corners)) return;
+  if (!find_grid_corners(&region, surface.corner, &corners)) return;
   for (uint axis = 0; axis < 3; ++axis) {
     ProjectedTriangle t;
-    if (!clpv_project_triangle(&corners, axis, &t)) continue;
+    if (!project_triangle(&corners, axis, &t)) continue;
     const float slope_u = CLPV_VOXEL_SAMPLES * t.w_u, slope_v = CLPV_VOXEL_SAMPLES * t.w_v;
     const float length = sqrt(1.0f + slope_u * slope_u + slope_v * slope_v);
     const float3 normal = (float3)(-slope_u, -slope_v, 1.0f) / length;  // along u, v and the axis
     const float weight = 1.0f / (fabs(normal.x) + fabs(normal.y) + normal.z);
-    const ProjectedTriangle up = clpv_offset(&t, normal), down = clpv_offset(&t, -normal);
-    clpv_add_triangle(&region, &up, &surface, axis, 0, weight, faces);
-    clpv_add_triangle(&region, &down, &surface, axis, 1, weight, faces);
+    const ProjectedTriangle up = offset_triangle(&t, normal), down = offset_triangle(&t, -normal);
+    add_triangle(&region, &up, &surface, axis, 0, weight, faces);
+    add_triangle(&region, &down, &surface, axis, 1, weight, faces);
   }
 }

@@ -11,10 +11,10 @@
 // the compiler of Mesa's rusticl 22.3.
 
 // Component of a vector along an axis.
-static inline int clpv_of_axis(const int v[3], const uint axis) { return axis == 0 ? v[0] : (axis == 1 ? v[1] : v[2]); }
+static inline int of_axis(const int v[3], const uint axis) { return axis == 0 ? v[0] : (axis == 1 ? v[1] : v[2]); }
 
 // Returns true if a cell inside `region.all` belongs to the region.
-static inline bool clpv_in_region(const ClpvRegion* region, const int x, const int y, const int z) {
+static inline bool in_region(const ClpvRegion* region, const int x, const int y, const int z) {
   if (region->boxes == 1) return true;
 #define CLPV_IN_BOX(b)                                                                                                 \
   ((region->boxes > b) & (x >= region->box[b].low[0]) & (x <= region->box[b].high[0]) & (y >= region->box[b].low[1]) & \
@@ -24,13 +24,13 @@ static inline bool clpv_in_region(const ClpvRegion* region, const int x, const i
 #undef CLPV_IN_BOX
 }
 #if CLPV_REGION_BOXES != 8
-#error "clpv_in_region tests eight boxes"
+#error "in_region tests eight boxes"
 #endif
 
 // Number of this work-item's triangle; triangle_count or more for none. Kernels that voxelise launch CLPV_CLUSTER
 // work-items for each of `cluster_count` entries of `clusters` from `first_cluster` on.
-static inline uint clpv_triangle_number(__global const uint* clusters, const uint first_cluster,
-                                        const uint cluster_count, const uint triangle_count) {
+static inline uint triangle_number(__global const uint* clusters, const uint first_cluster,
+                                   const uint cluster_count, const uint triangle_count) {
   const uint item = (uint)get_global_id(0), cluster = item / CLPV_CLUSTER;
   if (cluster >= cluster_count) return triangle_count;
   return clusters[first_cluster + cluster] * CLPV_CLUSTER + item % CLPV_CLUSTER;

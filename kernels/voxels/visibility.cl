@@ -36,32 +36,32 @@
              0.875f, 0.875f, 0.875f, 0.875f))
 
 // The eight centres, one per lane.
-#define CLPV_CENTRE_X ((float8)(0, 1, 0, 1, 0, 1, 0, 1))
-#define CLPV_CENTRE_Y ((float8)(0, 0, 1, 1, 0, 0, 1, 1))
-#define CLPV_CENTRE_Z ((float8)(0, 0, 0, 0, 1, 1, 1, 1))
+#define CLPV_CENTRE_X ((realW)(0, 1, 0, 1, 0, 1, 0, 1))
+#define CLPV_CENTRE_Y ((realW)(0, 0, 1, 1, 0, 0, 1, 1))
+#define CLPV_CENTRE_Z ((realW)(0, 0, 0, 0, 1, 1, 1, 1))
 
 // A linear function gradient . x + offset of points x, one per centre.
 typedef struct {
   Vec gradient;
-  float8 offset;
+  realW offset;
 } Linear;
 
-static inline float clpv_l1_norm(const float3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
+static inline float l1_norm(const float3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
 
 // Maximum over the points of a layer, without the term of the layer's z. The points' square is centred at 1/2.
-static inline float8 clpv_layer_maximum(const Linear f) {
+static inline realW layer_maximum(const Linear f) {
   const float to_side = 0.5f * (CLPV_LAST_POINT - CLPV_FIRST_POINT);
   return 0.5f * (f.gradient.x + f.gradient.y) + to_side * (fabs(f.gradient.x) + fabs(f.gradient.y)) + f.offset;
 }
 
 // sign det(a - c, b - c, x - c) + tolerance, for each centre c. The gradient is (a - c) x (b - c) = a x b - c x (b -
 // a).
-CLPV_INLINE Linear clpv_edge_determinant(const float3 a, const float3 b, const float8 sign) {
+CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const realW sign) {
   const float3 moment = cross(a, b), edge = b - a;
-  const float8 x = CLPV_CENTRE_X, y = CLPV_CENTRE_Y, z = CLPV_CENTRE_Z;
+  const realW x = CLPV_CENTRE_X, y = CLPV_CENTRE_Y, z = CLPV_CENTRE_Z;
   const Linear f = {vec(sign * (moment.x - (y * edge.z - z * edge.y)), sign * (moment.y - (z * edge.x - x * edge.z)),
                         sign * (moment.z - (x * edge.y - y * edge.x))),
-                    CLPV_EDGE_TOLERANCE * clpv_l1_norm(edge) - sign * (moment.x * x + moment.y * y + moment.z * z)};
+                    CLPV_EDGE_TOLERANCE * l1_norm(edge) - sign * (moment.x * x + moment.y * y + moment.z * z)};
   return f;
 }
 
@@ -69,41 +69,40 @@ CLPV_INLINE Linear clpv_edge_determinant(const float3 a, const float3 b, const f
 // none is negative.
 #define CLPV_TESTS 4
 typedef struct {
-  float x[CLPV_TESTS][CLPV_ABREAST], y[CLPV_TESTS][CLPV_ABREAST];
-  float z[CLPV_TESTS][CLPV_ABREAST], offset[CLPV_TESTS][CLPV_ABREAST];
+  float x[CLPV_TESTS][W], y[CLPV_TESTS][W];
+  float z[CLPV_TESTS][W], offset[CLPV_TESTS][W];
 } OcclusionTests;
 
 // Sets up the tests of a triangle, and for each layer the candidates: bits of the centres that it may occlude from any
 // point there.
-CLPV_INLINE void clpv_set_up_tests(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
-                                   OcclusionTests* tests, uint candidates[CLPV_LAYERS]) {
-  const float8 zero = (float8)(0.0f), one = (float8)(1.0f);
-  const float8 x = v0.x - CLPV_CENTRE_X, y = v0.y - CLPV_CENTRE_Y, z = v0.z - CLPV_CENTRE_Z;
-  const float8 distance = normal.x * x + normal.y * y + normal.z * z;
-  const float8 sign = distance < zero ? -one : one;
+CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
+                              OcclusionTests* tests, uint candidates[CLPV_LAYERS]) {
+  const realW x = v0.x - CLPV_CENTRE_X, y = v0.y - CLPV_CENTRE_Y, z = v0.z - CLPV_CENTRE_Z;
+  const realW distance = normal.x * x + normal.y * y + normal.z * z;
+  const realW sign = distance < ZERO ? -ONE : ONE;
   const Linear plane = {vec(sign * normal.x, sign * normal.y, sign * normal.z),
                         -sign * (normal.x * CLPV_CENTRE_X + normal.y * CLPV_CENTRE_Y + normal.z * CLPV_CENTRE_Z) -
                             fabs(distance)};
-  const Linear f[CLPV_TESTS] = {plane, clpv_edge_determinant(v0, v1, sign), clpv_edge_determinant(v1, v2, sign),
-                                clpv_edge_determinant(v2, v0, sign)};
+  const Linear f[CLPV_TESTS] = {plane, edge_determinant(v0, v1, sign), edge_determinant(v1, v2, sign),
+                                edge_determinant(v2, v0, sign)};
   // Segments to upper centres lie above the layer, those to lower centres below it.
   const float lowest = fmin(v0.z, fmin(v1.z, v2.z)) - CLPV_EDGE_TOLERANCE;
   const float highest = fmax(v0.z, fmax(v1.z, v2.z)) + CLPV_EDGE_TOLERANCE;
-  const float8 maximum0 = clpv_layer_maximum(f[0]), maximum1 = clpv_layer_maximum(f[1]),
-               maximum2 = clpv_layer_maximum(f[2]), maximum3 = clpv_layer_maximum(f[3]);
+  const realW maximum0 = layer_maximum(f[0]), maximum1 = layer_maximum(f[1]),
+               maximum2 = layer_maximum(f[2]), maximum3 = layer_maximum(f[3]);
   for (int layer = 0; layer < CLPV_LAYERS; ++layer) {
     const float at = CLPV_FIRST_POINT + 0.25f * (float)layer;
-    const int8 may = (distance != zero) & (at * f[0].gradient.z + maximum0 >= zero) &
-                     (at * f[1].gradient.z + maximum1 >= zero) & (at * f[2].gradient.z + maximum2 >= zero) &
-                     (at * f[3].gradient.z + maximum3 >= zero);
-    candidates[layer] = clpv_bits(may) & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
+    const intW may = (distance != ZERO) & (at * f[0].gradient.z + maximum0 >= ZERO) &
+                     (at * f[1].gradient.z + maximum1 >= ZERO) & (at * f[2].gradient.z + maximum2 >= ZERO) &
+                     (at * f[3].gradient.z + maximum3 >= ZERO);
+    candidates[layer] = lane_bits(may) & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
   }
 #pragma unroll
   for (int test = 0; test < CLPV_TESTS; ++test) {
-    vstore8(f[test].gradient.x, 0, tests->x[test]);
-    vstore8(f[test].gradient.y, 0, tests->y[test]);
-    vstore8(f[test].gradient.z, 0, tests->z[test]);
-    vstore8(f[test].offset, 0, tests->offset[test]);
+    store_lanes(f[test].gradient.x, tests->x[test]);
+    store_lanes(f[test].gradient.y, tests->y[test]);
+    store_lanes(f[test].gradient.z, tests->z[test]);
+    store_lanes(f[test].offset, tests->offset[test]);
   }
 }
 
@@ -115,7 +114,7 @@ CLPV_INLINE void clpv_set_up_tests(const float3 v0, const float3 v1, const float
    0.0f)
 
 // Bits of the candidates that the triangle occludes, for each point of the layer at z.
-CLPV_INLINE int16 clpv_occluded(const OcclusionTests* tests, uint candidates, const float z) {
+CLPV_INLINE int16 find_occluded(const OcclusionTests* tests, uint candidates, const float z) {
   int16 occluded = (int16)(0);
   while (candidates != 0) {
     const int corner = 31 - (int)clz(candidates);
@@ -126,29 +125,29 @@ CLPV_INLINE int16 clpv_occluded(const OcclusionTests* tests, uint candidates, co
   return occluded;
 }
 
-static inline void clpv_set_word(__global volatile uint* word, const uint bits) {
+static inline void set_word(__global volatile uint* word, const uint bits) {
   if (bits != 0) atomic_or(word, bits);
 }
 
 // Tests a triangle in one cube. `points`: the cube's 64 bytes.
-static inline void clpv_occlude_cube(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
-                                     __global volatile uint* points) {
+static inline void occlude_cube(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
+                                __global volatile uint* points) {
   OcclusionTests tests;
   uint candidates[CLPV_LAYERS];
-  clpv_set_up_tests(v0, v1, v2, normal, &tests, candidates);
+  set_up_tests(v0, v1, v2, normal, &tests, candidates);
   for (int layer = 0; layer < CLPV_LAYERS; ++layer) {
     if (candidates[layer] == 0) continue;
-    const int16 occluded = clpv_occluded(&tests, candidates[layer], CLPV_FIRST_POINT + 0.25f * (float)layer);
+    const int16 occluded = find_occluded(&tests, candidates[layer], CLPV_FIRST_POINT + 0.25f * (float)layer);
     const uint4 bits = as_uint4(convert_uchar16(occluded));
-    clpv_set_word(points + 4 * layer, bits.x);
-    clpv_set_word(points + 4 * layer + 1, bits.y);
-    clpv_set_word(points + 4 * layer + 2, bits.z);
-    clpv_set_word(points + 4 * layer + 3, bits.w);
+    set_word(points + 4 * layer, bits.x);
+    set_word(points + 4 * layer + 1, bits.y);
+    set_word(points + 4 * layer + 2, bits.z);
+    set_word(points + 4 * layer + 3, bits.w);
   }
 }
 
 // Position of a vertex in cells, from the centre of the cell at the region's base.
-static inline float3 clpv_in_cells(const ClpvRegion* region, __global const ClpvVertex* vertex) {
+static inline float3 to_cells(const ClpvRegion* region, __global const ClpvVertex* vertex) {
   const float3 position = (float3)(vertex->position[0], vertex->position[1], vertex->position[2]);
   const float3 base = (float3)(region->base[0], region->base[1], region->base[2]);
   return clamp((position - base) / region->cell - 0.5f, -CLPV_COORDINATE_LIMIT, CLPV_COORDINATE_LIMIT);
@@ -158,27 +157,27 @@ __kernel void occlude_cells(const ClpvRegion region, __global const uint* cluste
                             const uint cluster_count, const uint triangle_count, __global const ClpvVertex* vertices,
                             __global const ClpvTriangle* triangles, __global const ClpvMaterial* materials,
                             __global uint* occluded, const uint cascade) {
-  const uint number = clpv_triangle_number(clusters, first_cluster, cluster_count, triangle_count);
+  const uint number = triangle_number(clusters, first_cluster, cluster_count, triangle_count);
   if (number >= triangle_count) return;
   const ClpvTriangle triangle = triangles[number];
   if ((materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) return;
-  const float3 v0 = clpv_in_cells(&region, vertices + triangle.vertex[0]);
-  const float3 v1 = clpv_in_cells(&region, vertices + triangle.vertex[1]);
-  const float3 v2 = clpv_in_cells(&region, vertices + triangle.vertex[2]);
+  const float3 v0 = to_cells(&region, vertices + triangle.vertex[0]);
+  const float3 v1 = to_cells(&region, vertices + triangle.vertex[1]);
+  const float3 v2 = to_cells(&region, vertices + triangle.vertex[2]);
   const float3 normal = cross(v1 - v0, v2 - v0);
   const int3 first = (int3)(region.first[0], region.first[1], region.first[2]);
   const int3 lowest = (int3)(region.all.low[0], region.all.low[1], region.all.low[2]);
   const int3 highest = (int3)(region.all.high[0], region.all.high[1], region.all.high[2]);
   const int3 low = max(convert_int3(floor(fmin(v0, fmin(v1, v2)))) - first, lowest);
   const int3 high = min(convert_int3(floor(fmax(v0, fmax(v1, v2)))) - first, highest);
-  const float half_extent = 0.5f * clpv_l1_norm(normal);  // of a cube along the normal, times its length
+  const float half_extent = 0.5f * l1_norm(normal);  // of a cube along the normal, times its length
   for (int z = low.z; z <= high.z; ++z) {
     for (int y = low.y; y <= high.y; ++y) {
       for (int x = low.x; x <= high.x; ++x) {
         const float3 cube = convert_float3((int3)(x, y, z) + first);
-        if (fabs(dot(normal, cube + 0.5f - v0)) > half_extent || !clpv_in_region(&region, x, y, z)) continue;
-        clpv_occlude_cube(v0 - cube, v1 - cube, v2 - cube, normal,
-                          occluded + 16 * (((size_t)cascade * CLPV_GRID + z) * CLPV_GRID + y) * CLPV_GRID + 16 * x);
+        if (fabs(dot(normal, cube + 0.5f - v0)) > half_extent || !in_region(&region, x, y, z)) continue;
+        occlude_cube(v0 - cube, v1 - cube, v2 - cube, normal,
+                     occluded + 16 * (((size_t)cascade * CLPV_GRID + z) * CLPV_GRID + y) * CLPV_GRID + 16 * x);
       }
     }
   }

@@ -13,23 +13,23 @@
   const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2); \
   if (x >= cells || y >= cells) return;
 
-static inline size_t clpv_mask_at(const int cells, const int words, const uint cascade, const int x, const int y,
-                                  const int z) {
+static inline size_t mask_index(const int cells, const int words, const uint cascade, const int x, const int y,
+                                const int z) {
   return ((((size_t)cascade * cells + z) * cells + y) * cells + x) * words;
 }
 
-static inline bool clpv_valid(const int i, const int valid) { return i >= 0 && i < valid; }
+static inline bool is_valid(const int i, const int valid) { return i >= 0 && i < valid; }
 
 __kernel void move_masks(const ClpvRegion region, const int cells, const int valid, const int words,
                          __global const uint* masks, const uint cascade, __global uint* moved) {
   CLPV_THIS_CELL
   const int from_x = x + region.moved[0], from_y = y + region.moved[1], from_z = z + region.moved[2];
-  const bool stays = clpv_valid(x, valid) && clpv_valid(y, valid) && clpv_valid(z, valid) &&
-                     clpv_valid(from_x, valid) && clpv_valid(from_y, valid) && clpv_valid(from_z, valid);
-  __global uint* to = moved + clpv_mask_at(cells, words, 0, x, y, z);
+  const bool stays = is_valid(x, valid) && is_valid(y, valid) && is_valid(z, valid) &&
+                     is_valid(from_x, valid) && is_valid(from_y, valid) && is_valid(from_z, valid);
+  __global uint* to = moved + mask_index(cells, words, 0, x, y, z);
   for (int i = 0; i < words; ++i) to[i] = 0;
   if (!stays) return;
-  __global const uint* from = masks + clpv_mask_at(cells, words, cascade, from_x, from_y, from_z);
+  __global const uint* from = masks + mask_index(cells, words, cascade, from_x, from_y, from_z);
   for (int i = 0; i < words; ++i) to[i] = from[i];
 }
 
@@ -38,7 +38,7 @@ __kernel void clear_masks(const ClpvRegion region, const int cells, const int wo
   CLPV_THIS_CELL
   const ClpvBox all = region.all;
   if (x < all.low[0] || x > all.high[0] || y < all.low[1] || y > all.high[1] || z < all.low[2] || z > all.high[2]) return;
-  if (!clpv_in_region(&region, x, y, z)) return;
-  __global uint* cell = masks + clpv_mask_at(cells, words, cascade, x, y, z);
+  if (!in_region(&region, x, y, z)) return;
+  __global uint* cell = masks + mask_index(cells, words, cascade, x, y, z);
   for (int i = 0; i < words; ++i) cell[i] = 0;
 }

@@ -36,8 +36,8 @@ typedef struct {
 } GridCorners;
 
 // Returns false for a triangle outside the region, extended by half a cell on every side.
-static inline bool clpv_grid_corners(const ClpvRegion* region, __global const ClpvVertex* const corner[3],
-                                      GridCorners* corners) {
+static inline bool find_grid_corners(const ClpvRegion* region, __global const ClpvVertex* const corner[3],
+                                     GridCorners* corners) {
   const float per_sample = CLPV_VOXEL_SAMPLES / region->cell;
   bool within = true;
   for (int axis = 0; axis < 3; ++axis) {
@@ -54,7 +54,7 @@ static inline bool clpv_grid_corners(const ClpvRegion* region, __global const Cl
 }
 
 // Returns false for a triangle that is seen edge-on or has no area.
-static inline bool clpv_project_triangle(const GridCorners* corners, const uint axis, ProjectedTriangle* t) {
+static inline bool project_triangle(const GridCorners* corners, const uint axis, ProjectedTriangle* t) {
   float w[3];
   for (int i = 0; i < 3; ++i) {
     t->u[i] = corners->at[(axis + 1) % 3][i];
@@ -81,7 +81,7 @@ static inline bool clpv_project_triangle(const GridCorners* corners, const uint 
 }
 
 // First and last sample between three coordinates, within cells `first` to `last`, counted from the base.
-static inline int2 clpv_voxel_range(const int first, const int last, const float a, const float b, const float c) {
+static inline int2 voxel_range(const int first, const int last, const float a, const float b, const float c) {
   const float from = ceil(fmin(a, fmin(b, c)) - 0.5f - CLPV_VOXEL_TOLERANCE);
   const float to = floor(fmax(a, fmax(b, c)) - 0.5f + CLPV_VOXEL_TOLERANCE);
   return (int2)((int)fmax(from, (float)(CLPV_VOXEL_SAMPLES * first)),
@@ -89,16 +89,15 @@ static inline int2 clpv_voxel_range(const int first, const int last, const float
 }
 
 // First and last cell of the region along an axis, counted from the base.
-static inline int2 clpv_cells_along(const ClpvRegion* region, const uint axis) {
-  return clpv_of_axis(region->first, axis) +
-         (int2)(clpv_of_axis(region->all.low, axis), clpv_of_axis(region->all.high, axis));
+static inline int2 cells_along(const ClpvRegion* region, const uint axis) {
+  return of_axis(region->first, axis) +
+         (int2)(of_axis(region->all.low, axis), of_axis(region->all.high, axis));
 }
 
-#define CLPV_EIGHT ((float8)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f))
 
 // Mask of the eight samples from (u, v) on along a row that the triangle covers.
-CLPV_INLINE int8 clpv_voxel_covered(const ProjectedTriangle* t, const float u, const float v) {
-  const float8 at = u + 0.5f + CLPV_EIGHT;
+CLPV_INLINE intW voxel_covered(const ProjectedTriangle* t, const float u, const float v) {
+  const realW at = u + 0.5f + to_realW(lane_numbers());
   const float row = v + 0.5f;
 #define CLPV_EDGE(i) (t->e_u[i] * (at - t->u[i]) + t->e_v[i] * (row - t->v[i]) >= -t->tolerance[i])
   return CLPV_EDGE(0) & CLPV_EDGE(1) & CLPV_EDGE(2);
@@ -106,28 +105,27 @@ CLPV_INLINE int8 clpv_voxel_covered(const ProjectedTriangle* t, const float u, c
 }
 
 // Depth w of the triangle's plane at those samples, clamped to the range of its vertices.
-CLPV_INLINE float8 clpv_voxel_depth(const ProjectedTriangle* t, const float u, const float v) {
-  const float8 at = u + 0.5f + CLPV_EIGHT;
-  const float8 w = t->w + t->w_u * (at - t->u[0]) + t->w_v * (v + 0.5f - t->v[0]);
-  const float8 nearest = (float8)(t->nearest), farthest = (float8)(t->farthest);
-  const float8 not_before = w > nearest ? w : nearest;
+CLPV_INLINE realW voxel_depth(const ProjectedTriangle* t, const float u, const float v) {
+  const realW at = u + 0.5f + to_realW(lane_numbers());
+  const realW w = t->w + t->w_u * (at - t->u[0]) + t->w_v * (v + 0.5f - t->v[0]);
+  const realW nearest = (realW)(t->nearest), farthest = (realW)(t->farthest);
+  const realW not_before = w > nearest ? w : nearest;
   return not_before < farthest ? not_before : farthest;
 }
 
 // Barycentric weights of the second and third corner, clamped to the triangle.
 typedef struct {
-  float8 w1, w2;
+  realW w1, w2;
 } BarycentricWeights;
 
-static inline BarycentricWeights clpv_voxel_weights(const ProjectedTriangle* t, const float8 u, const float8 v) {
-  const float8 from = u - t->u[0], row = v - t->v[0];
-  const float8 zero = (float8)(0.0f), one = (float8)(1.0f);
-  float8 w1 = (from * (t->v[2] - t->v[0]) - row * (t->u[2] - t->u[0])) * t->inverse_area;
-  float8 w2 = (row * (t->u[1] - t->u[0]) - from * (t->v[1] - t->v[0])) * t->inverse_area;
-  w1 = w1 > zero ? w1 : zero;
-  w1 = w1 < one ? w1 : one;
-  w2 = w2 > zero ? w2 : zero;
-  w2 = w2 < one - w1 ? w2 : one - w1;
+static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const realW u, const realW v) {
+  const realW from = u - t->u[0], row = v - t->v[0];
+  realW w1 = (from * (t->v[2] - t->v[0]) - row * (t->u[2] - t->u[0])) * t->inverse_area;
+  realW w2 = (row * (t->u[1] - t->u[0]) - from * (t->v[1] - t->v[0])) * t->inverse_area;
+  w1 = w1 > ZERO ? w1 : ZERO;
+  w1 = w1 < ONE ? w1 : ONE;
+  w2 = w2 > ZERO ? w2 : ZERO;
+  w2 = w2 < ONE - w1 ? w2 : ONE - w1;
   const BarycentricWeights weights = {w1, w2};
   return weights;
 }
@@ -139,14 +137,14 @@ static inline BarycentricWeights clpv_voxel_weights(const ProjectedTriangle* t, 
 
 #if CLPV_MASKED
 // Mask of those samples where the alpha of a masked material reaches its cutoff: no hole.
-CLPV_INLINE int8 clpv_voxel_solid(const ProjectedTriangle* t, __global const ClpvVertex* const corner[3],
-                                  __global const ClpvMaterial* material, __global const float4* textures,
-                                  __global const uint* texels, const float u, const float v) {
-  const BarycentricWeights w = clpv_voxel_weights(t, u + 0.5f + CLPV_EIGHT, (float8)(v + 0.5f));
+CLPV_INLINE intW voxel_solid(const ProjectedTriangle* t, __global const ClpvVertex* const corner[3],
+                             __global const ClpvMaterial* material, __global const float4* textures,
+                             __global const uint* texels, const float u, const float v) {
+  const BarycentricWeights w = voxel_weights(t, u + 0.5f + to_realW(lane_numbers()), (realW)(v + 0.5f));
   const Uv uv = {CLPV_BLEND(w, corner, uv[0]), CLPV_BLEND(w, corner, uv[1])};
-  const uint8 finest = (uint8)(material->texture * CLPV_TEXTURE_LEVELS);
-  const float8 alpha = material->base_colour[3] * CLPV_BLEND(w, corner, colour[3]) *
-                       clpv_bilinear_alpha(textures, texels, finest, uv);
+  const uintW finest = (uintW)(material->texture * CLPV_TEXTURE_LEVELS);
+  const realW alpha = material->base_colour[3] * CLPV_BLEND(w, corner, colour[3]) *
+                       sample_alpha(textures, texels, finest, uv);
   return alpha >= material->alpha_cutoff;
 }
 #endif

@@ -35,7 +35,7 @@ ProgramSource source_of(const Basis& basis, TransportKind transport, const Gathe
   ProgramSource source{"gather/gather.cl", {}, {}};
   add_literals(source.literals, basis, options, packed);
   if (!packed) {
-    add_format_literals(source.literals, options.format);
+    add_format_literals(source.literals, options.format, 8);  // pixels; cells are read one by one
     source.literals.flag("CLPV_FILTERED", options.filtered);
   }
   source.generated = table.macros() + gather_source(basis, transport, options.lobes, table.exists());

@@ -23,15 +23,15 @@ cl_float4 packed(const glm::dvec3& v, double w) {
   return {{narrow.x, narrow.y, narrow.z, narrow.w}};
 }
 
-/// `clpv_functions_of(link)`: the basis functions along a link, times its solid angle.
+/// `functions_of_link(link)`: the basis functions along a link, times its solid angle.
 std::string functions_source(const Basis& basis, const LobeOptions& lobes) {
   const bool looked_up = lobes.table_functions && !basis.centres().empty();
   std::string text = looked_up ? table_basis_source(basis, lobes.table_size, kFunctionsTable) : "";
   text += fmt::format(
-      "CLPV_INLINE Coefficients clpv_functions_of(const float4 link CLPV_AND_FUNCTIONS) {{\n"
+      "CLPV_INLINE Coefficients functions_of_link(const float4 link CLPV_AND_FUNCTIONS) {{\n"
       "  Coefficients b = {};\n",
-      looked_up ? "clpv_table_basis(link.x, link.y, link.z CLPV_PASS_FUNCTIONS)"
-                : "clpv_basis(link.x, link.y, link.z)");
+      looked_up ? "table_basis(link.x, link.y, link.z CLPV_PASS_FUNCTIONS)"
+                : "basis_functions(link.x, link.y, link.z)");
   for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c{} *= link.w;\n", i);
   return text + "  return b;\n}\n";
 }

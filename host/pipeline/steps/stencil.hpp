@@ -15,7 +15,7 @@ class Stencil {
  public:
   Stencil(const Device& device, const StencilOptions& options);
 
-  /// Literals CLPV_GRID, CLPV_LANES, CLPV_LOCAL_X and those of the format.
+  /// Literals CLPV_GRID, CLPV_W, CLPV_LOCAL_X and those of the format.
   Literals literals() const;
   /// Launches over all cells of the grid for each of `channels`, which are stacked along z.
   void launch(Kernel& kernel, int channels) const;

@@ -39,7 +39,7 @@ class VoxelMasks {
              const std::string& what);
 
   /// Updates a cascade's masks for the position of `grid` and the current scene. `voxelize`: kernel that sets masks of
-  /// the region's cells from triangles in any order. Its arguments are the region, the clusters (clpv_triangle_number
+  /// the region's cells from triangles in any order. Its arguments are the region, the clusters (triangle_number
   /// of kernels/voxels/region.h), the scene's triangles, and `rest`.
   template <KernelArgument... Rest>
   void update(std::size_t cascade, const ClpvGrid& grid, Kernel& voxelize, const Rest&... rest) {
