@@ -296,41 +296,6 @@ TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
               HasSubstr("point 1099"));
 }
 
-TEST(Api, RadianceAddsUpToIrradiance) {
-  Renderer renderer(SceneFile(kCornell), small().set("gather-offset", "0"));
-  std::vector<std::array<float, 3>> positions, directions;
-  EXPECT_THROW(renderer.radiance(positions, directions), Error) << "before the first frame";
-  renderer.render();
-  EXPECT_TRUE(renderer.radiance(positions, directions).empty());
-  // Integrates L(p, w) max(0, -w . n) over the sphere, n up, by the midpoint rule.
-  constexpr int kRows = 48, kColumns = 96;
-  std::vector<double> weights;
-  for (int i = 0; i < kRows; ++i) {
-    const double z = -1 + (2 * i + 1.0) / kRows, radius = std::sqrt(1 - z * z);
-    for (int j = 0; j < kColumns; ++j) {
-      const double turn = 2 * M_PI * j / kColumns;
-      positions.push_back({0.28f, 0.3f, 0.25f});
-      directions.push_back(
-          {3 * float(radius * std::cos(turn)), 3 * float(z), 3 * float(radius * std::sin(turn))});
-      weights.push_back(std::max(0.0, -z) * 4 * M_PI / (kRows * kColumns));
-    }
-  }
-  const auto radiance = renderer.radiance(positions, directions);
-  const auto irradiance =
-      renderer.irradiance(Vec3{positions[0][0], positions[0][1], positions[0][2]}, Vec3{0, 1, 0});
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    double sum = 0;
-    for (std::size_t i = 0; i < radiance.size(); ++i) sum += weights[i] * double{radiance[i][channel]};
-    EXPECT_NEAR(sum / irradiance[channel], 1, 2e-3) << channel;
-  }
-  directions[5] = {0, 0, 0};
-  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.radiance(positions, directions); }),
-              ::testing::AllOf(HasSubstr("radiance: point 5"), HasSubstr("nonzero direction")));
-  directions.pop_back();
-  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.radiance(positions, directions); }),
-              HasSubstr("4608 positions and 4607 directions"));
-}
-
 TEST(Api, OtherViewsOfTheLastFrame) {
   Renderer renderer(SceneFile(kCornell), small());
   EXPECT_THROW(renderer.show(View::depth), Error);

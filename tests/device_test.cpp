@@ -63,23 +63,6 @@ TEST(ChooseDevice, RejectsWithTheReason) {
   EXPECT_THAT(rejected({devices[2]}, ""), HasSubstr("no supported"));
 }
 
-TEST(ListDevices, NumbersAndEventsAreSound) {
-  const DeviceList list = list_devices();
-  ASSERT_FALSE(list.devices.empty()) << "the tests need an OpenCL device";
-  for (std::size_t i = 0; i < list.devices.size(); ++i) {
-    const Device& device = list.devices[i];
-    EXPECT_EQ(device.index, static_cast<int>(i));
-    EXPECT_FALSE(device.name.empty());
-    EXPECT_GT(device.compute_units, 0u);
-    EXPECT_GT(device.max_alloc_bytes, 0u);
-    EXPECT_LE(device.max_alloc_bytes, device.memory_bytes);
-    if (device.platform == "Portable Computing Language") {
-      EXPECT_TRUE(device.supported());
-      EXPECT_TRUE(device.profiling_valid);
-    }
-  }
-}
-
 TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
   const auto outcome = test::run_here("devices --format json --device 0");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -110,32 +108,6 @@ TEST_F(ProgramCacheTest, UsersFolderIsTheDocumentedOne) {
   unsetenv("CLPV_PROGRAM_CACHE");
   unsetenv("HOME");
   EXPECT_FALSE(ProgramCache::of_user().has_value());
-}
-
-/// Stores and reads one key over and over; true if every binary read was one of the writers', whole.
-bool store_and_read_often(const ProgramCache& cache, unsigned char writer) {
-  for (int i = 0; i < 200; ++i) {
-    if (!cache.store("key", Binary(5000, writer))) return false;
-    const auto read = cache.load("key");
-    if (!read || read->size() != 5000 || *read != Binary(5000, read->front())) return false;
-  }
-  return true;
-}
-
-TEST_F(ProgramCacheTest, ManyProcessesAtOnceNeverReadATornFile) {
-  std::vector<pid_t> children;
-  for (unsigned char writer = 0; writer < 4; ++writer) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) _exit(store_and_read_often(cache_, writer) ? 0 : 1);
-    children.push_back(child);
-  }
-  for (const pid_t child : children) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  }
-  EXPECT_EQ(file_count(cache_.folder()), 1u);
 }
 
 /// A session's program from the cache; its kernel writes another value than a compiled one.
