@@ -83,7 +83,8 @@ TEST_F(AnimationTest, MirroredMeshesKeepTheirFront) {
 }
 
 TEST_F(AnimationTest, SplinesAndSteps) {
-  // Tangents per second, over two seconds: 2 * (4 - 0) / 8 at the middle, added to the mean of 0 and 8.
+  // Tangents per second, over two seconds: 2 * (4 - 0) / 8 at the middle, added to the mean of 0
+  // and 8.
   animate<float>(0, "translation", {0, 2}, {0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 8, 0, 0, 0, 0, 0},
                  "CUBICSPLINE");
   animate<float>(0, "scale", {0, 1}, {1, 1, 1, 5, 5, 5}, "STEP");

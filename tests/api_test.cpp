@@ -255,7 +255,8 @@ TEST(Api, VolumesHoldTheLight) {
     EXPECT_EQ(v.values.size(), 3u * 9 * 16 * 16 * 16);
   }
   EXPECT_GT(volumes.back().cell, volumes.front().cell);
-  // At the centre of a cell: the 0th harmonic of radiance L is L sqrt(4 pi), the mean irradiance pi L where L varies little.
+  // At the centre of a cell: the 0th harmonic of radiance L is L sqrt(4 pi), the mean irradiance pi
+  // L where L varies little.
   const LightVolume& v = volumes.front();
   const Vec3 about{0.1, 0.4, 0.1};
   std::size_t cell[3];

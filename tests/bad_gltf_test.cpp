@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Invalid models: each is rejected with a message and exit code 3 (bad_input), before memory of the requested size is
-// allocated.
+// Invalid models: each is rejected with a message and exit code 3 (bad_input), before memory of the
+// requested size is allocated.
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 
@@ -29,7 +29,8 @@ void change(json& document, const Changes& changes) {
   }
 }
 
-/// A model with one of everything: a textured, skinned triangle with a morph target and sparse positions, which moves.
+/// A model with one of everything: a textured, skinned triangle with a morph target and sparse
+/// positions, which moves.
 struct BadGltfTest : AnimationTest {
   BadGltfTest() {
     folder.write("image.png", decode_base64(kPngGrey));
@@ -296,7 +297,8 @@ TEST_F(BadGltfTest, TooManyInstancesAndMorphTargets) {
 }
 
 TEST_F(BadGltfTest, PosesBeyondTheBoundsAreRejected) {
-  // A spline from a rotation to its negative with zero tangents has length 0 half way; a node leaves the bounds.
+  // A spline from a rotation to its negative with zero tangents has length 0 half way; a node
+  // leaves the bounds.
   animate<float>(0, "rotation", {0, 1},
                  {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0}, "CUBICSPLINE");
   animate<float>(0, "translation", {0, 0.9f, 1}, {0, 0, 0, 0, 0, 0, 1e30f, 0, 0});

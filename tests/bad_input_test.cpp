@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hostile and broken files, JSON, containers, URIs and scene files: each is rejected with file, place, value found and value
-// allowed, as exit code 3 (bad_input).
+// Hostile and broken files, JSON, containers, URIs and scene files: each is rejected with file,
+// place, value found and value allowed, as exit code 3 (bad_input).
 #include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::bad_input_test {

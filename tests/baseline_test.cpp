@@ -70,8 +70,8 @@ class Cornell : public ::testing::Test {
   static inline Image truth_;
 };
 
-// Tolerances: noise of ground truth and method, and what the method blurs: discs and texels of an RSM, cells of probes, and a
-// third of this image's width by the filter.
+// Tolerances: noise of ground truth and method, and what the method blurs: discs and texels of an
+// RSM, cells of probes, and a third of this image's width by the filter.
 TEST_F(Cornell, ConvergesToPathTracing) {
   struct Limit {
     Baseline baseline;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bases against quadrature done here: Gram matrices, integrals of the clamped cosine, quality of its lobe.
+// Bases against quadrature done here: Gram matrices, integrals of the clamped cosine, quality of
+// its lobe.
 #include "basis/basis.hpp"
 
 #include <gmock/gmock.h>
@@ -100,7 +101,8 @@ TEST(Srbf, PoissonKernelIsItsSeries) {
 }
 
 TEST(LobeQuality, OfSh2IsKnownInClosedForm) {
-  // 1/4 + 1/2 cos: minimum -1/4, flux pi, peak along the axis; |max(0,t)|^2 - |fit|^2 = 2 pi/3 - 7 pi/12.
+  // 1/4 + 1/2 cos: minimum -1/4, flux pi, peak along the axis; |max(0,t)|^2 - |fit|^2 = 2 pi/3 - 7
+  // pi/12.
   const auto basis = make_basis("sh2");
   const LobeQuality quality = lobe_quality(*basis, basis->clamped_cosine(kOblique), kOblique);
   EXPECT_NEAR(quality.minimum, -0.25, 1e-12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reflected light against closed forms, by the CPU reference; and the kernels against that reference.
+// Reflected light against closed forms, by the CPU reference.
 #include "pipeline/sweep/bounce.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,8 @@ bool inside(const glm::ivec3& p) {
          glm::all(glm::lessThanEqual(p, glm::ivec3(kLast)));
 }
 
-/// A closed box with one albedo; its walls lie in the middle of the blocking corners next to the inner cells.
+/// A closed box with one albedo; its walls lie in the middle of the blocking corners next to the
+/// inner cells.
 Scene room_scene(float albedo, const ClpvGrid& grid) {
   Scene scene;
   const unsigned material = add_material(scene, glm::vec3(albedo));
@@ -150,8 +151,8 @@ double irradiance(const RenderOptions& options, const char* file = "scenes/corne
   return sum;
 }
 
-// A lamp close under a ceiling: path tracing finds 1.29 times the light of two bounces. It was 1.65 times when all later bounces
-// left from where the second did.
+// A lamp close under a ceiling: path tracing finds 1.29 times the light of two bounces. It was 1.65
+// times when all later bounces left from where the second did.
 TEST(BouncedFrame, LaterBouncesLeaveALamp) {
   const char* lamp = "scenes/cornell_lamp.json";
   RenderOptions two = small_frame(Bounces::two, 2), all = small_frame(Bounces::all, 2);
@@ -159,7 +160,8 @@ TEST(BouncedFrame, LaterBouncesLeaveALamp) {
   EXPECT_NEAR(irradiance(all, lamp) / irradiance(two, lamp), 1.29, 0.15);
 }
 
-// A finer cascade takes the coarser one's light, bounced there, through its border once, and its own is its own.
+// A finer cascade takes the coarser one's bounced light through its border once, and adds only its
+// own bounces.
 TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
   for (const Bounces bounces : {Bounces::two, Bounces::all}) {
     const double share = irradiance(small_frame(bounces, 1)) / irradiance(small_frame(Bounces::one, 1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program as a process: exit codes, help and errors of its output streams. Other tests run commands in their own process
-// (support/run_here.hpp).
+// The program as a process: exit codes, help and errors of its output streams. Other tests run
+// commands in their own process (support/run_here.hpp).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -48,7 +48,8 @@ TEST(Curve, IsConstantBeforeTheFirstKeyAndAfterTheLast) {
 }
 
 TEST(Curve, SplineIsTheCubicOfItsValuesAndSlopes) {
-  // p(x) = 2x^3 - 3x^2 + x + 5 and its slope 6x^2 - 6x + 1, at uneven keys: every piece is the same cubic.
+  // p(x) = 2x^3 - 3x^2 + x + 5 and its slope 6x^2 - 6x + 1, at uneven keys: every piece is the same
+  // cubic.
   const auto p = [](double x) { return ((2 * x - 3) * x + 1) * x + 5; };
   const auto slope = [](double x) { return (6 * x - 6) * x + 1; };
   Curve curve{Interpolation::cubic_spline, 1, {0, 0.5, 2}, {}};
@@ -58,7 +59,8 @@ TEST(Curve, SplineIsTheCubicOfItsValuesAndSlopes) {
 }
 
 TEST(Curve, SplineLeavesByOneTangentAndArrivesByTheOther) {
-  // Hermite's basis at one half: (1, 1, 1/8, -1/8) of (from / 2, to / 2, span * leaving, span * arriving).
+  // Hermite's basis at one half: (1, 1, 1/8, -1/8) of (from / 2, to / 2, span * leaving, span *
+  // arriving).
   const Curve curve{Interpolation::cubic_spline, 1, {0, 4}, {100, 1, 2, 3, 5, 100}};
   EXPECT_NEAR(at(curve, 2)[0], 0.5 + 2.5 + 4 * 2.0 / 8 - 4 * 3.0 / 8, kExact);
 }

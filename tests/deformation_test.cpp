@@ -129,7 +129,8 @@ TEST_F(MorphTest, WeightsMove) {
 }
 
 TEST_F(MorphTest, WeightsMoveInSplines) {
-  // Tangents a second of the first weight: leaves with 4, over 1 s, from 0 to 0: at the middle 4 / 8.
+  // Tangents a second of the first weight: leaves with 4, over 1 s, from 0 to 0: at the middle 4 /
+  // 8.
   animate<float>(0, "weights", {0, 1}, {0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0}, "CUBICSPLINE");
   MovingScene moving = load();
   moving.pose(0.5);

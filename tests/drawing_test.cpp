@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Commands that draw with python/clpv/draw: `clpv report`, `clpv basis --figures` and `clpv bench --plot`, and their errors where
-// Python or a module is missing. tests/draw has the charts and the page.
+// Commands that draw with python/clpv/draw: `clpv report`, `clpv basis --figures` and `clpv bench
+// --plot`, and their errors where Python or a module is missing. tests/draw has the charts and the
+// page.
 #include <gmock/gmock.h>
 
 #include <filesystem>

@@ -67,7 +67,8 @@ TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
   }
 }
 
-// A spot of a few texels on a texture much finer than the point spacing is neither missed nor counted twice.
+// A spot of a few texels on a texture much finer than the point spacing is neither missed nor
+// counted twice.
 TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
   for (const unsigned at : {3u, 517u, 1020u}) {
     Scene scene;
@@ -107,7 +108,8 @@ TEST(Emit, HolesDoNotEmit) {
   EXPECT_NEAR(flux, pi * 2 * 4 / 2, 0.02 * flux);
 }
 
-// A surface that reaches through all cascades: points are dense near the eye, sparse far off, nowhere twice, none outside.
+// A surface that reaches through all cascades: points are dense near the eye, sparse far off,
+// nowhere twice, none outside.
 TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
   Scene scene;
   add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, add_lamp_material(scene, glm::vec3(1)));
@@ -180,7 +182,8 @@ RenderOptions small_frame() {
   return options;
 }
 
-// A square over a parallel plane: the mean of the visible E against path tracing, which path_tracer_test.cpp compares with closed forms.
+// A square over a parallel plane: the mean of the visible E against path tracing, which
+// path_tracer_test.cpp compares with closed forms.
 TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
   const Scene scene = lamp_over_floor();
   Frame frame(test_session(), scene, small_frame());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An empty room against path tracing: the error of indirect light must not grow as cells get smaller.
+// An empty room against path tracing: the error of indirect light must not grow as cells get
+// smaller.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// FLIP: properties, and values of the authors' implementation (PyPI package flip-evaluator 1.7). tests/flip/check_package
-// compares more images, where the package is installed.
+// FLIP: properties, and values of the authors' implementation (PyPI package flip-evaluator 1.7).
+// tests/flip/check_package compares more images, where the package is installed.
 #include "image/flip.hpp"
 
 #include <gtest/gtest.h>

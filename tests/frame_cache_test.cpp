@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Results whose inputs did not change are not recomputed, and a frame does not depend on the frames before it.
+// Results whose inputs did not change are not recomputed, and a frame does not depend on the frames
+// before it.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -79,7 +80,8 @@ class CachedFrame : public ::testing::Test {
     return found;
   }
 
-  /// Renders the frame at those instants, compares it with the same frame rendered alone, and returns its passes.
+  /// Renders the frame at those instants, compares it with the same frame rendered alone, and
+  /// returns its passes.
   Passes passes(const Instants& at) {
     const SceneCamera camera = show(at);
     const Found kept = rendered(session_, frame_, camera);
@@ -133,7 +135,8 @@ TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
 
 TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
   Instants at;
-  // Steps across cells of the finest cascade, of both cascades, and within a cell, with and without moving objects.
+  // Steps across cells of the finest cascade, of both cascades, and within a cell, with and without
+  // moving objects.
   for (int i = 0; i < 16; ++i) {
     at.eye[i % 2 == 0 ? 0 : 2] += (i % 2 == 0 ? 0.7f : -0.7f) * kCell;
     if (i % 6 == 1) at.sun += 0.1;

@@ -92,7 +92,8 @@ TEST(Frame, TheBackWallIsRedNearTheRedWall) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
     const Image light = render(scene, options, Show::irradiance);
-    // The back wall beside the red wall (left) and beside the green one (right). Path tracing finds a ratio of 1.34.
+    // The back wall beside the red wall (left) and beside the green one (right). Path tracing finds
+    // a ratio of 1.34.
     constexpr int kLeft = 37, kSide = 6, kTop = 18, kLow = 30;
     const auto red_over_green = [&](int left) {
       return mean(light, left, kTop, left + kSide, kLow, 0) / mean(light, left, kTop, left + kSide, kLow, 1);
@@ -188,8 +189,9 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
     }
   }
   ASSERT_GT(total, 0);
-  // Not to the bit: seen from elsewhere, float32 rounding turns single texels on the edges of the boxes to the other
-  // surface, one in 64 per cell. Light that did not move with the grid would differ by 100 %.
+  // Not to the bit: seen from elsewhere, float32 rounding turns single texels on the edges of the
+  // boxes to the other surface, one in 64 per cell. Light that did not move with the grid would
+  // differ by 100 %.
   EXPECT_LT(difference, 2e-3 * total);
 }
 

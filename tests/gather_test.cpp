@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Gathering against closed forms, by the CPU reference: uniform and linear fields, seams between cascades, clamping,
-// visibility. And the kernels against that reference.
+// Gathering against closed forms, by the CPU reference: uniform and linear fields, seams between
+// cascades, clamping, visibility.
 #include "pipeline/gather/gather.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,8 @@ ClpvGrid grid_of(int c) {
   return grid;
 }
 
-/// Coefficients of a channel in a cell whose centre is at that point, in cells from the grid's origin.
+/// Coefficients of a channel in a cell whose centre is at that point, in cells from the grid's
+/// origin.
 using Fill = std::function<std::vector<double>(int channel, const glm::dvec3& centre)>;
 
 reference::Volume volume_of(int coefficients, const Fill& fill) {
@@ -85,8 +86,8 @@ SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3
   return image;
 }
 
-/// Irradiance E [W/m^2] of each pixel, by the CPU reference, from volumes of grid_of(0), grid_of(1), ... `occluded`: bytes as
-/// CellVisibility stores them.
+/// Irradiance E [W/m^2] of each pixel, by the CPU reference, from volumes of grid_of(0),
+/// grid_of(1), ... `occluded`: bytes as CellVisibility stores them.
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, GatherOptions options,
                                const std::vector<reference::Volume>& light, const SurfaceImage& image,
                                const std::vector<std::uint8_t>& occluded = {}) {
@@ -264,7 +265,8 @@ TEST(Gather, HiddenCellsDoNotLightASurface) {
   const auto is = [](double e) { return [e](std::size_t) { return e; }; };
   expect_all(on_wall(-1, Gathering::visible), is(lit), 3 * lit);
   expect_all(on_wall(1, Gathering::visible), is(0), 3 * lit);
-  // Else a quarter of a cell off the wall three quarters are from its own side, and a quarter is from beyond.
+  // Else a quarter of a cell off the wall three quarters are from its own side, and a quarter is
+  // from beyond.
   const double own = 0.75 + 1e-4 / kCell;
   expect_all(on_wall(-1, Gathering::all), is(own * lit), 3 * lit);
   expect_all(on_wall(1, Gathering::all), is((1 - own) * lit), 3 * lit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and checks the scene
-// in world space.
+// glTF geometry, nodes, cameras and lights, feature by feature: each test writes a small model and
+// checks the scene in world space.
 #include <glm/gtc/constants.hpp>
 
 #include "tests/support/gltf_builder.hpp"
@@ -27,8 +27,8 @@ TEST_F(GltfTest, APlainTriangleComesOutAsItIs) {
 
 TEST_F(GltfTest, TransformsMultiplyDownTheHierarchy) {
   model.triangle();
-  // The root turns by 90 degrees about z and moves; its child scales; the mesh is the grandchild's, with a
-  // matrix.
+  // The root turns by 90 degrees about z and moves; its child scales; the mesh is the grandchild's,
+  // with a matrix.
   model.document["nodes"] = json::parse(R"([
     {"translation": [10, 0, 0], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "children": [1]},
     {"scale": [2, 2, 2], "children": [2]},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Helper processes: each job is taken once, and with their help a first run gives the same image and the same checks.
+// Helper processes: each job is taken once, and with their help a first run gives the same image
+// and the same checks.
 #include "support/helpers.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Invalid command lines, row by row: bad arguments (exit code 2, before a scene is read or a device is opened), devices that do
-// not exist (4), outputs that cannot be written (1, before the work), files that cannot be read (3).
-// The message names option or file and the allowed values. No file may remain.
+// Invalid command lines, row by row: bad arguments (exit code 2, before a scene is read or a device
+// is opened), devices that do not exist (4), outputs that cannot be written (1, before the work),
+// files that cannot be read (3). The message names option or file and the allowed values. No file
+// may remain.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -33,8 +34,8 @@ struct HostileInput {
   std::vector<std::string> words;                            ///< on stderr
   std::vector<std::pair<std::string, std::string>> files{};  ///< made in the folder: name, bytes
   std::function<void(const TemporaryFolder&)> prepare{};     ///< creates anything but regular files
-  /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the shell; without, the command
-  /// runs in this process.
+  /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the
+  /// shell; without, the command runs in this process.
   std::string surroundings{};
 };
 
@@ -239,7 +240,8 @@ TEST(HostileSurroundings, Variables) {
   rejected("env -u POCL_CACHE_DIR XDG_CACHE_HOME=@/file", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
 }
 
-/// The program for someone who is not root, for whom permissions count; empty where that cannot be had.
+/// The program for someone who is not root, for whom permissions count; empty where that cannot be
+/// had.
 std::string as_nobody() {
   if (::geteuid() != 0) return " ";
   const std::string become = "setpriv --reuid=65534 --regid=65534 --clear-groups ";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Images in and out: files read back as written, byte-identical each time; bad files are rejected with the reason. Tone curves
-// and the sRGB encoding against published values.
+// Images in and out: files read back as written, byte-identical each time; bad files are rejected
+// with the reason. Tone curves and the sRGB encoding against published values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -133,8 +133,8 @@ TEST_F(ImageFiles, PngRoundsToBytesAndKeepsAlphaApart) {
 }
 
 TEST_F(ImageFiles, HdrIsRead) {
-  // Radiance RGBE: mantissas 64, 128, 255 with exponent 129 are value / 256 * 2^(129 - 128); flat, not
-  // run-length coded.
+  // Radiance RGBE: mantissas 64, 128, 255 with exponent 129 are value / 256 * 2^(129 - 128); flat,
+  // not run-length coded.
   const unsigned char pixels[] = {64, 128, 255, 129, 128, 128, 128, 128};
   std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
   bytes.append(reinterpret_cast<const char*>(pixels), sizeof pixels);
@@ -171,7 +171,8 @@ TEST_F(ImageFiles, RejectsWhatIsNoImageOrTooLarge) {
   set_big_endian(huge, 29, crc(std::string_view(huge).substr(12, 17)));
   broken.replace(43, 9, 9, '\x55');
   text.insert(33, "\x7f\xff\xff\xfftEXtComment");
-  // A scan-line file made to claim tiles: the attribute "tiles" (two sides and a level mode), and the flag in the version.
+  // A scan-line file made to claim tiles: the attribute "tiles" (two sides and a level mode), and
+  // the flag in the version.
   tiles.insert(8, std::string("tiles\0tiledesc\0\x09\0\0\0\x10\0\0\0\0\0\xbb\0\0", 28));
   tiles[5] = static_cast<char>(tiles[5] | 2);
   const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
@@ -249,8 +250,8 @@ TEST(ToneCurve, ReinhardOnGreyAndOnColour) {
 
 TEST(ToneCurve, AcesFit) {
   EXPECT_EQ(tone_curve(ToneMap::aces, glm::vec3(0)), glm::vec3(0));
-  // (2.51 + 0.03) / (2.43 + 0.59 + 0.14), and white where x(2.51x+0.03) = x(2.43x+0.59)+0.14: 0.08 x^2 - 0.56 x - 0.14
-  // = 0.
+  // (2.51 + 0.03) / (2.43 + 0.59 + 0.14), and white where x(2.51x+0.03) = x(2.43x+0.59)+0.14: 0.08
+  // x^2 - 0.56 x - 0.14 = 0.
   EXPECT_NEAR(tone_curve(ToneMap::aces, glm::vec3(1)).r, 2.54f / 3.16f, 1e-6);
   EXPECT_NEAR(tone_curve(ToneMap::aces, glm::vec3(0.18f)).r, 0.2669f, 1e-4);
   const float white = (0.56f + std::sqrt(0.56f * 0.56f + 4 * 0.08f * 0.14f)) / 0.16f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Injection against closed forms: position and flux of light, blockers, several surfaces, repeatability; and the
-// kernels against their CPU reference.
+// Injection against closed forms: position and flux of light, blockers, several surfaces,
+// repeatability.
 #include "pipeline/inject/inject.hpp"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,8 @@ constexpr double kRounding = 2e-6;
 
 const ClpvGrid kCells = {{-2, -2, -2}, kCell, kGrid, {}};
 
-/// Looks down on the xz plane from y = 10: x to the right, z downwards. Texels of the given edge [m] around (0, 0).
+/// Looks down on the xz plane from y = 10: x to the right, z downwards. Texels of the given edge
+/// [m] around (0, 0).
 ClpvView from_above(unsigned width, unsigned height, float edge) {
   ClpvView view{};
   view.eye[1] = 10, view.orthographic = 1, view.far_depth = 100;
@@ -118,7 +119,8 @@ INSTANTIATE_TEST_SUITE_P(Inject, EachBasis, testing::Values("sh2", "srbf8v2"),
 
 TEST_P(EachBasis, OneTexelIsALobeHalfACellOffItsSurface) {
   const glm::vec3 normal = glm::normalize(glm::vec3(-2, 1, -3)), flux(0.5f, 1, 2);
-  // The texel is in cell (4, 4, 4); its light is moved by (-0.267, 0.134, -0.401) cells out of (4.1, 4.9, 4.2).
+  // The texel is in cell (4, 4, 4); its light is moved by (-0.267, 0.134, -0.401) cells out of
+  // (4.1, 4.9, 4.2).
   const SurfaceImage texel = one_texel({0.05f, 0.45f, 0.1f}, normal, flux);
   const Injection light = light_of(*basis, texel);
   const std::vector<double> lobe = basis->clamped_cosine(glm::dvec3(normal));
@@ -131,7 +133,8 @@ TEST_P(EachBasis, OneTexelIsALobeHalfACellOffItsSurface) {
 }
 
 TEST_P(EachBasis, TotalEnergyIsTheFluxOfAllTexels) {
-  // 4096 texels of 1/32 m: 256 to a cell, in many segments; 0.3 m is in the middle of a layer of cells.
+  // 4096 texels of 1/32 m: 256 to a cell, in many segments; 0.3 m is in the middle of a layer of
+  // cells.
   const SurfaceImage floor = plane(from_above(64, 64, 1.0f / 32), 0.3f, {1, 0.25f, 0});
   const double lobe_flux = basis->energy(basis->clamped_cosine({0, 1, 0})) / kPi;
   EXPECT_NEAR(lobe_flux, 1, basis->centres().empty() ? 1e-12 : 1.5e-3);
@@ -198,7 +201,8 @@ TEST(Inject, ValuesThatAreNotFiniteAreSkipped) {
 
 TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
   const auto basis = make_basis("sh2");
-  // Two metres square: from corner 2 to 6, each inner corner's square full of 8 x 8 texels. Layer 5 is at 0.5 m.
+  // Two metres square: from corner 2 to 6, each inner corner's square full of 8 x 8 texels. Layer 5
+  // is at 0.5 m.
   const SurfaceImage wall = plane(from_above(32, 32, 1.0f / 16), 0.55f);
   const Injection blocked = geometry_of(*basis, {wall});
   for (const int x : {3, 4, 5}) {
@@ -238,7 +242,8 @@ TEST(Inject, SlantedSurfelsCoverMoreUpToALimit) {
 
 TEST(Inject, PerspectiveFootprintsTileTheWall) {
   const auto basis = make_basis("sh2");
-  // A camera 3 m above a floor, 90 degrees wide: the floor's squares in view are covered once, however slanted.
+  // A camera 3 m above a floor, 90 degrees wide: the floor's squares in view are covered once,
+  // however slanted.
   ClpvView camera = from_above(240, 240, 1);
   camera.orthographic = 0, camera.eye[1] = 3.1f, camera.half_width = camera.half_height = 1;
   const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)});
@@ -281,7 +286,8 @@ TEST(Inject, LightOfSeveralSurfacesAddsUp) {
   for (std::size_t i = 0; i < twice.size(); ++i) ASSERT_EQ(twice[i], 2 * once.values[i]);
 }
 
-// Segments are longer in larger surfaces: a smaller one may have more of them, and their sums once overran memory.
+// Segments are longer in larger surfaces: a smaller one may have more of them, and their sums once
+// overran memory.
 TEST(Inject, ASmallerSurfaceOfMoreSegmentsFollowsALargerOne) {
   const auto basis = make_basis("sh2");
   Session& session = test_session();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or none, and the next run is
-// right. Interrupted, they report which results exist.
+// Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or
+// none, and the next run is right. Interrupted, they report which results exist.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -49,7 +49,8 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   bool running() const { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
-  /// True once exec() has run and the program handles SIGINT; before that, SIGINT ends it without a message.
+  /// True once exec() has run and the program handles SIGINT; before that, SIGINT ends it without a
+  /// message.
   bool listens() const {
     std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
     std::string word, name;
@@ -75,8 +76,8 @@ class Child {
 
 class Killed : public ::testing::Test {
  protected:
-  /// Runs `arguments` to their end and measures the time; then kills them at moments within that time, and
-  /// calls `look` after each. A whole run must go well then.
+  /// Runs `arguments` to their end and measures the time; then kills them at moments within that
+  /// time, and calls `look` after each. A whole run must go well then.
   template <typename Look>
   void kill_at_moments(const std::string& arguments, const Look& look) {
     const auto started = Clock::now();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's look-up tables on the device, and lobes that the propagation kernel computes from them. clpv check compares such
-// lobes with the CPU reference; these tests cover the rest.
+// The paper's look-up tables on the device, and lobes that the propagation kernel computes from
+// them. clpv check compares such lobes with the CPU reference; these tests cover the rest.
 #include "pipeline/inject/lookup_table.hpp"
 
 #include <gmock/gmock.h>
@@ -53,7 +53,8 @@ INSTANTIATE_TEST_SUITE_P(LookupTable, EachStorage,
                            return info.param == TableStorage::buffer ? "Buffer" : "Image";
                          });
 
-// A new stage creates its table again. Memory freed by the tables of former stages must not be this table's.
+// A new stage creates its table again. Memory freed by the tables of former stages must not be this
+// table's.
 TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersAreFreed) {
   if (GetParam() == TableStorage::image && !test_session().device().images)
     GTEST_SKIP() << "the device has no images";

@@ -152,7 +152,8 @@ TEST(Medium, WhiteFurnaceIsUniform) {
   }
 }
 
-// A sun from above; the ray runs along x through a medium that absorbs so much more than it scatters that light scattered
+// A sun from above; the ray runs along x through a medium that absorbs so much more than it
+// scatters that light scattered
 // twice does not count:   L = sigma_s p(0) E exp(-sigma_t h) (1 - exp(-sigma_t l)) / sigma_t.
 TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
   Scene scene = floor_scene(0);
@@ -167,7 +168,8 @@ TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
   EXPECT_NEAR(mean(seen.pixels, 0), expected, 2e-3 * expected);
 }
 
-// A point light 0.3 m beside the same ray: L is the integral of sigma_s p I / r^2 exp(-sigma_t (t + r)) over the ray.
+// A point light 0.3 m beside the same ray: L is the integral of sigma_s p I / r^2 exp(-sigma_t (t +
+// r)) over the ray.
 TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
   Scene scene = floor_scene(0);
   const glm::vec3 at(2, 1.5f, 0);
@@ -189,8 +191,8 @@ TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
   EXPECT_NEAR(mean(seen.pixels, 0), expected, 2e-3 * expected);
 }
 
-// In the middle of a cube of an absorbing medium under a uniform sky, the fluence is the integral of exp(-sigma l) over all
-// directions, l the way to the cube's side.
+// In the middle of a cube of an absorbing medium under a uniform sky, the fluence is the integral
+// of exp(-sigma l) over all directions, l the way to the cube's side.
 TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
   constexpr int kGrid = 16;
   constexpr float kCell = 0.25f, kSide = 3;
@@ -218,7 +220,8 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
       found += swept.value(c, 0, kGrid / 2 - (i & 1), kGrid / 2 - (i >> 1 & 1), kGrid / 2 - (i >> 2)) / 8 *
                std::sqrt(4 * pi) / (kCell * kCell);
     }
-    // Four taps spread a direction's light, and its ways with it: 4.6 % for the densest, 1 % for the thinnest.
+    // Four taps spread a direction's light, and its ways with it: 4.6 % for the densest, 1 % for
+    // the thinnest.
     EXPECT_NEAR(found, expected, 0.05 * expected) << "channel " << c;
   }
 }
@@ -243,7 +246,8 @@ TEST(Medium, ScatteringBetweenBinsKeepsUniformLightEnergyAndMeanCosine) {
   }
 }
 
-/// Uniform radiance of 1 in a medium that only scatters, from a sky of radiance 1, swept along 96 directions.
+/// Uniform radiance of 1 in a medium that only scatters, from a sky of radiance 1, swept along 96
+/// directions.
 struct Furnace {
   static constexpr int kGrid = 8;
   static constexpr float kCell = 0.25f;
@@ -281,7 +285,8 @@ TEST(Medium, RepeatedSweepsFillTheFurnace) {
   for (const double value : swept.values) EXPECT_NEAR(value, area, 2e-3 * area);
 }
 
-/// A black floor below a sun, half of it in the shadow of a screen at 3 m, in a medium that absorbs more than it scatters.
+/// A black floor below a sun, half of it in the shadow of a screen at 3 m, in a medium that absorbs
+/// more than it scatters.
 Scene shafts() {
   Scene scene = floor_scene(0);
   add_quad(scene, {-10, 3, -10}, {10, 0, 0}, {0, 0, 20}, 0);

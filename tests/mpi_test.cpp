@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// clpv under mpirun: two and three ranks write the same bytes as one process; a rank that is killed, or fails,
-// ends the job, and the same command resumes.
+// clpv under mpirun: two and three ranks write the same bytes as one process; a rank that is
+// killed, or fails, ends the job, and the same command resumes.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

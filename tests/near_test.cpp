@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Near field against closed forms, by the CPU reference: emissive boxes and walls, fields that it must not change. The
-// directions, and the kernels against that reference.
+// Near field against closed forms, by the CPU reference: emissive boxes and walls, fields that it
+// must not change; and the directions.
 #include "pipeline/gather/near.hpp"
 
 #include <gtest/gtest.h>
@@ -124,8 +124,8 @@ TEST(Near, InsideAnEmissiveBoxIsPiL) {
   for (const glm::dvec3& e : found) ASSERT_NEAR(e.x, pi * kRadiance, 0.02 * kRadiance);
 }
 
-/// E / (pi L) of a point on a floor beside an upright rectangle `width` x `height` that begins `distance` from it, at its
-/// lower corner.
+/// E / (pi L) of a point on a floor beside an upright rectangle `width` x `height` that begins
+/// `distance` from it, at its lower corner.
 double form_factor(double distance, double width, double height) {
   const double slant = std::hypot(distance, height);
   return (std::atan(width / distance) - distance / slant * std::atan(width / slant)) / (2 * pi);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Options of a frame: conversion from text to a value and back, errors for invalid values, presets, and a name for each value of
-// each enumeration.
+// Options of a frame: conversion from text to a value and back, errors for invalid values, presets,
+// and a name for each value of each enumeration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -35,14 +35,15 @@ glm::dvec2 on_floor(unsigned px, unsigned py) {
   return {2 * sx, -2 * sy};
 }
 
-/// Configuration factor from an element to a parallel rectangle a x b whose corner is right across it, at
-/// distance 1.
+/// Configuration factor from an element to a parallel rectangle a x b whose corner is right across
+/// it, at distance 1.
 double corner_factor(double a, double b) {
   const double ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
   return (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * pi);
 }
 
-// A closed box whose walls emit E and reflect a: radiance E / (1 - a) everywhere, E (1 + a) after one bounce.
+// A closed box whose walls emit E and reflect a: radiance E / (1 - a) everywhere, E (1 + a) after
+// one bounce.
 TEST(PathTracer, FurnaceHasTheRadianceOfAGeometricSeries) {
   for (const float albedo : {0.0f, 0.5f, 0.8f}) {
     const Scene scene = box(albedo, 2);
@@ -158,8 +159,8 @@ TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
   }
 }
 
-/// A floor of albedo 0.6, 3 x 2, under a slanting sun, and 1 above it a small tile facing down, its shadow
-/// elsewhere.
+/// A floor of albedo 0.6, 3 x 2, under a slanting sun, and 1 above it a small tile facing down, its
+/// shadow elsewhere.
 Scene plates() {
   Scene scene;
   scene.path = "plates";
@@ -188,7 +189,8 @@ TEST(PathTracer, ParallelPlatesExchangeTheAnalyticFormFactor) {
   EXPECT_LT(image.noise, 2e-3);
 }
 
-// The estimator is unbiased, and the reported noise is the actual noise: many short runs average to the closed form.
+// The estimator is unbiased, and the reported noise is the actual noise: many short runs average to
+// the closed form.
 TEST(PathTracer, ShortRunsAverageToTheTruthWithTheNoiseTheyReport) {
   const double truth = plates_expected();
   PathTracerOptions options;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ground truth: the files of `clpv pathtrace`; and cached images of `clpv quality`, which are traced again only when an input
-// changes or their file is damaged.
+// Ground truth: the files of `clpv pathtrace`; and cached images of `clpv quality`, which are
+// traced again only when an input changes or their file is damaged.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

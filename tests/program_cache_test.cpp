@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cache of compiled programs on disk: returns stored programs unchanged, and rejects any other content.
+// Cache of compiled programs on disk: returns stored programs unchanged, and rejects any other
+// content.
 #include "device/program_cache.hpp"
 
 #include <gmock/gmock.h>

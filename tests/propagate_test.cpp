@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Propagation: kernels against the CPU reference, and the CPU reference against closed forms.
+// Propagation: the CPU reference against closed forms.
 #include "reference/propagate.hpp"
 #include "tests/support/numbers.hpp"
 

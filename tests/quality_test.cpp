@@ -175,7 +175,8 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   EXPECT_NE(json["cells"][0]["nrmse"], json["cells"][2]["nrmse"]) << "bases differ";
   EXPECT_EQ(kept(), 4u);
 
-  // As if stopped before the last cell: three are read back with their times, the fourth is measured.
+  // As if stopped before the last cell: three are read back with their times, the fourth is
+  // measured.
   fs::remove(fs::directory_iterator(file("cache/cells"))->path());
   const test::Outcome second = quality(matrix);
   ASSERT_EQ(second.exit_code, 0) << second.err;

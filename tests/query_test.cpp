@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light at points: irradiance equals the frame's at visible points, radiance the CPU reference's; valid and invalid
-// files of points; `clpv query`.
+// Light at points: irradiance equals the frame's at visible points, radiance the CPU reference's;
+// valid and invalid files of points; `clpv query`.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -126,8 +126,8 @@ std::vector<int> coverage(const Scene& scene, const ClpvView& view) {
   return count;
 }
 
-/// A plane of cells x cells quads with moved corners, two triangles each, that reaches beyond the view.
-/// `step`: corners move in multiples of it, as a part of a quad's edge; 0: anywhere.
+/// A plane of cells x cells quads with moved corners, two triangles each, that reaches beyond the
+/// view. `step`: corners move in multiples of it, as a part of a quad's edge; 0: anywhere.
 Scene jittered_plane(int cells, float extent, float depth, float step) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> uniform(-0.3f, 0.3f);
@@ -172,7 +172,8 @@ TEST(Rasterize, SharedEdgesLeaveNoHoleAndDrawNothingTwice) {
 }
 
 TEST(Rasterize, EdgesThroughPixelCentresBelongToOneTriangle) {
-  // Quads of 4 pixels whose corners move by half pixels: corners and edges meet pixel centres all the time.
+  // Quads of 4 pixels whose corners move by half pixels: corners and edges meet pixel centres all
+  // the time.
   const Scene scene = jittered_plane(8, 2, 4, 0.125f);
   EXPECT_THAT(coverage(scene, orthographic_square(1.5f, 24)), ::testing::Each(1));
 }

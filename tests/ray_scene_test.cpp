@@ -36,7 +36,8 @@ TEST(RayScene, MaskedHolesAreTransparent) {
   scene.lights = {sun({0, -1, 0}, 1)};
   PathTracerOptions options;
   options.samples = 1;
-  // The four quarters of the grid, each at its texel's centre; then the floor below them, from beside.
+  // The four quarters of the grid, each at its texel's centre; then the floor below them, from
+  // beside.
   const ClpvView view = view_of({0, 3, 0}, {0, -1, 0}, {0, 0, -1}, 0.5f, 2, 2);
   const TracedImage image = trace_paths(scene, view, options);
   EXPECT_NEAR(image.depth[0], 2, 1e-5);  // u = v = 1/4: red
@@ -68,7 +69,8 @@ TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
   EXPECT_NEAR(image.direct[0].x, 1, 1e-6);
 }
 
-/// Random triangles with bent normals and random textures: plain, with holes, seen from both sides or one.
+/// Random triangles with bent normals and random textures: plain, with holes, seen from both sides
+/// or one.
 Scene clutter() {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> any(-1, 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This project's scenes: their generators reproduce the committed files, which match their descriptions.
+// This project's scenes: their generators reproduce the committed files, which match their
+// descriptions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `clpv sequence`: its frames equal frames rendered alone, a run resumes where another ended, and ffmpeg writes films.
+// `clpv sequence`: its frames equal frames rendered alone, a run resumes where another ended, and
+// ffmpeg writes films.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 

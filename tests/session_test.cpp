@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A device in use: memory it rejects, launches of any size, times by events and by the host's clock, shared
-// structs.
+// A device in use: memory it rejects, launches of any size, times by events and by the host's
+// clock, shared structs.
 #include "device/session.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shading against closed forms: Lambert's law for every kind of light, views, shadows
-// of known outline, surfaces that must not shadow themselves. And the kernels against the CPU reference.
+// of known outline, surfaces that must not shadow themselves.
 #include "pipeline/raster/shade.hpp"
 
 #include <gmock/gmock.h>
@@ -158,7 +158,8 @@ TEST(Shadow, ShadowLiesBelowTheRoof) {
 }
 
 TEST(Shadow, TiltedPlanesDoNotShadowThemselves) {
-  // A plane that the light grazes at up to 89 degrees, seen face on, the light's texels turned against the camera's.
+  // A plane that the light grazes at up to 89 degrees, seen face on, the light's texels turned
+  // against the camera's.
   for (const double degrees : {0.0, 20.0, 45.0, 70.0, 85.0, 89.0}) {
     for (const double azimuth : {0.0, 0.4, 2.0}) {
       const double angle = degrees / 180 * pi;
@@ -194,8 +195,8 @@ TEST(Shadow, RoundSurfacesDoNotShadowThemselves) {
 }
 
 TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
-  // A wall x = 0 of 3 m on the floor; the light comes over it at 45 degrees. Light may leak at its foot by half the
-  // filter and by the part of the wall below the lift.
+  // A wall x = 0 of 3 m on the floor; the light comes over it at 45 degrees. Light may leak at its
+  // foot by half the filter and by the part of the wall below the lift.
   const double foot =
       (2 * std::sqrt(2.0) + CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * std::sqrt(0.5)) * kTexel;
   const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
@@ -216,7 +217,8 @@ TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
   }
 }
 
-// A floor that the light grazes at up to 87 degrees; and a room whose walls are oblique to the six views.
+// A floor that the light grazes at up to 87 degrees; and a room whose walls are oblique to the six
+// views.
 TEST(Shadow, SixViewsOfAPointLightShowNoSeamsAndDoNotShadowTheirReceiver) {
   const auto room = [](const glm::dvec3& o, const glm::dvec3& d) {
     double t = 0;

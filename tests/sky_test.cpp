@@ -206,7 +206,8 @@ TEST(PathTracer, TheSkyIsSampledByItsRadiance) {
   EXPECT_TRUE(reference::SkySampler(nullptr).empty());
 }
 
-// Light from the floor to a wall and from the wall to the floor: the same paths for as many bounces.
+// Light from the floor to a wall and from the wall to the floor: the same paths for as many
+// bounces.
 TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
   Scene scene = under(constant_sky(glm::vec3(1)));
   for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The sort by cell against the standard library's stable sort: every texel that has a cell once, cell by cell, each
-// cell's in their own order.
+// The sort by cell against the standard library's stable sort: every texel that has a cell once,
+// cell by cell, each cell's in their own order.
 #include "pipeline/inject/sort_by_cell.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,8 @@ void expect_sorted(const Keys& keys, std::size_t cells) {
   EXPECT_EQ(sorted_there(sorter, keys, cells), sorted_here(keys)) << keys.size() << " texels, " << cells;
 }
 
-/// Runs of up to `longest` neighbours in one cell, as surfaces have; one texel in eight has no cell.
+/// Runs of up to `longest` neighbours in one cell, as surfaces have; one texel in eight has no
+/// cell.
 Keys in_runs(std::size_t texels, cl_uint cells, unsigned longest, unsigned seed = 1) {
   std::mt19937 random(seed);
   Keys keys;

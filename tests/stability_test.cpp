@@ -23,7 +23,8 @@ using test::test_session;
 
 constexpr int kWidth = 64, kHeight = 36;
 
-/// G-buffer of the floor y = 0 and, where `box` > 0, of a box's top at that height over |x|, |z| < 1.
+/// G-buffer of the floor y = 0 and, where `box` > 0, of a box's top at that height over |x|, |z| <
+/// 1.
 SurfaceImage view_of_floor(const glm::vec3& eye, double box = 0) {
   SurfaceImage image;
   image.view = camera_view(test::camera_at(eye, {0.1f, -0.6f, -1}), kWidth, kHeight);
@@ -117,7 +118,8 @@ class SteadyFrame : public ::testing::Test {
 
   void SetUp() override { camera_.eye = (glm::floor(camera_.eye / kCell) + 0.25f) * kCell; }
 
-  /// Moves the camera by that many cells, and returns the change of light on surfaces visible before and after.
+  /// Moves the camera by that many cells, and returns the change of light on surfaces visible
+  /// before and after.
   LightChange after(float cells) {
     if (before_.depth.empty()) render();
     camera_.eye.x += cells * kCell;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Failing devices and full disks: allocations, enqueues and builds of a frame fail in turn (by a shim of the OpenCL loader,
-// tests/starved/opencl_shim.cpp). Each run ends with a message and exit code 1, and leaves no device memory and no file.
+// Failing devices and full disks: allocations, enqueues and builds of a frame fail in turn (by a
+// shim of the OpenCL loader, tests/starved/opencl_shim.cpp). Each run ends with a message and exit
+// code 1, and leaves no device memory and no file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +34,8 @@ class Starved : public ::testing::Test {
   }
   static void TearDownTestSuite() { delete cache_; }
 
-  /// Programs are compiled once for all tests, each in its process; the cache lies beside the program.
+  /// Programs are compiled once for all tests, each in its process; the cache lies beside the
+  /// program.
   static fs::path compiled() { return fs::path(CLPV_PROGRAM).parent_path() / "starved_cache"; }
 
   /// `timeout` goes first: only the program gets the shim.
@@ -75,7 +77,8 @@ class Starved : public ::testing::Test {
     const long count = report()[call];
     ASSERT_GT(count, 1);
     if (const char* wish = std::getenv("CLPV_STARVED_STEP")) step = std::max(1, std::atoi(wish));
-    // The first asks whether the clock of events is to be trusted (device.cpp); its failure is an answer.
+    // The first asks whether the clock of events is to be trusted (device.cpp); its failure is an
+    // answer.
     for (long n = 2; n <= count; n += step) expect_reported(call, n, code, name);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sweep against closed forms, by the CPU reference; and the kernels against that reference.
+// The sweep against closed forms, by the CPU reference.
 #include "pipeline/sweep/sweep.hpp"
 
 #include <gmock/gmock.h>
@@ -138,8 +138,8 @@ double fluence(const reference::Volume& light, const glm::ivec3& p) {
   return sum;
 }
 
-/// Fluence in the halo of cells at a distance `r` from the middle, relative to that of an isotropic source of 1 W/sr: its
-/// mean and root mean square.
+/// Fluence in the halo of cells at a distance `r` from the middle, relative to that of an isotropic
+/// source of 1 W/sr: its mean and root mean square.
 std::pair<double, double> halo(const reference::Volume& light, double r) {
   const int middle = light.n / 2;
   double sum = 0, squares = 0;
@@ -187,7 +187,8 @@ TEST(Sweep, EveryPlaneCarriesAllLightUntilTheBorder) {
   }
 }
 
-// A wall blocks sum_a |k_a| / |k| of the light that passes it with offset k: all of it along its axis.
+// A wall blocks sum_a |k_a| / |k| of the light that passes it with offset k: all of it along its
+// axis.
 TEST(Sweep, AWallTransmitsThroughItsLinks) {
   constexpr int kGrid = 11, kWall = 6;
   for (const int distance : {1, 3}) {  // from the source on, the first cell's way included
@@ -223,7 +224,8 @@ TEST(Sweep, AWallTransmitsThroughItsLinks) {
   }
 }
 
-/// Injected light that makes the field uniform: each cell replaces the light that would come from outside.
+/// Injected light that makes the field uniform: each cell replaces the light that would come from
+/// outside.
 double made_up(int n, int b, const glm::ivec3& p) {
   static const std::vector<SweepBin> bins = sweep_bins(1);
   const SweepBin& bin = bins[static_cast<std::size_t>(b)];
@@ -269,8 +271,9 @@ TEST(Sweep, UniformLightStaysSoThroughAllCascades) {
   }
 }
 
-/// A square of 0.3 m on the floor emits 1 W/m^2 by a basis's clamped cosine. Fluence [W/m^2] on a ceiling 0.56 m above and on
-/// a wall 0.34 m beside its middle, against the integral over the square.
+/// A square of 0.3 m on the floor emits 1 W/m^2 by a basis's clamped cosine. Fluence [W/m^2] on a
+/// ceiling 0.56 m above and on a wall 0.34 m beside its middle, against the integral over the
+/// square.
 struct SquareErrors {
   double ceiling, wall;  ///< root mean square, relative
   double energy;         ///< on the ceiling, relative

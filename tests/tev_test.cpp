@@ -56,7 +56,8 @@ class Fields {
   std::size_t at_ = 0;
 };
 
-/// Accepts one connection and keeps its images. Slow and with a small buffer, so that sends are partial.
+/// Accepts one connection and keeps its images. Slow and with a small buffer, so that sends are
+/// partial.
 class Server {
  public:
   /// `packets`: how many are read before the connection is closed.

@@ -58,7 +58,8 @@ TEST(MipChain, EverySrgbByteComesBack) {
   for (unsigned byte = 0; byte < 256; ++byte) EXPECT_EQ(srgb_from_linear(linear_from_srgb(byte)), byte);
 }
 
-/// An orthographic camera looking down -z at the square (0..1)^2 at z = -1, whose uv runs from `from` to `to`.
+/// An orthographic camera looking down -z at the square (0..1)^2 at z = -1, whose uv runs from
+/// `from` to `to`.
 SurfaceImage image_of(Scene scene, int size, const glm::vec2& from, const glm::vec2& to) {
   add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 0);
   for (Vertex& v : scene.vertices) {

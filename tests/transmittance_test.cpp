@@ -81,8 +81,8 @@ TEST_P(EachTransport, NothingBlocksNothing) {
       transport(*basis), nothing, [](const glm::ivec3&, const Link&) { return 1.0; }, 0);
 }
 
-// In sh2, whose constant is exactly 1: blockers that grow from corner to corner are averaged over the side that light
-// enters by, and B is clamped to [0, 1].
+// In sh2, whose constant is exactly 1: blockers that grow from corner to corner are averaged over
+// the side that light enters by, and B is clamped to [0, 1].
 TEST_P(EachTransport, BlockersAreAveragedOverTheLinksFace) {
   const auto basis = make_basis("sh2");
   const glm::dvec3 slope(0.21, -0.13, 0.17);
@@ -112,8 +112,8 @@ TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
              });
 }
 
-// A surfel across an axis blocks |n.w| of the light along every w. An oblique surfel transmits the same fraction along
-// the axes, and at least that elsewhere.
+// A surfel across an axis blocks |n.w| of the light along every w. An oblique surfel transmits the
+// same fraction along the axes, and at least that elsewhere.
 TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
   const auto basis = make_basis("sh2");
   const Transport by_areas = transport(*basis, Blocking::areas);

@@ -56,7 +56,8 @@ TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
   EXPECT_THAT(run("bench frame --help").out, HasSubstr("--eye"));
 }
 
-// The loader adds a camera and a sun to a bare model, and says so unless the command line replaces them.
+// The loader adds a camera and a sun to a bare model, and says so unless the command line replaces
+// them.
 TEST_F(CameraByNumbers, NotesNameOnlyWhatIsShown) {
   GltfBuilder bare;
   bare.triangle();

@@ -65,7 +65,8 @@ TEST(Visibility, AWallThroughCentresHidesNothing) {
 
 TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
   Scene scene;
-  // On the segment from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along each axis.
+  // On the segment from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along
+  // each axis.
   add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
   std::vector<std::uint8_t> found = occluded(scene);
   EXPECT_EQ(found[0] & 1, 1) << "the first point of the first cube does not see its first corner";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volumes in every layout and storage: writing and reading, accumulation, errors of the device, and work-items of one or eight
-// cells.
+// Volumes in every layout and storage: writing and reading, accumulation, errors of the device, and
+// work-items of one or eight cells.
 #include "volume/volume.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,8 @@ void expect_near(const std::vector<float>& found, const std::vector<float>& want
 }
 
 TEST(Volume, ReadsBackWhatWasWritten) {
-  // Coefficients that fill texels of four, and such that do not; blocks of eight samples, and one more.
+  // Coefficients that fill texels of four, and such that do not; blocks of eight samples, and one
+  // more.
   for (const VolumeShape& shape : {VolumeShape{17, 4, 3}, {33, 1, 1}, {8, 9, 3}, {5, 14, 1}, {1, 25, 3}}) {
     const std::vector<float> values = random_values(shape);
     for (const VolumeFormat& format : formats(shape)) {
@@ -147,8 +148,8 @@ TEST(VolumeLayouts, OneCellAWorkItemOrEight) {
   }
 }
 
-/// soa's planes lie an odd number of halves apart, and rows of eight are stored at any. (PoCL 3.1's own vstore_half8 crashed
-/// just here, where sh3 takes more registers than there are.)
+/// soa's planes lie an odd number of halves apart, and rows of eight are stored at any. (PoCL 3.1's
+/// own vstore_half8 crashed just here, where sh3 takes more registers than there are.)
 TEST(VolumeLayouts, RowsOfHalvesBeginAtAnyAddress) {
   const auto run = [](int lanes) {
     return propagated({Layout::soa, Storage::float16}, lanes, "sh3", Blocking::areas, 24);

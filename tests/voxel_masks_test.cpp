@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Voxelised triangles are the same whether computed from nothing or updated as cascades and triangles move.
+// Voxelised triangles are the same whether computed from nothing or updated as cascades and
+// triangles move.
 #include "pipeline/voxels/voxel_masks.hpp"
 
 #include <gtest/gtest.h>
@@ -95,7 +96,8 @@ Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
 TEST(VoxelMasks, MoveWithACascade) {
   const Scene scene = soup();
   Stages kept(upload_scene(test_session(), scene));
-  // By one cell, by several along two and three axes, back, by more than the grid, past a base (every 32 cells), by none.
+  // By one cell, by several along two and three axes, back, by more than the grid, past a base
+  // (every 32 cells), by none.
   const glm::ivec3 places[] = {{-4, -4, -4}, {-3, -4, -4}, {-3, -6, -1}, {-1, -5, -2},
                                {-4, -4, -4}, {5, -4, -4},  {11, -4, 2},  {17, -4, 2},
                                {15, -4, 2},  {16, -3, 2},  {16, -3, 2}};

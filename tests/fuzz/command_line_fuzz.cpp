@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A command line, an argument a line: parsed as the program parses it, commands not run; and each argument as a vector and
-// as a box.
+// A command line, an argument a line: parsed as the program parses it, commands not run; and each
+// argument as a vector and as a box.
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -24,8 +24,8 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
-/// Those that can be chosen, since adding all takes some twenty times as long as parsing. All where none is named, for the
-/// words about a misspelt one.
+/// Those that can be chosen, since adding all takes some twenty times as long as parsing. All where
+/// none is named, for the words about a misspelt one.
 std::vector<clpv::Command> commands_named_in(const std::vector<std::string>& arguments) {
   const auto all = clpv::all_commands();
   std::vector<clpv::Command> named;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Helpers of the fuzz targets. A target is a file NAME_fuzz.cpp with one LLVMFuzzerTestOneInput: libFuzzer calls it with
-// generated inputs (scripts/fuzz), replay.cpp with those of corpus/NAME and blind mutants of them (a test of every build).
+// Helpers of the fuzz targets. A target is a file NAME_fuzz.cpp with one LLVMFuzzerTestOneInput:
+// libFuzzer calls it with generated inputs (scripts/fuzz), replay.cpp with those of corpus/NAME and
+// blind mutants of them (a test of every build).
 //
-// An input is read or rejected. Whatever else happens is a finding: a crash, a sanitizer's report, an exception of
-// another kind, or an error of another exit code than those a target allows.
+// An input is read or rejected. Whatever else happens is a finding: a crash, a sanitizer's report,
+// an exception of another kind, or an error of another exit code than those a target allows.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A .gltf, text: loaded, and shown at some instants if it moves. Beside it are model.bin and image.png for its URIs.
+// A .gltf, text: loaded, and shown at some instants if it moves. Beside it are model.bin and
+// image.png for its URIs.
 #include "tests/fuzz/model.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -32,7 +32,8 @@ inline std::string textured() {
 
 inline constexpr std::string_view kUnderSky = R"({"model": "textured.gltf", "sky": {"map": "sky.hdr"}})";
 
-/// The files that URIs may name. An input that names one must not end there: they are read here, and must not be rejected.
+/// The files that URIs may name. An input that names one must not end there: they are read here,
+/// and must not be rejected.
 inline void write_neighbours() {
   const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   std::string bytes(reinterpret_cast<const char*>(corners), sizeof corners);

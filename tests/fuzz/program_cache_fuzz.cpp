@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A file of a compiled program, with a right hash put on where the first byte is odd: taken whole or not at all, never an
-// error. What is taken must be what the file says.
+// A file of a compiled program, with a right hash put on where the first byte is odd: taken whole
+// or not at all, never an error. What is taken must be what the file says.
 #include <string>
 
 #include "device/program_cache.hpp"

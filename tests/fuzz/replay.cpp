@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Stands in for libFuzzer's main: gives a target each file of a folder, then mutants of them for some seconds.
+// Stands in for libFuzzer's main: gives a target each file of a folder, then mutants of them for
+// some seconds.
 //
 //   fuzz_NAME FOLDER SECONDS
 //
-// The mutants are the same in every run: a test that failed fails again. The current input is a file, which remains when it
-// ends the program.
+// The mutants are the same in every run: a test that failed fails again. The current input is a
+// file, which remains when it ends the program.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -70,7 +71,8 @@ void change(std::string& text, std::span<const std::string> inputs, Random& rand
   }
 }
 
-/// One of `inputs`, changed in up to four places: bits, numbers on the edge, pieces left out, repeated or of another input.
+/// One of `inputs`, changed in up to four places: bits, numbers on the edge, pieces left out,
+/// repeated or of another input.
 std::string mutant(std::span<const std::string> inputs, Random& random) {
   std::string text = inputs[below(inputs.size(), random)];
   for (std::size_t changes = 1 + below(4, random); changes > 0; --changes) change(text, inputs, random);

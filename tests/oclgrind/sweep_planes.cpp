@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the form of a sweep that devices of many thousand work-items take, which Oclgrind's, as a CPU, does not.
+// Runs the form of a sweep that devices of many thousand work-items take, which Oclgrind's, as a
+// CPU, does not.
 #include "basis/sweep.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/sweep/sweep.hpp"

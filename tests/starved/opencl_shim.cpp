@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A device that fails on command: preloaded (LD_PRELOAD) before the OpenCL loader, it passes every call on, but for one.
+// A device that fails on command: preloaded (LD_PRELOAD) before the OpenCL loader, it passes every
+// call on, but for one.
 //
 //   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns that OpenCL code
 //   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that were not released

@@ -28,7 +28,8 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// A document and its one binary buffer. Fields of `document` may be changed at will before writing.
+/// A document and its one binary buffer. Fields of `document` may be changed at will before
+/// writing.
 struct GltfBuilder {
   json document = {{"asset", {{"version", "2.0"}}}};
   std::string binary;
@@ -236,8 +237,8 @@ struct AnimationTest : BadInputTest {
   }
 };
 
-/// A small scene in which everything moves from 0 s to 1 s: a wall over a floor, a sun, a lamp and the camera. Returns the
-/// scene file.
+/// A small scene in which everything moves from 0 s to 1 s: a wall over a floor, a sun, a lamp and
+/// the camera. Returns the scene file.
 inline std::filesystem::path write_moving_scene(const TemporaryFolder& folder) {
   GltfBuilder model;
   model.square(2);

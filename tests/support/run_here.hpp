@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the program in this process and returns output and exit code, which saves its start-up time. Tests of environment
-// variables, signals and broken streams use run_program.hpp.
+// Runs the program in this process and returns output and exit code, which saves its start-up time.
+// Tests of environment variables, signals and broken streams use run_program.hpp.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -33,7 +33,8 @@ inline Outcome run(const std::string& command) {
   return {code, read_file(out), read_file(err)};
 }
 
-/// "POCL_CACHE_DIR=... ", for a process whose XDG_CACHE_HOME is empty: PoCL would compile all kernels again there.
+/// "POCL_CACHE_DIR=... ", for a process whose XDG_CACHE_HOME is empty: PoCL would compile all
+/// kernels again there.
 inline std::string usual_kernels() {
   if (const char* set = std::getenv("POCL_CACHE_DIR")) return std::string("POCL_CACHE_DIR=") + set + " ";
   if (const char* cache = std::getenv("XDG_CACHE_HOME"))

@@ -36,8 +36,8 @@ inline void add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b, c
   scene.triangles.push_back({{first, first + 1, first + 2}, material});
 }
 
-/// The parallelogram corner, corner + u, corner + u + v, corner + v, its front towards u x v; uv from (0, 0)
-/// to (1, 1).
+/// The parallelogram corner, corner + u, corner + u + v, corner + v, its front towards u x v; uv
+/// from (0, 0) to (1, 1).
 inline void add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
                      unsigned material) {
   const glm::vec3 normal = glm::normalize(glm::cross(u, v));

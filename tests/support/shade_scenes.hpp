@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes of known light for the tests of shading: a floor, suns, bulbs, and shadow maps that are ray-cast, texel centre
-// by texel centre.
+// Scenes of known light for the tests of shading: a floor, suns, bulbs, and shadow maps that are
+// ray-cast, texel centre by texel centre.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -76,8 +76,8 @@ inline ShadowMap cast(const ClpvView& view, const Geometry& geometry) {
   return map;
 }
 
-/// G-buffer of an orthographic camera along `forward`, for a geometry whose normal is known; albedo pi, so that the
-/// radiance it shows is E.
+/// G-buffer of an orthographic camera along `forward`, for a geometry whose normal is known; albedo
+/// pi, so that the radiance it shows is E.
 inline SurfaceImage look(const glm::dvec3& forward, const Geometry& geometry,
                          const std::function<glm::dvec3(const glm::dvec3&)>& normal) {
   SurfaceImage image;
@@ -139,7 +139,8 @@ inline ShadowedLight upload(const MappedLight& light) {
   return shadowed;
 }
 
-/// E of the first channel, pixel by pixel, by the kernels: whether a surface shadows itself is a matter of float32.
+/// E of the first channel, pixel by pixel, by the kernels: whether a surface shadows itself is a
+/// matter of float32.
 inline std::vector<double> lit(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
   std::vector<ShadowedLight> shadowed;
   for (const MappedLight& light : lights) shadowed.push_back(upload(light));

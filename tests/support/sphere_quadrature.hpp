@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Quadrature that shares nothing with host/basis: product Gauss rules over the octants of a frame, and over a
-// flat square seen from the origin. And the fixture of tests that every basis has to pass.
+// Quadrature that shares nothing with host/basis: product Gauss rules over the octants of a frame,
+// and over a flat square seen from the origin. And the fixture of tests that every basis has to
+// pass.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,8 +47,8 @@ inline std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& z) {
   return {x, glm::cross(z, x)};
 }
 
-/// The sphere in eight octants of a frame with that z axis: exact to rounding for functions smooth in each
-/// octant, such as max(0, w . z) times a basis function.
+/// The sphere in eight octants of a frame with that z axis: exact to rounding for functions smooth
+/// in each octant, such as max(0, w . z) times a basis function.
 inline std::vector<Node> sphere(const glm::dvec3& z = {0, 0, 1}, int order = 24) {
   std::pair<glm::dvec3, glm::dvec3> frame{{1, 0, 0}, {0, 1, 0}};
   if (z != glm::dvec3(0, 0, 1)) frame = across(z);
@@ -99,8 +100,9 @@ inline std::vector<glm::dvec3> spread_axes(int n) {
   return axes;
 }
 
-/// All but the direction bins: these jump, which quadrature over the whole sphere does not integrate, and have up to 96
-/// functions, which take long to compile. rotated_lobe_test.cpp and the check of propagation have them.
+/// All but the direction bins: these jump, which quadrature over the whole sphere does not
+/// integrate, and have up to 96 functions, which take long to compile. rotated_lobe_test.cpp and
+/// the check of propagation have them.
 inline std::vector<std::string> smooth_bases() {
   std::vector<std::string> names = basis_names();
   std::erase_if(names, [](const std::string& name) { return name.starts_with("bins"); });
