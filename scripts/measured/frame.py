@@ -28,7 +28,7 @@ PICTURES = {
     "near": ("irradiance", -1.5, {"near": "traced"}),
     "full": ("full", 0, {"near": "traced"}),
 }
-CASCADE = 12.5  # edge of the finest cascade [m]
+CASCADE = 25  # edge of the finest cascade [m], in scenes/atrium.json
 FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
 
 
