@@ -89,6 +89,14 @@ nlohmann::json results_of(const test::Outcome& outcome) {
   return checks;
 }
 
+TEST(Check, HelpersFindWhatOneProcessFinds) {
+  const std::string check = CLPV_PROGRAM " check --format json --stage shade,emit,sizes";
+  const test::Outcome helped = test::run(check), alone = test::run("taskset -c 0 " + check);
+  ASSERT_EQ(helped.exit_code, 0) << helped.err;
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_EQ(results_of(helped), results_of(alone));
+}
+
 TEST(Check, ListsAndSelects) {
   const test::Outcome all = test::run(CLPV_PROGRAM " -q check --list --stage propagate,gather"),
                       some =
