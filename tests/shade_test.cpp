@@ -49,7 +49,7 @@ TEST(Shade, NothingIsLitBeyondTheRange) {
 TEST(Shade, SpotLightFadesAcrossItsCone) {
   const double inner = std::cos(0.3), outer = std::cos(0.6);
   MappedLight light{test::spot_light({0, 4, 0}, {0, -1, 0}, 0.3f, 0.6f), {}};
-  for (float& i : light.light.intensity) i = 50;
+  for (int c = 0; c < 3; ++c) light.light.intensity[c] = 50 * kChannels[c];
   const auto expected = [&](const glm::dvec3& p) {
     const double r = glm::length(glm::dvec3(0, 4, 0) - p), cosine = 4 / r;
     const double cone = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);

@@ -139,9 +139,8 @@ inline ShadowedLight upload(const MappedLight& light) {
   return shadowed;
 }
 
-/// E of the first channel, pixel by pixel, by the kernels: whether a surface shadows itself is a
-/// matter of float32.
-inline std::vector<double> lit(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
+/// E of each pixel, by the kernels: whether a surface shadows itself is a matter of float32.
+inline std::vector<glm::vec4> lit_colours(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
   std::vector<ShadowedLight> shadowed;
   for (const MappedLight& light : lights) shadowed.push_back(upload(light));
   const std::size_t pixels = image.depth.size();
@@ -151,16 +150,23 @@ inline std::vector<double> lit(const SurfaceImage& image, const std::vector<Mapp
   Shader shader(test_session());
   shader.light(camera, shadowed);
   shader.show(Show::direct, camera, irradiance, shown);
+  return test_session().read<glm::vec4>(shown, pixels);
+}
+
+/// E of the first channel.
+inline std::vector<double> lit(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
   std::vector<double> e;
-  for (const glm::vec4& pixel : test_session().read<glm::vec4>(shown, pixels)) e.push_back(pixel.x);
+  for (const glm::vec4& pixel : lit_colours(image, lights)) e.push_back(pixel.x);
   return e;
 }
 
 inline void expect_lit(const SurfaceImage& image, const MappedLight& light,
                        const std::function<double(const glm::dvec3&)>& expected, double scale) {
-  const std::vector<double> e = lit(image, {light});
+  const std::vector<glm::vec4> e = lit_colours(image, {light});
   for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
-    ASSERT_NEAR(e[pixel], expected(point_of(image, pixel)), kFloat * scale) << "pixel " << pixel;
+    const double wanted = expected(point_of(image, pixel));
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(e[pixel][c], wanted * double{kChannels[c]}, 3 * kFloat * scale) << "pixel " << pixel;
   }
 }
 
