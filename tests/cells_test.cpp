@@ -62,6 +62,7 @@ TEST(CellSpheres, AreShadedByTheirIrradiance) {
   options.grid = 16;
   options.rsm_size = 64;
   options.cascade_size = 1;
+  options.near = Near::off;  // cells have none
   Frame frame(test_session(), scene, options);
   const SceneCamera& camera = scene.camera("");
   frame.render(camera);

@@ -36,7 +36,7 @@ using Passes = std::set<Pass>;
 constexpr int kGrid = 8, kCascades = 2;
 constexpr float kSize = 3;  // [m], of the finest cascade
 constexpr float kCell = kSize / kGrid;
-const Passes kOfEveryFrame{Pass::rasterize_camera, Pass::gather, Pass::shade};
+const Passes kOfEveryFrame{Pass::rasterize_camera, Pass::gather, Pass::near, Pass::shade};
 
 /// Times of the scene's parts [s], and the camera's place.
 struct Instants {
@@ -108,15 +108,16 @@ Passes with(Passes passes, const Passes& more) {
 }
 
 const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light, Pass::propagate};
+const Passes kOfView{Pass::near_trace};
 const Passes kOfCells{Pass::blockers, Pass::visibility, Pass::reflectors};
 
 TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
   Instants at;
-  const Passes all = with(with(kOfEveryFrame, kOfLight), kOfCells);
+  const Passes all = with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells);
   EXPECT_EQ(passes(at), all);
   EXPECT_EQ(passes(at), kOfEveryFrame) << "nothing changed";
   at.eye.x += 0.5f * kCell;
-  EXPECT_EQ(passes(at), kOfEveryFrame) << "a camera that moves inside a cell";
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfView)) << "a camera that moves inside a cell";
   at.sun = 0.3;
   EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
   at.wall = 0.6;
@@ -124,7 +125,8 @@ TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
   EXPECT_EQ(passes(at), kOfEveryFrame);
   at.eye.x += kCell;
   EXPECT_EQ(passes(at),
-            with(with(kOfEveryFrame, kOfCells), {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}))
+            with(with(with(kOfEveryFrame, kOfView), kOfCells),
+                 {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}))
       << "the shadow map stands";
   at.wall = at.sun = 2;  // after the last key
   EXPECT_EQ(passes(at), all);
@@ -149,9 +151,9 @@ TEST_F(CachedFrame, RecomputesInvalidatedResults) {
   const Instants at;
   passes(at);
   frame_.invalidate_light();
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
+  EXPECT_EQ(passes(at), with(with(kOfEveryFrame, kOfView), kOfLight));
   frame_.invalidate();
-  EXPECT_EQ(passes(at), with(with(kOfEveryFrame, kOfLight), kOfCells));
+  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells));
 }
 
 TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
@@ -184,13 +186,14 @@ class CachedPublishedFrame : public CachedFrame {
 };
 
 TEST_F(CachedPublishedFrame, RecomputesOnlyWhatChanged) {
-  const Passes of_view{Pass::inject_geometry, Pass::propagate};
+  const Passes always{Pass::rasterize_camera, Pass::gather, Pass::shade},
+      of_view{Pass::inject_geometry, Pass::propagate};
   Instants at;
-  const Passes all = with(with(kOfEveryFrame, kOfLight), of_view);
+  const Passes all = with(with(always, kOfLight), of_view);
   EXPECT_EQ(passes(at), all);
-  EXPECT_EQ(passes(at), kOfEveryFrame);
+  EXPECT_EQ(passes(at), always);
   at.eye.x += 0.5f * kCell;
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, of_view)) << "maps of lights and their injected light stand";
+  EXPECT_EQ(passes(at), with(always, of_view)) << "maps of lights and their injected light stand";
   at.sun = 0.3;
   EXPECT_EQ(passes(at), all);
   at.wall = 0.6;

@@ -96,7 +96,7 @@ Scene far_away() {
 }
 
 TEST(Near, EvenLightWithoutSurfacesStays) {
-  for (const int step : {1, 2}) {
+  for (const int step : {1, 2, 4, 8}) {
     // From a place in the finest cascade to one in the next.
     for (const glm::dvec3& e : near(far_away(), EvenLight(kRadiance), options_for(4, step), {}, 12))
       ASSERT_NEAR(e.x, pi * kRadiance, 1e-5);
@@ -107,7 +107,7 @@ TEST(Near, EvenLightWithEmittersAsBrightStays) {
   Scene scene;
   const unsigned emitter = add_emitter(scene, CLPV_MATERIAL_DOUBLE_SIDED);
   add_quad(scene, {0.3f, -1, -2}, {0, 3, 0}, {0, 0, 4}, emitter);
-  for (const int step : {1, 2}) {
+  for (const int step : {1, 2, 4, 8}) {
     for (const glm::dvec3& e : near(scene, EvenLight(kRadiance), options_for(4, step), {}, 0.4f))
       ASSERT_NEAR(e.x, pi * kRadiance, 1e-5);
   }
@@ -219,9 +219,10 @@ TEST(Near, FramesAreEqualToTheBit) {
   RenderOptions options;
   options.width = 50, options.height = 38;  // no multiples of eight or four
   options.cascade_size = 4, options.grid = 12, options.cascades = 2;
+  options.near = Near::off;
   const std::vector<float> off = irradiance_of(scene, options);
   options.near = Near::traced;
-  for (const NearSize size : {NearSize::half, NearSize::full}) {
+  for (const NearSize size : {NearSize::full, NearSize::half, NearSize::quarter, NearSize::eighth}) {
     options.near_size = size;
     const std::vector<float> on = irradiance_of(scene, options);
     EXPECT_EQ(on, irradiance_of(scene, options));

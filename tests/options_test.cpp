@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
@@ -144,6 +145,7 @@ TEST(Presets, PaperIsThePublishedScheme) {
                                                               {"cascade-size", 12.5},
                                                               {"rsm-size", 256},
                                                               {"iterations", 8},
+                                                              {"near", "off"},
                                                               {"width", 960},
                                                               {"height", 540}};
   for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
@@ -159,6 +161,32 @@ TEST(Presets, KeepOptionsThatTheyDoNotSet) {
   EXPECT_EQ(to_json(options), expected) << "best undoes all that paper set";
 }
 
+TEST(Presets, FastHasNoNearFieldAndFineMoreRays) {
+  RenderOptions options;
+  EXPECT_TRUE(options.traces_near());
+  set_option(options, "preset", "fast");
+  EXPECT_FALSE(options.traces_near());
+  set_option(options, "preset", "fine");
+  EXPECT_TRUE(options.traces_near());
+  EXPECT_EQ(near_options(options).rays, 16);
+  set_option(options, "transport", "sampled");
+  EXPECT_FALSE(options.traces_near()) << "auto: off without a sweep";
+}
+
+TEST(Options, NearPixelsAreAboutAsManyAtEachSizeOfImage) {
+  RenderOptions options;
+  const std::map<std::pair<int, int>, int> steps = {
+      {{16, 9}, 1}, {{240, 135}, 1}, {{480, 270}, 2}, {{960, 540}, 4}, {{1280, 720}, 4}, {{1920, 1080}, 8},
+      {{3840, 2160}, 8}};
+  for (const auto& [size, step] : steps) {
+    std::tie(options.width, options.height) = size;
+    options.near_size = NearSize::automatic;
+    EXPECT_EQ(near_options(options).step, step) << size.first;
+    options.near_size = NearSize::quarter;
+    EXPECT_EQ(near_options(options).step, 4);
+  }
+}
+
 TEST(Presets, RenderRecordsWhatWasResolved) {
   const test::TemporaryFolder folder;
   const std::string image = (folder.path() / "a.exr").string(), stats = (folder.path() / "a.json").string();
@@ -171,6 +199,7 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   EXPECT_EQ(options["preset"], "paper");
   EXPECT_EQ(options["basis"], "sh2");
   EXPECT_EQ(options["transport"], "sampled");
+  EXPECT_EQ(options["near"], "off");
   EXPECT_EQ(options["cascade-size"], 2.0);
   const auto metadata = read_image(image).metadata;
   EXPECT_EQ(metadata.at("preset"), "paper");

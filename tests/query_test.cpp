@@ -33,6 +33,7 @@ RenderOptions small_options(const Scene& scene) {
   options.height = 27;
   options.grid = 16;
   options.rsm_size = 64;
+  options.near = Near::off;  // points have none
   options.cascade_size = scene.cascade_size.value_or(options.cascade_size);
   return options;
 }

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "tests/support/scene_builder.hpp"
 
@@ -81,12 +82,14 @@ bool is_held(const TreeWalk& walk, unsigned triangle, const glm::vec3& p) {
 
 TEST(TriangleTree, HoldsEachPointOfEachTriangle) {
   constexpr int kSteps = 20;
-  for (const bool moving : {false, true}) {
+  const TreeLimits usual, areas{.parts = 0}, morton{.parts = 0, .areas = 0};
+  for (const auto& [moving, limits] :
+       {std::pair(false, usual), std::pair(true, usual), std::pair(false, areas), std::pair(true, morton)}) {
     const Scene scene = many_triangles(moving);
-    const TriangleTree tree(scene);
+    const TriangleTree tree(scene, limits);
     TreeWalk walk{tree, {}};
     walk.node(0, 1);
-    EXPECT_GT(walk.triangles.size(), scene.triangles.size());  // parts
+    EXPECT_EQ(walk.triangles.size() > scene.triangles.size(), limits.parts > 0);
     EXPECT_LE(walk.depth, CLPV_TREE_DEPTH);
     for (unsigned triangle = 0; triangle < scene.triangles.size(); ++triangle) {
       std::array<glm::vec3, 3> corners;

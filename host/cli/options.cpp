@@ -85,7 +85,7 @@ std::string group_of(const std::string& name) {
       {"shadow maps", {"rsm-format", "shadow-size"}},
       {"blockers", {"blocking", "blocker-stride"}},
       {"propagation", {"iterations", "directions", "coarser-directions", "state", "layout", "storage"}},
-      {"gathering", {"gather", "gather-offset", "near-size"}},
+      {"gathering", {"gather", "gather-offset", "near-size", "near-rays"}},
   };
   for (const auto& [stage, names] : kStages) {
     if (std::ranges::find(names, name) != names.end()) return fmt::format("{}{}", kMoreOptions, stage);

@@ -45,10 +45,21 @@ std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
   return text;
 }
 
+/// The request without near field, which only pixels of a camera have.
+RenderRequest of_volumes(RenderRequest request) {
+  const auto [near, added] = request.frame.emplace("near", "off");
+  if (!added && near->second == name_of(Near::traced)) {
+    throw Error(ExitCode::usage, "--near {} has no effect on points; allowed: off, or clpv render",
+                near->second);
+  }
+  if (near->second == name_of(Near::automatic)) near->second = name_of(Near::off);
+  return request;
+}
+
 void run(const Options& options, const Shared& shared) {
   if (!options.output.empty()) check_writable(options.output);
   const std::vector<SurfacePoint> points = read_points(options.points);
-  const RenderRequest& request = options.request;
+  const RenderRequest request = of_volumes(options.request);
   MovingScene moving = request.open();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, moving.scene());
@@ -82,7 +93,7 @@ void add_query(CLI::App& app, Shared& shared) {
   add_render_request(*command, options->request);
   command->footer(
       "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], like "
-      "--view\nirradiance. Outside the cascades, which surround the camera, it is 0. The surface need "
+      "--view\nirradiance with --near off. Outside the cascades, which surround the camera, it is 0. The surface need "
       "not be part of\nthe scene: it can be a moving object or mist.");
   command->callback([options, &shared] { run(*options, shared); });
 }

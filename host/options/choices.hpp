@@ -7,10 +7,10 @@
 
 namespace clpv {
 
-enum class PresetName { best, fine, paper };
+enum class PresetName { best, fast, fine, paper };
 
 template <>
-inline constexpr auto kNames<PresetName> = name_list("best", "fine", "paper");
+inline constexpr auto kNames<PresetName> = name_list("best", "fast", "fine", "paper");
 
 /// Memory layout of volumes (kernels/volume/). `image`: 3-D image of RGBA texels, four coefficients per texel. `aos`: all
 /// coefficients of a sample are adjacent. `soa`: one array of samples per channel and coefficient. `tiled`: blocks of 8
@@ -92,18 +92,31 @@ constexpr double usual_gather_offset(Gathering gathering) {
 
 /// Final gather of light from surfaces nearer than a cell.
 enum class Near {
-  off,     ///< only volumes
-  traced,  ///< rays against the scene's triangles
+  automatic,  ///< traced with a sweep, else off
+  off,        ///< light of the volumes only
+  traced,     ///< rays against the scene's triangles
 };
 
 template <>
-inline constexpr auto kNames<Near> = name_list("off", "traced");
+inline constexpr auto kNames<Near> = name_list("auto", "off", "traced");
 
-/// Pixels whose near field is computed: one of 2 x 2, or all.
-enum class NearSize { half, full };
+/// Pixels whose near field is traced: one of 1 x 1, 2 x 2, 4 x 4 or 8 x 8. `automatic`: about as many as an image of 240 x 135
+/// pixels has.
+enum class NearSize { automatic, full, half, quarter, eighth };
 
 template <>
-inline constexpr auto kNames<NearSize> = name_list("half", "full");
+inline constexpr auto kNames<NearSize> = name_list("auto", "full", "half", "quarter", "eighth");
+
+/// Rays of each of these pixels.
+enum class NearRays { of2, of4, of8, of16, of64 };
+
+template <>
+inline constexpr auto kNames<NearRays> = name_list("2", "4", "8", "16", "64");
+
+constexpr int rays_of(NearRays rays) {
+  constexpr int kRays[] = {2, 4, 8, 16, 64};
+  return kRays[static_cast<int>(rays)];
+}
 
 /// Number of sweep directions: 24 bins of 1, 4, 9 or 16 parts (basis/sweep.hpp).
 enum class Directions { of24, of96, of216, of384 };

@@ -36,17 +36,45 @@ struct OneOf {
 
 struct Named {};  ///< names of the member's enumeration
 
+/// Names and values of the options that a preset sets.
+using PresetOptions = std::vector<std::pair<std::string_view, std::string_view>>;
+
+const PresetOptions& options_of(PresetName preset) {
+  static const PresetOptions best, fast{{"near", "off"}}, fine{{"near-size", "half"}, {"near-rays", "16"}};
+  // The published scheme: that of Kaplanyan and Dachsbacher with the paper's basis and sizes.
+  static const PresetOptions paper{
+      {"basis", "srbf8v2"},    {"lambda", "0.25"},       {"lobe", "rotate"},        {"lobe-time", "kernel"},
+      {"evaluate", "image"},   {"table-size", "256"},    {"transport", "sampled"},  {"state", "coefficients"},
+      {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},
+      {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},
+      {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},
+      {"iterations", "8"},     {"near", "off"},          {"width", "960"},          {"height", "540"},
+  };
+  switch (preset) {
+    case PresetName::best:
+      return best;
+    case PresetName::fast:
+      return fast;
+    case PresetName::fine:
+      return fine;
+    case PresetName::paper:
+      return paper;
+  }
+  return best;
+}
+
 /// One line per preset.
 std::string preset_help() {
   std::string text =
       "set of options; single options override it\n"
       "best: the defaults, closest to path tracing at about the cost of the published scheme";
-  const auto add = [&](const char* preset, const PresetOptions& options) {
-    text += fmt::format("\n{}:", preset);
-    for (const auto& [name, value] : options) text += fmt::format(" --{} {}", name, value);
+  const auto add = [&](PresetName preset, const char* what) {
+    text += fmt::format("\n{}: {}:", name_of(preset), what);
+    for (const auto& [name, value] : options_of(preset)) text += fmt::format(" --{} {}", name, value);
   };
-  add("fine: higher quality, slower", fine_options());
-  add("paper: the published scheme", paper_options());
+  add(PresetName::fast, "less time");
+  add(PresetName::fine, "less error, more time");
+  add(PresetName::paper, "the published scheme");
   return text;
 }
 
@@ -104,9 +132,13 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("gather-offset", o.gather_offset, "distance from the surface at which light is gathered [cells]",
         Range{0, 4});
   visit("near", o.near,
-        "light from surfaces nearer than a cell: from the volumes (off), or by rays; needs --transport sweep",
+        "light from surfaces nearer than a cell: from the volumes (off), or by rays (traced), which needs --transport "
+        "sweep; auto: traced with a sweep, else off",
         Named{});
-  visit("near-size", o.near_size, "resolution of --near", Named{});
+  visit("near-size", o.near_size,
+        "pixels that have rays of --near: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as many as 240 x 135",
+        Named{});
+  visit("near-rays", o.near_rays, "rays of each of these pixels", Named{});
   visit("width", o.width, "image width [pixels]", Range{1, kMaxPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMaxPixels});
 }
@@ -210,28 +242,10 @@ nlohmann::json to_json(const RenderOptions& options) {
   return json;
 }
 
-const PresetOptions& paper_options() {
-  static const PresetOptions options{
-      {"basis", "srbf8v2"},    {"lambda", "0.25"},       {"lobe", "rotate"},        {"lobe-time", "kernel"},
-      {"evaluate", "image"},   {"table-size", "256"},    {"transport", "sampled"},  {"state", "coefficients"},
-      {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},
-      {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},
-      {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},
-      {"iterations", "8"},     {"width", "960"},         {"height", "540"},
-  };
-  return options;
-}
-
-const PresetOptions& fine_options() {
-  static const PresetOptions options{{"grid", "64"}, {"near", "traced"}, {"near-size", "full"}};
-  return options;
-}
-
 std::string preset_note(const RenderOptions& options, std::string_view name) {
-  if (options.preset == PresetName::best) return {};
   RenderOptions set;
   apply_preset(set, options.preset);
-  const PresetOptions& preset = options.preset == PresetName::paper ? paper_options() : fine_options();
+  const PresetOptions& preset = options_of(options.preset);
   const auto value_in = [&](const RenderOptions& from) {
     const std::vector<OptionDescription> list = list_options(from);
     return std::ranges::find(list, name, &OptionDescription::name)->value;
@@ -244,14 +258,11 @@ std::string preset_note(const RenderOptions& options, std::string_view name) {
 
 void apply_preset(RenderOptions& options, PresetName name) {
   const std::vector<OptionDescription> defaults = list_options(RenderOptions{});
-  for (const PresetOptions* preset : {&paper_options(), &fine_options()}) {
-    for (const auto& [option, value] : *preset)
+  for (const PresetName preset : values_of<PresetName>()) {
+    for (const auto& [option, value] : options_of(preset))
       set_option(options, option, std::ranges::find(defaults, option, &OptionDescription::name)->value);
   }
-  if (name != PresetName::best) {
-    for (const auto& [option, value] : name == PresetName::paper ? paper_options() : fine_options())
-      set_option(options, option, value);
-  }
+  for (const auto& [option, value] : options_of(name)) set_option(options, option, value);
   options.preset = name;
 }
 

@@ -48,12 +48,17 @@ struct RenderOptions {
   int blocker_stride = 3;
   Gathering gather = Gathering::visible;
   double gather_offset = usual_gather_offset(Gathering::visible);
-  Near near = Near::off;
-  NearSize near_size = NearSize::half;
+  Near near = Near::automatic;
+  NearSize near_size = NearSize::automatic;
+  NearRays near_rays = NearRays::of2;
   int width = 960, height = 540;
 
   VolumeFormat format() const { return {layout, storage}; }
   LobeOptions lobes() const { return {lobe, table_size, evaluate != Evaluation::exact}; }
+  /// True if the near field is traced.
+  bool traces_near() const {
+    return near == Near::traced || (near == Near::automatic && transport == TransportKind::sweep);
+  }
   bool blocked() const { return blockers != Blockers::none; }
   TableStorage table() const {
     return evaluate == Evaluation::image ? TableStorage::image : TableStorage::buffer;
@@ -74,13 +79,6 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
 
 /// Returns every option by name, as a number, string or boolean.
 nlohmann::json to_json(const RenderOptions& options);
-
-/// Names and values of the options that a preset sets; `best` leaves them at their defaults.
-using PresetOptions = std::vector<std::pair<std::string_view, std::string_view>>;
-/// The published scheme: that of Kaplanyan and Dachsbacher with the paper's basis and sizes.
-const PresetOptions& paper_options();
-/// Finer cells, and the near field of every pixel.
-const PresetOptions& fine_options();
 
 /// Returns " (set by --preset NAME)" if the option has the value that the preset gave it, else "". For errors.
 std::string preset_note(const RenderOptions& options, std::string_view name);

@@ -40,13 +40,37 @@ GatherOptions gather_options(const RenderOptions& options, bool medium) {
           .lobes = options.lobes(),
           .table = options.table(),
           .format = options.format(),
-          .packed = options.near != Near::off || medium};
+          .packed = options.traces_near() || medium};
 }
+
+namespace {
+
+/// Pixels of the camera per traced pixel, along each axis.
+int near_step(const RenderOptions& options) {
+  constexpr double kWanted = 240 * 135;
+  int step = 1;
+  switch (options.near_size) {
+    case NearSize::automatic:  // between half and twice as many
+      while (step < 8 && double{1} * options.width * options.height > 2 * kWanted * step * step) step *= 2;
+      return step;
+    case NearSize::full:
+      return 1;
+    case NearSize::half:
+      return 2;
+    case NearSize::quarter:
+      return 4;
+    case NearSize::eighth:
+      return 8;
+  }
+  return step;
+}
+
+}  // namespace
 
 NearOptions near_options(const RenderOptions& options, bool medium) {
   return {.gather = gather_options(options),
-          .step = options.near_size == NearSize::half ? 2 : 1,
-          .rays = options.near_size == NearSize::half ? 4 : 2,
+          .step = near_step(options),
+          .rays = rays_of(options.near_rays),
           .reflects = options.bounces != Bounces::one,
           .medium = medium};
 }

@@ -74,8 +74,8 @@ struct GatherOptions {
 
 struct NearOptions {
   GatherOptions gather = {};  ///< of the volumes
-  int step = 1;               ///< traces one of step x step pixels: 1 or 2
-  int rays = 4;               ///< per traced pixel, a power of two
+  int step = 1;               ///< traces one of step x step pixels: 1, 2, 4 or 8
+  int rays = 2;               ///< per traced pixel, a power of two
   bool reflects = false;      ///< surfaces that rays hit also reflect the volumes' light
   bool medium = false;        ///< lights have one
 };

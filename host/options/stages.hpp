@@ -44,7 +44,8 @@ enum class Pass {
   propagate,   ///< steps, or a sweep with its bounces
   visibility,  ///< per cascade
   gather,
-  near,    ///< near field
+  near_trace,  ///< rays of the near field, while their hits are not cached
+  near,        ///< light of the near field
   medium,  ///< light that a medium scatters towards the camera
   shade,
   whole,
@@ -53,7 +54,7 @@ enum class Pass {
 template <>
 inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow", "rasterize-rsm",
                                                "emit", "inject-light", "inject-geometry", "blockers",
-                                               "reflectors", "propagate", "visibility", "gather", "near",
-                                               "medium", "shade", "whole");
+                                               "reflectors", "propagate", "visibility", "gather",
+                                               "near-trace", "near", "medium", "shade", "whole");
 
 }  // namespace clpv

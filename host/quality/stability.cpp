@@ -125,7 +125,7 @@ void Stability::add(int number, double seconds, const Scene& scene, const SceneC
 /// correction of the nearest pixels.
 std::vector<float> Stability::light_before(const Seen& now) {
   std::vector<float> light = frame_.irradiance_on(before_->surfaces);
-  if (frame_.options().near == Near::off) return light;
+  if (!frame_.options().traces_near()) return light;
   const std::vector<float> volumes = frame_.irradiance_on(now.surfaces);
   const std::vector<std::size_t> pixels = later_pixels(before_->surfaces, now.surfaces);
   for (std::size_t i = 0; i < light.size(); ++i) {

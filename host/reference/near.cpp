@@ -2,6 +2,7 @@
 #include "reference/near.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +16,8 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kSameNormal = 0.7, kSamePlane = 0.1, kWidened = 0.2;  // near_filter.cl
+constexpr double kSameNormal = 0.7, kSamePlane = 0.1;  // near_surface.h
+constexpr double kWidened = 0.2, kDark = 0.25;         // near_filter.cl
 constexpr double kLeastArriving = 0.5;                                 // near.cl
 
 bool close_to(double value, double limit) {
@@ -26,8 +28,9 @@ bool close_to(double value, double limit) {
 struct NearPoint {
   glm::dvec3 position{0}, normal{0};
   double reach = 0;  ///< [m]; 0 without a surface in a cascade
-  glm::dvec3 difference{0};
-  bool uncertain = false;
+  glm::dvec3 difference{0}, gathered{0};
+  bool uncertain = false;  ///< light
+  bool unknown = false;    ///< the pixel itself
 };
 
 struct NearField {
@@ -39,7 +42,7 @@ struct NearField {
   RadianceField field_at(const glm::dvec3& position, double offset, const glm::dvec3& lift) const {
     return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift);
   }
-  double trust(const RadianceField& field, const glm::dvec3& normal) const;
+  double trust(const RadianceField& field, const glm::dvec3& gathered, const glm::dvec3& normal) const;
   glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
                          bool& uncertain) const;
   void trace(NearPoint& point, const std::vector<glm::vec3>& directions) const;
@@ -60,9 +63,9 @@ double sum(const glm::dvec3& v) {
 }
 
 /// Weight of the correction for rays that miss.
-double NearField::trust(const RadianceField& field, const glm::dvec3& normal) const {
-  const double arriving = sum(field_irradiance(basis, field, normal)),
-               leaving = sum(field_irradiance(basis, field, -normal));
+double NearField::trust(const RadianceField& field, const glm::dvec3& gathered,
+                        const glm::dvec3& normal) const {
+  const double arriving = sum(gathered), leaving = sum(field_irradiance(basis, field, -normal));
   return arriving >= kLeastArriving * leaving ? 1 : arriving / (kLeastArriving * leaving);
 }
 
@@ -107,7 +110,8 @@ glm::dmat3 frame_about(const glm::dvec3& n) {
 void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions) const {
   const double offset = options.gather.gather_offset;
   const RadianceField here = field_at(point.position, offset, point.normal);
-  const double share = trust(here, point.normal);
+  point.gathered = field_irradiance(basis, here, point.normal);
+  const double share = trust(here, point.gathered, point.normal);
   const glm::dmat3 frame = frame_about(point.normal);
   for (const glm::vec3& direction : directions) {
     const glm::dvec3 w = frame * glm::dvec3(direction);
@@ -124,9 +128,10 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
   point.difference *= std::numbers::pi / static_cast<double>(directions.size());
 }
 
-/// Weight of a neighbour in a mean: 1 on the same surface, else 0.
+/// Weight of a near pixel in a mean: 1 on the same surface, else 0.
 double same_surface(const NearPoint& there, const glm::dvec3& position, const glm::dvec3& normal,
                     bool& uncertain) {
+  uncertain = uncertain || there.unknown;
   if (there.reach == 0) return 0;
   const double cosine = glm::dot(normal, there.normal),
                off = std::abs(glm::dot(there.position - position, normal)) / there.reach;
@@ -134,72 +139,154 @@ double same_surface(const NearPoint& there, const glm::dvec3& position, const gl
   return cosine > kSameNormal && off < kSamePlane ? 1 : 0;
 }
 
-/// Points of an image of the near field.
+/// Pixels of the near field: two layers, the second empty with step 1 (near_layout.h).
 struct NearImage {
   int width, height;
-  std::vector<NearPoint> points;
+  std::array<std::vector<NearPoint>, 2> layers;
 
-  const NearPoint& at(int x, int y) const {
+  const NearPoint& at(int layer, int x, int y) const {
     static const NearPoint none;
-    return x < 0 || y < 0 || x >= width || y >= height ? none : points[y * width + x];
+    const bool inside = x >= 0 && y >= 0 && x < width && y < height && !layers[layer].empty();
+    return inside ? layers[layer][y * width + x] : none;
   }
 };
 
 /// Weighted mean of points.
 struct Mean {
-  glm::dvec3 total{0};
+  glm::dvec3 difference{0}, gathered{0};
   double weight = 0;
   bool uncertain = false;
 
   void add(const NearPoint& there, double share, const glm::dvec3& position, const glm::dvec3& normal) {
-    const double w = share * same_surface(there, position, normal, uncertain);
-    total += w * there.difference;
+    if (share > 0) add(there, share * same_surface(there, position, normal, uncertain));
+  }
+  void add(const NearPoint& there, double w) {
+    difference += w * there.difference;
+    gathered += w * there.gathered;
     weight += w;
     uncertain = uncertain || (w > 0 && there.uncertain);
   }
-  glm::dvec3 value() const { return weight > 0 ? total / weight : glm::dvec3(0); }
+  void put(NearPoint& point) const {
+    point.difference = weight > 0 ? difference / weight : glm::dvec3(0);
+    point.gathered = weight > 0 ? gathered / weight : glm::dvec3(0);
+    point.uncertain = uncertain;
+  }
 };
 
-NearImage blurred(const NearImage& image) {
+double darkened(double left) {
+  return left > kDark ? left : kDark * kDark / (2 * kDark - left);
+}
+
+/// Replaces the light of all points by `mean(layer, x, y, point)`.
+template <typename MeanOf>
+NearImage filtered(const NearImage& image, const MeanOf& mean) {
   NearImage result = image;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      NearPoint& point = result.points[y * image.width + x];
-      Mean mean;
-      for (int dy = -2; dy <= 2; ++dy) {
-        for (int dx = -2; dx <= 2; ++dx) {
-          const double share = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
-          mean.add(image.at(x + dx, y + dy), share, point.position, point.normal);
-        }
-      }
-      point.difference = mean.value();
-      point.uncertain = mean.uncertain;
+  for (int layer = 0; layer < 2; ++layer) {
+    for (int i = 0; i < static_cast<int>(result.layers[layer].size()); ++i) {
+      NearPoint& point = result.layers[layer][i];
+      mean(layer, i % image.width, i / image.width, point).put(point);
     }
   }
   return result;
+}
+
+NearImage blurred(const NearImage& image) {
+  return filtered(image, [&](int layer, int x, int y, const NearPoint& point) {
+    Mean mean;
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        const double share = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
+        mean.add(image.at(layer, x + dx, y + dy), share, point.position, point.normal);
+      }
+    }
+    return mean;
+  });
 }
 
 NearImage widened(const NearImage& image) {
-  NearImage result = image;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      NearPoint& point = result.points[y * image.width + x];
-      Mean mean;
-      for (const int dy : {-3, 0, 3}) {
-        for (const int dx : {-3, 0, 3}) {
-          const NearPoint& there = image.at(x + dx, y + dy);
-          const double apart =
-              point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
-          mean.uncertain = mean.uncertain || close_to(apart, kWidened);
-          mean.add(there, apart < kWidened ? 1 : 0, point.position, point.normal);
+  return filtered(image, [&](int layer, int x, int y, const NearPoint& point) {
+    Mean mean;
+    for (const int dy : {-3, 0, 3}) {
+      for (const int dx : {-3, 0, 3}) {
+        const NearPoint& there = image.at(layer, x + dx, y + dy);
+        const double apart =
+            point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
+        mean.uncertain = mean.uncertain || close_to(apart, kWidened);
+        mean.add(there, apart < kWidened ? 1 : 0, point.position, point.normal);
+      }
+    }
+    return mean;
+  });
+}
+
+/// The near field's pixels of a camera's image.
+struct NearPixels {
+  const NearField& field;
+  const SurfaceImage& camera;
+  int step;
+
+  NearPoint point_at(int x, int y) const {
+    NearPoint point;
+    const std::size_t pixel = std::size_t{camera.view.width} * y + x;
+    if (camera.depth[pixel] <= 0) return point;
+    point.position = surface_position(camera.view, pixel, camera.depth[pixel]);
+    point.normal = glm::dvec3(camera.normal[pixel]);
+    point.reach = field.reach_at(point.position);
+    return point;
+  }
+
+  /// Light at a pixel of the camera from near pixels on its surface: by bilinear weights, or else of the blocks around, there on
+  /// any surface if none is on this one.
+  Mean interpolated(const NearImage& image, int x, int y) const {
+    const NearPoint here = point_at(x, y);
+    const double across = x % step / double(step), down = y % step / double(step);
+    Mean mean;
+    for (int layer = 0; layer < 2; ++layer) {
+      for (int corner = 0; corner < 4; ++corner) {
+        const int right = corner % 2, below = corner / 2;
+        mean.add(image.at(layer, x / step + right, y / step + below),
+                 (right ? across : 1 - across) * (below ? down : 1 - down), here.position, here.normal);
+      }
+    }
+    for (const bool any : {false, true}) {
+      if (mean.weight > 0 || step == 1) return mean;
+      for (int layer = 0; layer < 2; ++layer) {
+        for (int dy = -1; dy <= 2; ++dy) {
+          for (int dx = -1; dx <= 2; ++dx) {
+            const NearPoint& there = image.at(layer, x / step + dx, y / step + dy);
+            if (any)
+              mean.add(there, there.reach > 0 ? 1 : 0);
+            else
+              mean.add(there, 1, here.position, here.normal);
+          }
         }
       }
-      point.difference = mean.value();
-      point.uncertain = mean.uncertain;
     }
+    return mean;
   }
-  return result;
-}
+
+  /// The first pixel of a block whose surface no near pixel of the blocks around it has.
+  NearPoint other(const NearImage& image, int block_x, int block_y) const {
+    bool unknown = false;
+    for (int y = block_y * step; y < std::min(block_y * step + step, int(camera.view.height)); ++y) {
+      for (int x = block_x * step; x < std::min(block_x * step + step, int(camera.view.width)); ++x) {
+        NearPoint point = point_at(x, y);
+        if (camera.depth[std::size_t{camera.view.width} * y + x] <= 0) continue;
+        double covered = 0;
+        for (int dy = -1; dy <= 2; ++dy) {
+          for (int dx = -1; dx <= 2; ++dx)
+            covered += same_surface(image.at(0, block_x + dx, block_y + dy), point.position, point.normal, unknown);
+        }
+        if (covered > 0) continue;
+        point.unknown = unknown;
+        return point;
+      }
+    }
+    NearPoint none;
+    none.unknown = unknown;
+    return none;
+  }
+};
 
 }  // namespace
 
@@ -235,35 +322,36 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
   const NearField field{basis, options, scene};
   const auto directions = near_directions(options.rays);
   const int step = options.step;
+  const NearPixels pixels{field, camera, step};
   NearImage image{(static_cast<int>(view.width) + step - 1) / step,
                   (static_cast<int>(view.height) + step - 1) / step,
                   {}};
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      NearPoint& point = image.points.emplace_back();
-      const std::size_t pixel = std::size_t(step) * y * view.width + std::size_t(step) * x;
-      if (camera.depth[pixel] <= 0) continue;
-      point.position = surface_position(view, pixel, camera.depth[pixel]);
-      point.normal = glm::dvec3(camera.normal[pixel]);
-      point.reach = field.reach_at(point.position);
-      if (point.reach > 0)
-        field.trace(point, directions[y % CLPV_NEAR_TILE * CLPV_NEAR_TILE + x % CLPV_NEAR_TILE]);
+  for (int layer = 0; layer < (step > 1 ? 2 : 1); ++layer) {
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        NearPoint point = layer == 0 ? pixels.point_at(step * x, step * y) : pixels.other(image, x, y);
+        if (point.reach > 0)
+          field.trace(point, directions[y % CLPV_NEAR_TILE * CLPV_NEAR_TILE + x % CLPV_NEAR_TILE]);
+        image.layers[layer].push_back(point);
+      }
     }
   }
   image = widened(blurred(image));
   NearResult result{gathered, std::vector<bool>(gathered.size(), false)};
   for (std::size_t pixel = 0; pixel < gathered.size(); ++pixel) {
     if (camera.depth[pixel] <= 0) continue;
-    const int x = static_cast<int>(pixel % view.width), y = static_cast<int>(pixel / view.width);
-    Mean mean;
-    const glm::dvec3 position = surface_position(view, pixel, camera.depth[pixel]),
-                     normal(camera.normal[pixel]);
-    for (int corner = 0; corner < 4; ++corner) {
-      const int right = corner % 2 * (x % step), below = corner / 2 * (y % step);
-      mean.add(image.at(x / step + right, y / step + below), 1, position, normal);
+    const Mean sums = pixels.interpolated(image, static_cast<int>(pixel % view.width),
+                                          static_cast<int>(pixel / view.width));
+    result.uncertain[pixel] = sums.uncertain;
+    NearPoint mean;
+    sums.put(mean);
+    for (int channel = 0; channel < 3; ++channel) {
+      const double difference = mean.difference[channel], all = mean.gathered[channel];
+      if (difference < 0 && all > 0)
+        result.irradiance[pixel][channel] *= darkened((all + difference) / all);
+      else
+        result.irradiance[pixel][channel] += std::max(difference, 0.0);
     }
-    result.irradiance[pixel] = glm::max(gathered[pixel] + mean.value(), 0.0);
-    result.uncertain[pixel] = mean.uncertain;
   }
   return result;
 }

@@ -107,8 +107,9 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
   Gatherer gatherer(session, *basis, TransportKind::sweep, options.gather);
   gatherer.gather(camera, grids, volumes, irradiance, 1, hidden);
   const SceneBuffers buffers = upload_scene(session, scene);
-  clpv::NearField(session, *basis, scene, buffers, options)
-      .add(camera, gatherer, on_device(session, lights), 1, hidden, irradiance);
+  clpv::NearField field(session, *basis, scene, buffers, options);
+  field.trace(camera, gatherer);
+  field.add(camera, gatherer, on_device(session, lights), 1, hidden, irradiance);
 
   const NearResult wanted = near(*basis, options, {scene, materials, lights, cascades}, image,
                                  gather(*basis, TransportKind::sweep, options.gather, cascades, image));
@@ -138,11 +139,12 @@ CheckResults check_near(Session& session, const CheckScope& scope) {
   const auto add = [&](const NearVariant& variant) {
     compare_selected(scope, "near", variant.name, results, [&] { return check_one_near(session, variant); });
   };
-  add({.name = "half", .step = 2});
+  add({.name = "quarter", .step = 4});
   add({.name = "reflects", .reflects = true});
   if (!scope.thorough) return results;
   add({.name = "full"});
-  add({.name = "1 ray", .rays = 1});
+  add({.name = "half", .step = 2});
+  add({.name = "eighth, 2 rays", .step = 8, .rays = 2});
   add({.name = "all cells", .gather = Gathering::all});
   add({.name = "half numbers", .format = {Layout::soa, Storage::float16}});
   return results;

@@ -25,7 +25,7 @@
 //   In, out: image                 RGBA; alpha stays
 // A work-item processes eight pixels of a row.
 //
-// From the host: CLPV_NEAR_STEP 2, CLPV_LIGHT_STEPS, CLPV_VOLUME_STEPS.
+// From the host: CLPV_NEAR_STEP 2, CLPV_NEAR_LAYERS 1, CLPV_LIGHT_STEPS, CLPV_VOLUME_STEPS.
 #include "gather/near_layout.h"
 #include "gather/radiance.h"
 #include "raster/shadow.h"

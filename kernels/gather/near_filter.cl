@@ -3,109 +3,145 @@
 //
 // near_blur
 //   A window of five by five pixels, with half weight at its edges, counts each pixel of a tile once: (1/2 1 1 1 1/2)
-//   along both axes. Pixels count if their normal is within 45 degrees and their distance from the plane of the surface
-//   below 0.1 R.
-//   In:      points        near_layout.h; differences: D of near.cl
-//   Out:     blurred       D, three planes
+//   along both axes. Pixels count if they are on the same surface (near_surface.h).
+//   In:      points        near_layout.h; light: D and E of near.cl
+//   Out:     blurred       their means
 // near_widen
 //   Averages three by three blurred pixels, every third along both axes, which makes the window one of eleven by eleven.
 //   Pixels count by the same rules if they are also nearer than 0.2 R, so that the window stays small where pixels are
 //   far apart.
 //   In:      points, blurred
-//   Out:     widened       D, three planes
+//   Out:     widened       their means
 // near_add
-//   Interpolates D bilinearly between pixels of the near field on the same surface; 0 if none is.
+//   Interpolates D and E bilinearly between pixels of both layers on the same surface. Without one it takes the mean of
+//   those in the four by four blocks around, on the same surface or else on any.
 //   In:      depths [m], normals   the camera's surface; points, widened
-//   In, out: irradiance    E [W/m^2] per pixel of the camera: max(0, E + D)
+//   In, out: irradiance    E [W/m^2] per pixel of the camera; E + D, or where D < 0: E darkened(1 + mean D / mean E)
 // A work-item processes eight pixels of a row.
-#include "gather/near_layout.h"
+#include "gather/near_surface.h"
 #include "raster/surface_row.h"
 
-#define CLPV_SAME_NORMAL 0.7f  // cosine
-#define CLPV_SAME_PLANE 0.1f   // [R]
-#define CLPV_WIDENED 0.2f      // [R]
+#define CLPV_WIDENED 0.2f  // [R]
+#define CLPV_DARK 0.25f    // share of light below which darkening slows down
 
-// Surfaces of eight neighbours.
+// Sums of D, E and weights.
 typedef struct {
-  Vec position, normal, difference;
-  realW reach;
-} Neighbours;
-
-CLPV_INLINE void load_neighbours(__global const float* points, __global const float* differences, const uint plane,
-                                 const uint at, Neighbours* n) {
-  n->position = load_near_vectors(points + CLPV_NEAR_POSITION * plane, plane, at);
-  n->normal = load_near_vectors(points + CLPV_NEAR_NORMAL * plane, plane, at);
-  n->reach = load_lanes(points + CLPV_NEAR_REACH * plane + at);
-  n->difference = load_near_vectors(differences, plane, at);
-}
-
-// Weight of neighbours: 1 on the same surface, else 0.
-CLPV_INLINE realW same_surface(const Neighbours n, const Vec position, const Vec normal) {
-  const realW off = fabs(vec_dot(vec_minus(n.position, position), normal));
-  const intW same = (vec_dot(normal, n.normal) > (realW)(CLPV_SAME_NORMAL)) & (off < CLPV_SAME_PLANE * n.reach);
-  return same ? ONE : ZERO;
-}
-
-// Sums of differences and weights.
-typedef struct {
-  Vec difference;
+  Vec difference, gathered;
   realW weight;
 } WeightedSum;
 
-CLPV_INLINE void add_weighted(const Neighbours n, const realW weight, WeightedSum* sum) {
-  sum->difference = vec_add_scaled(sum->difference, weight, n.difference);
+CLPV_INLINE void add_weighted(const Vec difference, const Vec gathered, const realW weight, WeightedSum* sum) {
+  sum->difference = vec_add_scaled(sum->difference, weight, difference);
+  sum->gathered = vec_add_scaled(sum->gathered, weight, gathered);
   sum->weight += weight;
 }
 
-CLPV_INLINE Vec mean_of(const WeightedSum sum) {
-  return vec_times(sum.difference, sum.weight > ZERO ? 1.0f / sum.weight : ZERO);
+CLPV_INLINE void store_means(const WeightedSum sum, const NearRow r, __global float* light) {
+  const realW scale = sum.weight > ZERO ? 1.0f / sum.weight : ZERO;
+  store_near_vectors(vec_times(sum.difference, scale), light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, r.at);
+  store_near_vectors(vec_times(sum.gathered, scale), light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
 }
 
-__kernel void near_blur(const ClpvView view, __global const float* points, __global const float* differences,
+#define CLPV_NO_SUM {{ZERO, ZERO, ZERO}, {ZERO, ZERO, ZERO}, ZERO}
+
+__kernel void near_blur(const ClpvView view, __global const float* points, __global const float* light,
                         __global float* blurred) {
   const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
-  const Vec position = load_near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  const Vec normal = load_near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
-  WeightedSum sum = {{ZERO, ZERO, ZERO}, ZERO};
-  for (int dy = -2; dy <= 2; ++dy) {
+  NearSurfaces here;
+  load_near_surfaces(points, r.plane, r.at, &here);
+  WeightedSum sum = CLPV_NO_SUM;
+  for (int dy = -2; dy <= 2 && lane_bits(here.reach > ZERO) != 0u; ++dy) {
     for (int dx = -2; dx <= 2; ++dx) {
       const float share = (dy == -2 || dy == 2 ? 0.5f : 1.0f) * (dx == -2 || dx == 2 ? 0.5f : 1.0f);
-      Neighbours n;
-      load_neighbours(points, differences, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
-      add_weighted(n, share * same_surface(n, position, normal), &sum);
+      const uint at = (uint)((int)r.at + dy * (int)r.pitch + dx);
+      NearSurfaces n;
+      load_near_surfaces(points, r.plane, at, &n);
+      add_weighted(load_near_vectors(light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
+                   load_near_vectors(light + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
+                   same_surface(n, here.position, here.normal) ? (realW)(share) : ZERO, &sum);
     }
   }
-  store_near_vectors(mean_of(sum), blurred, r.plane, r.at);
+  store_means(sum, r, blurred);
 }
 
 __kernel void near_widen(const ClpvView view, __global const float* points, __global const float* blurred,
                          __global float* widened) {
   const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
-  const Vec position = load_near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  const Vec normal = load_near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
-  const realW reach = CLPV_WIDENED * load_lanes(points + CLPV_NEAR_REACH * r.plane + r.at);
-  WeightedSum sum = {{ZERO, ZERO, ZERO}, ZERO};
-  for (int dy = -3; dy <= 3; dy += 3) {
+  NearSurfaces here;
+  load_near_surfaces(points, r.plane, r.at, &here);
+  const realW far = CLPV_WIDENED * here.reach;
+  WeightedSum sum = CLPV_NO_SUM;
+  for (int dy = -3; dy <= 3 && lane_bits(far > ZERO) != 0u; dy += 3) {
     for (int dx = -3; dx <= 3; dx += 3) {
-      Neighbours n;
-      load_neighbours(points, blurred, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
-      const Vec apart = vec_minus(n.position, position);
-      add_weighted(n, vec_dot(apart, apart) < reach * reach ? same_surface(n, position, normal) : ZERO, &sum);
+      const uint at = (uint)((int)r.at + dy * (int)r.pitch + dx);
+      NearSurfaces n;
+      load_near_surfaces(points, r.plane, at, &n);
+      const Vec apart = vec_minus(n.position, here.position);
+      const intW near = (vec_dot(apart, apart) < far * far) & same_surface(n, here.position, here.normal);
+      add_weighted(load_near_vectors(blurred + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
+                   load_near_vectors(blurred + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
+                   near ? ONE : ZERO, &sum);
     }
   }
-  store_near_vectors(mean_of(sum), widened, r.plane, r.at);
+  store_means(sum, r, widened);
 }
 
-#if CLPV_NEAR_STEP == 2
-// Neighbours of eight pixels of the camera: on even columns the pixel itself, on odd ones that on the left or right.
-#define CLPV_WIDEN(v) (right ? (v).s01122334 : (v).s00112233)
-CLPV_INLINE void widen(Neighbours* n, const bool right) {
-  n->position = vec(CLPV_WIDEN(n->position.x), CLPV_WIDEN(n->position.y), CLPV_WIDEN(n->position.z));
-  n->normal = vec(CLPV_WIDEN(n->normal.x), CLPV_WIDEN(n->normal.y), CLPV_WIDEN(n->normal.z));
-  n->difference = vec(CLPV_WIDEN(n->difference.x), CLPV_WIDEN(n->difference.y), CLPV_WIDEN(n->difference.z));
-  n->reach = CLPV_WIDEN(n->reach);
+// Share of light that stays where D < 0, of the share `left` = (mean E + mean D) / mean E: never 0, though nine harmonics
+// may leave less than nothing.
+CLPV_INLINE realW darkened(const realW left) {
+  return left > CLPV_DARK ? left : CLPV_DARK * CLPV_DARK / (2.0f * CLPV_DARK - left);
+}
+
+// Factor of E in a channel where D < 0, else 1.
+CLPV_INLINE realW darkening_factor(const realW difference, const realW gathered) {
+  const intW darker = (difference < ZERO) & (gathered > ZERO);
+  return darker ? darkened((gathered + difference) / gathered) : ONE;
+}
+
+CLPV_INLINE realW clamp_positive(const realW v) {
+  return v > ZERO ? v : ZERO;
+}
+
+#if CLPV_NEAR_LAYERS > 1
+// Adds near pixels on the surfaces of eight pixels of the camera, or on any: those from `at` on, spread over them.
+CLPV_INLINE void add_spread(__global const float* points, __global const float* widened, const uint plane, const uint at,
+                            const bool right, const Surfaces s, const bool any, const realW weight, WeightedSum* sum) {
+  if (lane_bits(load_lanes(points + CLPV_NEAR_REACH * plane + at) > ZERO) == 0u) return;
+  NearSurfaces n;
+  load_near_surfaces(points, plane, at, &n);
+  spread_surfaces(&n, right);
+  add_weighted(spread_vectors(load_near_vectors(widened + CLPV_NEAR_DIFFERENCE * plane, plane, at), right),
+               spread_vectors(load_near_vectors(widened + CLPV_NEAR_GATHERED * plane, plane, at), right),
+               (any ? n.reach > ZERO : same_surface(n, s.position, s.normal)) ? weight : ZERO, sum);
+}
+
+// Means at eight pixels of the camera.
+CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const Surfaces s, const NearRow r,
+                              __global const float* points, __global const float* widened, WeightedSum* sum) {
+  const uint first = r.at - p.px + p.px / CLPV_NEAR_STEP, second = near_second(view) * r.pitch;
+  const realW across = to_realW(lane_numbers() % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
+  const float down = (float)(p.py % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
+  for (uint layer = 0; layer < 2; ++layer) {
+    for (uint corner = 0; corner < 4; ++corner) {
+      const bool right = corner % 2 == 1, below = corner / 2 == 1;
+      const realW weight = (right ? across : ONE - across) * (below ? down : 1.0f - down);
+      add_spread(points, widened, r.plane, first + layer * second + (below ? r.pitch : 0u), right, s, false, weight, sum);
+    }
+  }
+  for (uint any = 0; any < 2; ++any) {
+    const intW lone = (s.depth > ZERO) & (sum->weight == ZERO);
+    if (lane_bits(lone) == 0u) return;
+    for (uint layer = 0; layer < 2; ++layer) {
+      for (int dy = -1; dy <= 2; ++dy) {
+        for (int dx = -1; dx <= 2; ++dx) {
+          const uint at = (uint)((int)(first + layer * second) + dy * (int)r.pitch + dx);
+          add_spread(points, widened, r.plane, at, false, s, any == 1, lone ? ONE : ZERO, sum);
+        }
+      }
+    }
+  }
 }
 #endif
 
@@ -116,22 +152,20 @@ __kernel void near_add(const ClpvView view, __global const float* depths, __glob
   Surfaces s;
   load_surfaces(view, p, depths, normals, &s);
   const NearRow r = find_near_row(view, (int)p.px / W, (int)p.py / CLPV_NEAR_STEP);
+  WeightedSum mean = CLPV_NO_SUM;
 #if CLPV_NEAR_STEP == 1
-  const Vec difference = load_near_vectors(widened, r.plane, r.at);
+  add_weighted(load_near_vectors(widened + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, r.at),
+               load_near_vectors(widened + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at), ONE, &mean);
 #else
-  WeightedSum sum = {{ZERO, ZERO, ZERO}, ZERO};
-  const uint first = r.at - p.px / 2;
-  for (uint corner = 0; corner < 4; ++corner) {
-    Neighbours n;
-    load_neighbours(points, widened, r.plane, first + (corner / 2) * (p.py % 2) * r.pitch, &n);
-    widen(&n, corner % 2 == 1);
-    add_weighted(n, same_surface(n, s.position, s.normal), &sum);
-  }
-  const Vec difference = mean_of(sum);
+  interpolate_light(view, p, s, r, points, widened, &mean);
 #endif
-  const VecLanes added = unpack(s.depth > ZERO, difference);
+  const intW lit = (s.depth > ZERO) & (mean.weight > ZERO);
+  const realW scale = lit ? 1.0f / mean.weight : ZERO;
+  const Vec d = vec_times(mean.difference, scale), e = vec_times(mean.gathered, scale);
+  const VecLanes added = unpack(lit, vec(clamp_positive(d.x), clamp_positive(d.y), clamp_positive(d.z))),
+                 factor = unpack((intW)(-1), vec(darkening_factor(d.x, e.x), darkening_factor(d.y, e.y), darkening_factor(d.z, e.z)));
   for (uint i = 0; i < p.count; ++i) {
-    const float4 e = irradiance[s.first + i];
-    irradiance[s.first + i] = max(e + (float4)(added.x[i], added.y[i], added.z[i], 0.0f), 0.0f);
+    irradiance[s.first + i] = irradiance[s.first + i] * (float4)(factor.x[i], factor.y[i], factor.z[i], 1.0f) +
+                              (float4)(added.x[i], added.y[i], added.z[i], 0.0f);
   }
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Pixels of the near field: one of CLPV_NEAR_STEP x CLPV_NEAR_STEP pixels of the camera, in planes of numbers with an
-// empty border (shared/near.h); and the directions of their rays.
+// Pixels of the near field, in planes of numbers with an empty border (shared/near.h), and the directions of their rays.
 //
-// From the host: CLPV_NEAR_STEP, CLPV_NEAR_RAYS (rays per pixel).
+// A block of CLPV_NEAR_STEP x CLPV_NEAR_STEP pixels of the camera has a pixel in each of two layers, the second layer
+// below the first. The first has the block's first pixel; the second has one whose surface the first layer has not
+// there, or is empty (near_points.cl).
+//
+// From the host: CLPV_NEAR_STEP (1, 2, 4 or 8), CLPV_NEAR_LAYERS (1 or 2), CLPV_NEAR_RAYS (rays per pixel).
 #ifndef CLPV_NEAR_LAYOUT_H
 #define CLPV_NEAR_LAYOUT_H
 
@@ -13,7 +16,7 @@
 
 // Eight pixels of a row.
 typedef struct {
-  uint width, height, pitch, plane;  // of the near field: pixels, and numbers of a row and of a plane
+  uint width, height, pitch, plane;  // of both layers: pixels, and numbers of a row and of a plane
   int x, y;                          // first pixel; may be in the border
   uint at;                           // its index in a plane
 } NearRow;
@@ -22,13 +25,25 @@ static inline uint near_pixels(const uint pixels) {
   return (pixels + CLPV_NEAR_STEP - 1) / CLPV_NEAR_STEP;
 }
 
+// First row of the second layer, and the number of rows of all layers.
+static inline uint near_second(const ClpvView view) {
+  return CLPV_NEAR_SECOND_OF(near_pixels(view.height));
+}
+static inline uint near_rows(const ClpvView view) {
+  const uint height = near_pixels(view.height);
+  return CLPV_NEAR_LAYERS == 1 ? height : CLPV_NEAR_SECOND_OF(height) + height;
+}
+static inline uint near_plane(const ClpvView view) {
+  return CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_rows(view));
+}
+
 // The pixels from (8 column, row) on.
 static inline NearRow find_near_row(const ClpvView view, const int column, const int row) {
   NearRow r;
   r.width = near_pixels(view.width);
-  r.height = near_pixels(view.height);
+  r.height = near_rows(view);
   r.pitch = CLPV_NEAR_PITCH_OF(r.width);
-  r.plane = CLPV_NEAR_PLANE_OF(r.width, r.height);
+  r.plane = near_plane(view);
   r.x = column * W;
   r.y = row;
   r.at = (uint)(row + CLPV_NEAR_ROWS) * r.pitch + (uint)(r.x + CLPV_NEAR_COLUMNS);
@@ -44,7 +59,7 @@ static inline bool row_has_pixels(const NearRow r) {
 #define CLPV_NO_TILE 0xffffffffu
 static inline uint find_near_tile(const ClpvView view) {
   const uint across = (near_pixels(view.width) + W - 1) / W,
-             down = (near_pixels(view.height) + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE,
+             down = (near_rows(view) + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE,
              x = get_global_id(0), y = get_global_id(1);
   return x < across && y < down ? y * across + x : CLPV_NO_TILE;
 }

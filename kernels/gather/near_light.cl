@@ -42,7 +42,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const uintW zero = (uintW)(0u), triangle = listed ? as_uintW(hits[CLPV_HIT_TRIANGLE]) : zero,
               pixel = listed ? as_uintW(hits[CLPV_HIT_PIXEL]) : zero;
   s->radiance = as_uintW(hits[CLPV_HIT_RADIANCE]);
-  const uint plane = CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_pixels(view.height));
+  const uint plane = near_plane(view);
   const Vec origin = vec((realW)CLPV_GATHER(points, pixel), (realW)CLPV_GATHER(points, pixel + plane),
                          (realW)CLPV_GATHER(points, pixel + 2 * plane));
   const realW reach = (realW)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
@@ -91,7 +91,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
 // Adds radiance, 0 outside the mask `lit`.
 CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const intW lit, const Vec radiance, const uint fresh,
                               __global const uint* counts, __global float* radiances) {
-  const uint plane = CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_pixels(view.height));
+  const uint plane = near_plane(view);
   const uint left = counts[find_near_tile(view)] - get_global_id(2) * W;
   const VecLanes added = unpack(lit, radiance);
   uint at[W];

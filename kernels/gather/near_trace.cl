@@ -71,6 +71,7 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
     if (!row_has_pixels(r)) continue;
     NearPoints p;
     load_near_points(points, r, &p);
+    if (no_lane(p.reach > ZERO)) continue;
     const Vec from = vec_add_scaled(p.position, CLPV_NEAR_LIFT * p.reach, p.normal);
     for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
       Rays rays;

@@ -7,13 +7,21 @@
 #define CLPV_NEAR_COLUMNS 8  // empty columns before and at least as many after each row, for the filter's window
 #define CLPV_NEAR_ROWS 3     // empty rows above and below
 
+// First row of the second layer (near_points.cl); at least CLPV_NEAR_ROWS empty rows lie before it.
+#define CLPV_NEAR_SECOND_OF(height) (((height) + CLPV_NEAR_ROWS + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE * CLPV_NEAR_TILE)
+
 // Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a surface in a cascade.
 #define CLPV_NEAR_POSITION 0
 #define CLPV_NEAR_NORMAL 3
 #define CLPV_NEAR_REACH 6
 #define CLPV_NEAR_PLANES 7
 
-// Numbers of a row and of a plane of `width` x `height` pixels.
+// Planes of light, one number per pixel and channel: D and the gathered irradiance [W/m^2].
+#define CLPV_NEAR_DIFFERENCE 0
+#define CLPV_NEAR_GATHERED 3
+#define CLPV_NEAR_LIGHT_PLANES 6
+
+// Numbers of a row and of a plane of `width` x `height` pixels, the rows of both layers.
 #define CLPV_NEAR_PITCH_OF(width) (((width) + 7) / 8 * 8 + 2 * CLPV_NEAR_COLUMNS)
 #define CLPV_NEAR_PLANE_OF(width, height) (CLPV_NEAR_PITCH_OF(width) * ((height) + 2 * CLPV_NEAR_ROWS))
 

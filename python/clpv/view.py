@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Viewer in the browser: python3 -m clpv.view SCENE [--model PATH] [--port N] [--host ADDRESS]
 
-Drag to look round, W A S D Q E to walk, the wheel to move. Frames are small while the camera moves and sharp when it rests.
+Drag to look round, W A S D Q E to walk, the wheel to move. Frames are small while the camera moves, sharp when it
+rests, and then nearer to path tracing.
 Needs viser: python3 -m pip install viser (in a virtual environment with --system-site-packages).
 """
 import argparse
@@ -16,9 +17,9 @@ import clpv
 
 VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
 STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers", "visibility", "propagate",
-          "gather", "near", "medium", "shade")
-MOVING_HEIGHT, RESTING_HEIGHT = 288, 720  # [pixels]
-REST = 0.3            # [s] without a change before the sharp frame
+          "gather", "near-trace", "near", "medium", "shade")
+# Frames of a view that rests: seconds without a change, height [pixels], rays of the near field.
+LEVELS = (0, 288, "2"), (0.3, 720, "4"), (1, 720, "64")
 MAX_RENDERERS = 4     # kept, by size and options
 PIVOT = 0.03          # distance from the eye to the point that a drag turns the camera about, of the scene's diagonal
 
@@ -71,7 +72,7 @@ class Controls:
         self.view = gui.add_dropdown("view", VIEWS, initial_value="full")
         self.basis = gui.add_dropdown("basis", clpv.bases(), initial_value=defaults["basis"])
         self.transport = gui.add_dropdown("transport", ("sweep", "exact", "sampled"), initial_value=defaults["transport"])
-        self.near = gui.add_checkbox("near field", initial_value=False)
+        self.near = gui.add_checkbox("near field", initial_value=True)
         self.exposure = gui.add_slider("exposure [EV]", -10, 10, 0.25, initial_value=max(-10, min(10, scene.exposure)))
         self.time = gui.add_slider("time [s]", 0, 20, 0.05, initial_value=0, visible=scene.moves)
         with gui.add_folder("sun"):
@@ -85,9 +86,9 @@ class Controls:
                         self.elevation, self.lux):
             control.on_update(lambda _: changed())
 
-    def options(self):
+    def options(self, rays):
         steps = {} if self.transport.value == "sweep" else {"bounces": "1"}
-        near = {"near": "traced"} if self.near.value and self.transport.value == "sweep" else {}
+        near = {"near_rays": rays} if self.near.value and self.transport.value == "sweep" else {"near": "off"}
         return {"basis": self.basis.value, "transport": self.transport.value, **steps, **near}
 
     def scene_lights(self):
@@ -104,13 +105,19 @@ class Controls:
 
 
 class Client:
-    """One browser: when its view last changed, and whether its image shows that."""
+    """One browser: when its view last changed, and how many of LEVELS it has shown since."""
 
     def __init__(self, handle):
-        self.handle, self.changed, self.moving_shown, self.sharp = handle, time.monotonic(), False, False
+        self.handle, self.changed, self.shown = handle, time.monotonic(), 0
 
     def touch(self):
-        self.changed, self.moving_shown, self.sharp = time.monotonic(), False, False
+        self.changed, self.shown = time.monotonic(), 0
+
+
+def next_client(clients, now):
+    """The client with the fewest levels whose next one is due, or None."""
+    due = [client for client in clients if client.shown < len(LEVELS) and now - client.changed >= LEVELS[client.shown][0]]
+    return min(due, key=lambda client: client.shown, default=None)
 
 
 class Viewer:
@@ -163,51 +170,40 @@ class Viewer:
                 client.touch()
         self.wake.set()
 
-    def next_client(self):
-        """A client whose image is old, and whether it gets a sharp one; or None."""
-        now = time.monotonic()
-        with self.lock:
-            for client in self.clients.values():
-                if not client.moving_shown:
-                    return client, False
-            for client in self.clients.values():
-                if not client.sharp and now - client.changed > REST:
-                    return client, True
-        return None, False
-
     def update_lights(self):
         lights = self.controls.scene_lights()
         if tuple(lights) != tuple(self.lit_by):
             self.scene.lights = self.lit_by = lights
 
-    def draw(self, client, sharp):
-        started, changed = time.monotonic(), client.changed
-        handle = client.handle
-        size = size_of(RESTING_HEIGHT if sharp else MOVING_HEIGHT, handle.camera.aspect)
+    def draw(self, client):
+        started, changed, handle = time.monotonic(), client.changed, client.handle
+        _, height, rays = LEVELS[client.shown]
+        size = size_of(height, handle.camera.aspect)
         self.update_lights()
-        renderer = self.renderers.get(size, self.controls.options())
+        renderer = self.renderers.get(size, self.controls.options(rays))
         image = renderer.render(self.controls.view.value, camera_of(handle), time=self.controls.time.value)
         handle.scene.set_background_image(image.display(self.controls.exposure.value)[..., :3], format="jpeg", jpeg_quality=85)
         handle.flush()
         self.frames += 1
         if client.changed == changed:  # else it is old already
-            client.moving_shown, client.sharp = True, sharp
+            client.shown += 1
         self.controls.show(renderer.stats, size, time.monotonic() - started)
 
     def step(self, wait=0.05):
         """Draws one image if one is due, else waits for a change."""
         self.wake.clear()
-        client, sharp = self.next_client()
+        with self.lock:
+            client = next_client(self.clients.values(), time.monotonic())
         if client is None:
             self.wake.wait(wait)
             return
         try:
-            self.draw(client, sharp)
+            self.draw(client)
         except clpv.Error as error:  # such as options that exclude each other: shown until the next change
-            client.moving_shown = client.sharp = True
+            client.shown = len(LEVELS)
             self.controls.status.content = f"**{error}**"
         except Exception as error:  # a client that left while it was drawn for
-            client.moving_shown = client.sharp = True
+            client.shown = len(LEVELS)
             with self.lock:
                 if client.handle.client_id in self.clients:
                     raise

@@ -88,7 +88,7 @@ def method_of(cell, options):
     if options[0] == "--preset=paper":
         return "published scheme"
     near = cell["options"].get("near")
-    return {"off": "clpv", "traced": "clpv, near traced"}[near] if near else cell["options"].get("baseline")
+    return {"traced": "clpv", "off": "clpv, near off"}[near] if near else cell["options"].get("baseline")
 
 
 def measure_standing(folder, model):

@@ -7,20 +7,17 @@ BEST = {"preset": "best"}
 PAPER = {"preset": "paper", "basis": "sh2"}
 PAPER_SRBF = {"preset": "paper", "basis": "srbf8v2"}
 IN_BUFFERS = {**PAPER, "layout": "soa", "storage": "float", "lobe-time": "host"}
-FINE = {"preset": "fine"}
-
-
-def near(size):
-    return {"near": "traced", "near-size": size}
-
+FAST, FINE = {"preset": "fast"}, {"preset": "fine"}
+HALF, FULL = {"near-size": "half"}, {"near-size": "full"}
 
 FRAMES = {
     "the defaults": BEST,
-    "the defaults, `--basis bins24`": {**BEST, "basis": "bins24"},
-    "`--near traced`, half size": {**BEST, **near("half")},
-    "`--near traced`, full size": {**BEST, **near("full")},
+    "`--preset fast --basis bins24`": {**FAST, "basis": "bins24"},
+    "the defaults, `--near-size half`": {**BEST, **HALF},
+    "the defaults, `--near-size full`": {**BEST, **FULL},
+    "`--preset fast`": FAST,
     "`--preset fine`": FINE,
-    "the defaults, `--medium 0.008,0,0.5`": {**BEST, "medium": "0.008,0,0.5"},
+    "`--preset fast --medium 0.008,0,0.5`": {**FAST, "medium": "0.008,0,0.5"},
     "published scheme, sh2, in buffers": IN_BUFFERS,
     "published scheme, sh2, in images of halves": PAPER,
     "published scheme, srbf8v2, in images of halves": PAPER_SRBF,
@@ -31,20 +28,23 @@ QUALITY = {
     "published scheme, sh2": PAPER,
     "published scheme, srbf8v2": PAPER_SRBF,
     "**the defaults**": BEST,
-    "the same, `--near traced`, half size": near("half"),
-    "the same, `--near traced`, full size": near("full"),
+    "the same, `--near-size half`": HALF,
+    "the same, `--near-rays 64`": {"near-rays": "64"},
+    "`--preset fast`": FAST,
     "`--preset fine`": FINE,
-    **{f"the same, {grid}^3 cells": {"grid": str(grid)} for grid in (16, 24, 48, 64)},
+    **{f"`--preset fast`, {grid}^3 cells": {**FAST, "grid": str(grid)} for grid in (16, 24, 48, 64)},
 }
 OTHER_BASES = "sh2", "bins24", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14"
+# Parts of the method, without the near field.
 CHANGED = [{"gather": "all"}, {"blockers": "seen"}, {"blockers": "none"}, {"transport": "sampled"},
            {"coarser-directions": "24"}, *({"directions": n, "coarser-directions": n} for n in ("24", "216")),
            *({"basis": basis} for basis in OTHER_BASES), {"gather-offset": "0.5"}, {"storage": "float"}]
-QUALITY_PARTS = {"`" + " ".join(f"--{name} {value}" for name, value in options.items()) + "`": options for options in CHANGED}
+QUALITY_PARTS = {"`" + " ".join(f"--{name} {value}" for name, value in options.items()) + "`": {**FAST, **options}
+                 for options in CHANGED}
 GRIDS = 16, 24, 32, 48, 64, 96, 128
 BOUNCES = {"published scheme, sh2": {**PAPER, "bounces": "1"},
-           **{f"the defaults, `--bounces {n}`": {"bounces": n} for n in ("1", "2", "all")}}
-SUNS = {"published scheme, sh2": PAPER, "the defaults": BEST}
+           **{f"`--preset fast --bounces {n}`": {**FAST, "bounces": n} for n in ("1", "2", "all")}}
+SUNS = {"published scheme, sh2": PAPER, "`--preset fast`": FAST}
 
 # The paper's lobes, exact in place of rotated through a table.
 EXACT_LOBES = {"preset": "paper", "lobe": "exact", "lobe-time": "host", "evaluate": "exact"}
@@ -56,26 +56,26 @@ STEPS = {**{f"published scheme, {basis}, exact lobes": {**EXACT_LOBES, "basis": 
 SEARCHED, SEARCHED_NORMALS = "out/searched8.json", "out/searched8-normals.json"
 CENTRES = {"srbf8v2": {"basis": "srbf8v2"}, "eight searched centres": {"centres": SEARCHED},
            "the same, for Sponza's normals": {"centres": SEARCHED_NORMALS},
-           **{basis: {"basis": basis} for basis in ("srbf6", "srbf8v1", "srbf8v3", "sh3")}}
+           **{basis: {"basis": basis} for basis in ("srbf6", "srbf8v1", "srbf8v3", "sh3")}}  # without the near field
 
 # Files of results/docs by `clpv quality`: scenes and options of all runs, and what each run sets.
 VIEWS = ["sponza", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns", "--camera=front"]
 QUALITY_FILES = {
-    "quality": ([*VIEWS, "--noise=0.03"], [*QUALITY.values(), *CHANGED]),
-    "quality-grid": ([*VIEWS, "--noise=0.03"], [{"grid": str(grid)} for grid in GRIDS]),
+    "quality": ([*VIEWS, "--noise=0.03"], [*QUALITY.values(), *QUALITY_PARTS.values()]),
+    "quality-grid": ([*VIEWS, "--noise=0.03"], [{**FAST, "grid": str(grid)} for grid in GRIDS]),
     "quality-grid-published": ([*VIEWS, "--noise=0.03", *(f"--{name}={value}" for name, value in IN_BUFFERS.items())],
                                [{"grid": str(grid)} for grid in GRIDS[:5]]),
-    "quality-suns": (["sponza_other_suns", "--noise=0.03"], [*QUALITY.values(), *CHANGED]),
-    "quality-scenes": (["atrium", "atrium_overcast", "sponza_overcast", "--noise=0.03"], [BEST, PAPER]),
+    "quality-suns": (["sponza_other_suns", "--noise=0.03"], [*QUALITY.values(), *QUALITY_PARTS.values()]),
+    "quality-scenes": (["atrium", "atrium_overcast", "sponza_overcast", "--noise=0.03"], list(SUNS.values())),
     "quality-bounces": ([*VIEWS, "--noise=0.05", "--bounces=all"], list(BOUNCES.values())),
-    "quality-lamp": (["cornell_lamp", "--noise=0.02"], [BEST]),
-    "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02", "--bounces=all"], [{"bounces": n} for n in ("1", "2", "all")]),
+    "quality-lamp": (["cornell_lamp", "--noise=0.02"], [FAST]),
+    "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02", "--bounces=all"], [{**FAST, "bounces": n} for n in ("1", "2", "all")]),
     "quality-steps": (["sponza", "--camera=atrium", "--noise=0.03"],
                       [*({**row, **setting} for row, setting in itertools.product(STEPS.values(), SETTINGS)),
-                       {"cascade-size": "12.5"}, {"cascade-size": "50"}]),
+                       {**FAST, "cascade-size": "12.5"}, {**FAST, "cascade-size": "50"}]),
     "quality-centres": ([*VIEWS, "--noise=0.03"],
                         [*({**EXACT_LOBES, **CENTRES[name]} for name in ("srbf8v2", "sh3", "eight searched centres")),
-                         {"centres": SEARCHED}, {"centres": SEARCHED_NORMALS}]),
+                         {**FAST, "centres": SEARCHED}, {**FAST, "centres": SEARCHED_NORMALS}]),
 }
 
 # `clpv quality` of scenes in a medium: sigma_s, sigma_a [1/m], options, numbers of bounces, views.
@@ -110,14 +110,14 @@ STANDING = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=atriu
              "--camera=nave", "--camera=gallery"],
             ["atrium_living", "--time=4"]]
 STANDING_LARGE = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"]]
-STANDING_FRAMES = [["--preset=best", "--vary=near=off,traced"], ["--preset=paper", "--basis=sh2"]]
+STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
 METHODS = "paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged"
 BASELINES = ["--preset=best", f"--baseline={','.join(METHODS)}"]
 SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--noise=0.06"]}
 SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time baselines do not get
 # Error against time, for the chart: clpv by grid, other methods by their time [ms].
 FRONT = [*VIEWS, "--noise=0.03"]
-FRONT_GRIDS = {"clpv": ["--vary=grid=16,24,32,48,64"], "clpv, near traced": ["--near=traced", "--vary=grid=16,24,32,48,64"]}
+FRONT_GRIDS = {"clpv": ["--vary=grid=16,24,32,48,64"], "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]}
 FRONT_TIMES = 5, 10, 20, 40, 80
 
 # By the other scripts: subjects of scripts/claims, and scripts/figures.

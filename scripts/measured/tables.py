@@ -194,18 +194,18 @@ def ceilings():
 
 
 STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "inject-geometry", "propagate", "gather",
-          "near", "medium", "shade")
+          "near-trace", "near", "medium", "shade")
 
 
 def stage_ms(frame, stage):
-    times = [entry["ms"] for entry in frame["stages"] if entry["stage"] == stage]
+    times = [entry["ms"] for entry in frame["stages"] if entry["stage"] == stage] if frame else []
     return sum(times) if times else None
 
 
 @table
 def frames():
     return [["[ms]", "frame", *STAGES]] + [
-        [name, number(frame["frame_ms"]), *(number(stage_ms(frame, stage)) for stage in STAGES)]
+        [name, number(frame and frame["frame_ms"]), *(number(stage_ms(frame, stage)) for stage in STAGES)]
         for name, frame in ((name, found(load("frames")["frames"], given=given)) for name, given in known.FRAMES.items())]
 
 
@@ -291,7 +291,7 @@ def quality_parts():
 def quality_grid():
     lines = [["cells along each axis", "mean", "worst", "energy", "frame [ms]", "propagate [ms]", "gather [ms]"]]
     for grid in known.GRIDS:
-        row = found(load("quality-grid")["variants"], options={"grid": str(grid)})
+        row = found(load("quality-grid")["variants"], options={**known.FAST, "grid": str(grid)})
         lines.append([str(grid), percent(row["nrmse"], 1), percent(row["worst_nrmse"], 1), f"{row['energy_ratio']:.2f}",
                       *map(number, (row["frame_ms"], row["stage_ms"]["propagate"], row["stage_ms"]["gather"]))])
     return lines
@@ -344,8 +344,8 @@ def quality_bounces():
 def quality_lamp():
     lines = [["ground truth", "variant", "front", "published"]]
     for truth, file, options, name in (
-            ("one bounce", "quality-lamp", BEST, "the defaults"),
-            *(("all bounces", "quality-lamp-bounces", {"bounces": n}, f"`--bounces {n}`") for n in ("1", "2", "all"))):
+            ("one bounce", "quality-lamp", known.FAST, "`--preset fast`"),
+            *(("all bounces", "quality-lamp-bounces", {**known.FAST, "bounces": n}, f"`--preset fast --bounces {n}`") for n in ("1", "2", "all"))):
         lines.append([truth, name] + [nrmse(file, options, camera=camera) for camera in ("front", "published")])
     return lines
 
@@ -363,12 +363,13 @@ def quality_steps():
 def readme():
     """Frame times beside errors."""
     lines = [["", "propagate", "gather", "frame", "error"]]
-    for name, quality in {"the defaults": BEST, "`--near traced`, half size": {"near": "traced", "near-size": "half"},
+    for name, quality in {"the defaults": BEST, "`--preset fast`": known.FAST,
                           "published scheme, sh2, in buffers": PAPER,
                           "published scheme, sh2, in images of halves": PAPER}.items():
         frame = found(load("frames")["frames"], given=known.FRAMES[name])
-        times = stage_ms(frame, "propagate"), stage_ms(frame, "gather"), frame["frame_ms"]
-        lines.append([name, *(f"{number(time)} ms" for time in times), f"{mean('quality', quality, 0)} %"])
+        times = stage_ms(frame, "propagate"), stage_ms(frame, "gather"), frame and frame["frame_ms"]
+        error = mean("quality", quality, 0)
+        lines.append([name, *(f"{number(time)} ms" if time else "-" for time in times), "-" if error == "-" else f"{error} %"])
     return lines
 
 
@@ -422,10 +423,11 @@ def basis_search():
 @table
 def basis_images():
     """Errors of images by searched centres."""
-    lines = [["NRMSE of indirect light, mean of four views [%]", "published scheme, exact lobes", "the defaults"]]
+    lines = [["NRMSE of indirect light, mean of four views [%]", "published scheme, exact lobes", "`--preset fast`"]]
     for name, options in known.CENTRES.items():
         lines.append([name, mean("quality-centres", {**known.EXACT_LOBES, **options}),
-                      mean("quality-centres" if "centres" in options else "quality", BEST if name == "sh3" else options)])
+                      mean("quality-centres" if "centres" in options else "quality",
+                           known.FAST if name == "sh3" else {**known.FAST, **options})])
     return lines
 
 
@@ -495,7 +497,7 @@ def figures_brightness():
 
 # The standing benchmark: docs/results.md.
 
-METHODS = {"clpv": "**clpv, the defaults**", "clpv, near traced": "clpv, `--near traced`", "published scheme": "published scheme, sh2",
+METHODS = {"clpv": "**clpv, the defaults**", "clpv, near off": "clpv, `--preset fast`", "published scheme": "published scheme, sh2",
            **{name: f"`{name}`" for name in known.METHODS}}
 
 

@@ -49,6 +49,21 @@ def test_sizes_and_suns():
     assert np.allclose(np.linalg.norm(view.sun_direction(70, 20)), 1)
 
 
+def test_a_view_that_rests_is_drawn_again_with_more_rays():
+    client, other = view.Client(None), view.Client(None)
+    client.changed = other.changed = 0
+    drawn = []
+    for now in (0, 0.1, 0.4, 0.5, 2, 3):
+        due = view.next_client([client], now)
+        if due:
+            drawn.append((now, *view.LEVELS[due.shown][1:]))
+            due.shown += 1
+    assert drawn == [(0, 288, "2"), (0.4, 720, "4"), (2, 720, "64")]
+    assert view.next_client([client, other], 3) is other
+    client.touch()
+    assert view.next_client([client], client.changed) is client and client.shown == 0
+
+
 def run(*arguments, **environment):
     return subprocess.run([sys.executable, "-m", "clpv.view", *map(str, arguments)], capture_output=True, text=True,
                           check=False, timeout=120, env={**os.environ, **environment})

@@ -23,6 +23,8 @@ class Cached {
     key_ = key;
   }
 
+  void invalidate() { key_.reset(); }
+
  private:
   std::optional<CacheKey> key_;
 };

@@ -11,6 +11,7 @@
 #include "pipeline/raster/view.hpp"
 #include "reference/medium.hpp"
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv {
 namespace {
@@ -101,19 +102,25 @@ Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
       packed_(options.cascades) {
   require_support(options, scene);
   const bool in_medium = scene.medium.has_value();
-  if (options.near != Near::off)
+  if (options.traces_near())
     near_.emplace(session, gathered(), scene, buffers_, near_options(options, in_medium));
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options));
   const std::size_t pixels = std::size_t(options.width) * options.height;
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
   image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
   session.build_described();
+  if (near_) near_->finish();
 }
 
 void Frame::scene_moved() {
   const unsigned instant = buffers_.clusters->instant();
   upload_moving(session_, scene_, buffers_);
   if (near_ && buffers_.clusters->instant() != instant) near_->move();
+}
+
+void Frame::invalidate_light() {
+  lights_.invalidate();
+  near_hits_.invalidate();
 }
 
 void Frame::invalidate() {
@@ -157,6 +164,12 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
     gather(*camera_surface_, irradiance_);
   }
   if (near_) {
+    const Fingerprint seen =
+        Fingerprint().add(camera_surface_->view).add(grids).add(buffers_.clusters->instant());
+    near_hits_.update(seen.value(), [&] {
+      const StageScope scope(session_, {Pass::near_trace});
+      near_->trace(*camera_surface_, gatherer_);
+    });
     const StageScope scope(session_, {Pass::near});
     const GatheredLight light = cascades_.light();
     near_->add(*camera_surface_, gatherer_, lights_.shadowed(), light.scale, light.occluded, irradiance_);

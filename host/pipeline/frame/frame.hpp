@@ -41,9 +41,9 @@ class Frame {
   /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
   void render(const SceneCamera& camera, const CascadeObserver& observer = {});
 
-  /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps. After
-  /// invalidate() it recomputes everything, including blockers and visibility.
-  void invalidate_light() { lights_.invalidate(); }
+  /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps and what rays
+  /// of the near field hit. After invalidate() it recomputes everything, including blockers and visibility.
+  void invalidate_light();
   void invalidate();
 
   /// Light of the last render; empty before the first one.
@@ -87,13 +87,14 @@ class Frame {
   Rasterizer rasterizer_;
   Gatherer gatherer_;
   Shader shader_;
-  std::optional<NearField> near_;      ///< none: Near::off
+  std::optional<NearField> near_;      ///< none: off
   std::optional<MediumLight> medium_;  ///< none: no medium
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
   std::optional<Kernel> radiance_;  ///< of radiance_at(), built when it is first called
   std::vector<Cached> packed_;      ///< accumulated light as packed by the gatherer
+  Cached near_hits_;                ///< of near_
   Buffer irradiance_;               ///< float4 per pixel, like image_
   Buffer image_;
   Show shown_ = Show::full;

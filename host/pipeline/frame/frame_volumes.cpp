@@ -36,7 +36,7 @@ void require_compatible(const RenderOptions& options) {
     throw Error(ExitCode::usage, "bounces: found '{}' with transport '{}', allowed: 1 (or transport 'sweep')",
                 name_of(options.bounces), name_of(options.transport));
   }
-  if (!sweeps(options) && options.near != Near::off) {
+  if (!sweeps(options) && options.near == Near::traced) {
     throw Error(ExitCode::usage,
                 "near: found '{}'{} with transport '{}', allowed: off (or transport 'sweep')",
                 name_of(options.near), preset_note(options, "near"), name_of(options.transport));

@@ -17,6 +17,7 @@ unsigned medium_pixels(unsigned pixels) {
 ProgramSource medium_source(const Basis& basis, const MediumOptions& options) {
   ProgramSource source = with_radiance({"gather/medium.cl", {}, {}}, basis, options.gather);
   source.literals.integer("CLPV_NEAR_STEP", kMediumStep)
+      .integer("CLPV_NEAR_LAYERS", 1)
       .number("CLPV_NEAR_RAYS", 1)
       .integer("CLPV_LIGHT_STEPS", options.light_steps)
       .integer("CLPV_VOLUME_STEPS", options.volume_steps)

@@ -13,6 +13,17 @@ unsigned near_pixels(unsigned pixels, int step) {
   return (pixels + step - 1) / step;
 }
 
+/// Number of layers of pixels (near_layout.h).
+int layers(int step) {
+  return step == 1 ? 1 : 2;
+}
+
+/// Rows of all layers.
+unsigned near_rows(unsigned height, int step) {
+  const unsigned rows = near_pixels(height, step);
+  return layers(step) == 1 ? rows : CLPV_NEAR_SECOND_OF(rows) + rows;
+}
+
 unsigned tiles_down(unsigned rows) {
   return (rows + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE;
 }
@@ -20,6 +31,7 @@ unsigned tiles_down(unsigned rows) {
 ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
   ProgramSource source{file, {}, {}};
   source.literals.integer("CLPV_NEAR_STEP", options.step)
+      .integer("CLPV_NEAR_LAYERS", layers(options.step))
       .number("CLPV_NEAR_RAYS", options.rays)
       .real("CLPV_NEAR_CONE", near_cone(options.rays))
       .flag("CLPV_TEXTURED", buffers.textured)
@@ -58,8 +70,8 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       scene_(scene),
       buffers_(buffers),
       options_(options),
-      tree_(scene),
-      points_kernel_(session, with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather),
+      building_(std::async(std::launch::async, [&scene] { return TriangleTree(scene); })),
+      points_kernel_(session, with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather),
                      "near_points"),
       trace_(session, near_source("gather/near_trace.cl", buffers, options), "near_trace"),
       light_(session, near_source("gather/near_light.cl", buffers, options), "near_light"),
@@ -68,6 +80,11 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
       blur_(session, near_source("gather/near_filter.cl", buffers, options), "near_blur"),
       widen_(session, near_source("gather/near_filter.cl", buffers, options), "near_widen"),
       add_(session, near_source("gather/near_filter.cl", buffers, options), "near_add") {
+  if (layers(options.step) > 1) {
+    others_.emplace(
+        session, with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather),
+        "near_others");
+  }
   if (options.reflects) {
     reflect_.emplace(
         session,
@@ -75,24 +92,29 @@ NearField::NearField(Session& session, const Basis& basis, const Scene& scene, c
         "near_reflect");
   }
   directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
+}
+
+void NearField::finish() {
+  if (tree_) return;
+  tree_ = building_.get();
   upload_tree();
 }
 
 void NearField::move() {
-  tree_.move(scene_);
+  tree_->move(scene_);
   upload_tree();
 }
 
 void NearField::upload_tree() {
-  session_.reserve(nodes_, tree_.nodes().size() * sizeof(TreeRow), "tree of triangles");
-  session_.reserve(leaves_, tree_.leaves().size() * sizeof(TreeRow), "leaves of the tree of triangles");
-  session_.write(nodes_, tree_.nodes());
-  session_.write(leaves_, tree_.leaves());
+  session_.reserve(nodes_, tree_->nodes().size() * sizeof(TreeRow), "tree of triangles");
+  session_.reserve(leaves_, tree_->leaves().size() * sizeof(TreeRow), "leaves of the tree of triangles");
+  session_.write(nodes_, tree_->nodes());
+  session_.write(leaves_, tree_->leaves());
 }
 
 void NearField::reserve(const ClpvView& view) {
   const std::size_t width = near_pixels(view.width, options_.step),
-                    height = near_pixels(view.height, options_.step);
+                    height = near_rows(view.height, options_.step);
   const std::size_t plane = CLPV_NEAR_PLANE_OF(width, height), numbers = plane * sizeof(cl_float);
   if (plane == plane_) return;
   plane_ = plane;
@@ -103,11 +125,11 @@ void NearField::reserve(const ClpvView& view) {
   session_.reserve(hits_, tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float),
                    "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
-  session_.reserve(differences_, 3 * numbers, "near field");
-  session_.reserve(blurred_, 3 * numbers, "blurred near field");
+  session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
+  session_.reserve(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers, "blurred near field");
   session_.fill_zero(radiances_, 3 * options_.rays * numbers);  // read, but not used, where there is no hit
-  session_.fill_zero(differences_, 3 * numbers);                // borders stay 0
-  session_.fill_zero(blurred_, 3 * numbers);
+  session_.fill_zero(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers);  // borders stay 0
+  session_.fill_zero(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers);
 }
 
 Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
@@ -119,7 +141,7 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
-                         tiles_down(near_pixels(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
+                         tiles_down(near_rows(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
   const cl::NDRange group(8, 1, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -143,28 +165,38 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
   reflect_->launch(rays, group);
 }
 
-void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                    float scale, const Buffer* occluded, Buffer& irradiance) {
+void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   const ClpvView& view = camera.view;
+  finish();
   reserve(view);
   const unsigned width = near_pixels(view.width, options_.step),
-                 height = near_pixels(view.height, options_.step);
-  const cl::NDRange rows(tiles_along(width), height);
+                 height = near_rows(view.height, options_.step);
   const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
   points_kernel_.set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, kTileRow);
+  if (others_) {
+    others_->set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
+        .launch(cl::NDRange(tiles_along(width), near_pixels(view.height, options_.step)), kTileRow);
+  }
   // A work-item alone in its group: the lists of several would not fit into the first-level cache.
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
       .launch(cl::NDRange(tiles_along(width), tiles_down(height)), cl::NDRange(1, 1));
+}
+
+void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
+                    float scale, const Buffer* occluded, Buffer& irradiance) {
+  const ClpvView& view = camera.view;
   light_hits(camera, gatherer, lights, scale, occluded);
-  near_.set(view, points_, directions_, distances_, radiances_, differences_);
+  const cl::NDRange rows(tiles_along(near_pixels(view.width, options_.step)),
+                         near_rows(view.height, options_.step));
+  near_.set(view, points_, directions_, distances_, radiances_, near_light_);
   gatherer.add_radiance(near_, scale, occluded);
   near_.launch(rows, kTileRow);
-  blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
-  widen_.set(view, points_, blurred_, differences_).launch(rows, kTileRow);
-  add_.set(view, camera.depth, camera.normal, points_, differences_, irradiance)
+  blur_.set(view, points_, near_light_, blurred_).launch(rows, kTileRow);
+  widen_.set(view, points_, blurred_, near_light_).launch(rows, kTileRow);
+  add_.set(view, camera.depth, camera.normal, points_, near_light_, irradiance)
       .launch(rows_of_tiles(view), kTileRow);
 }
 

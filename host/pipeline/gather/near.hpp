@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <future>
 #include <optional>
 #include <vector>
 
@@ -21,15 +22,23 @@ namespace clpv {
 class NearField {
  public:
   /// `basis`: of the gathered light. `scene` must outlive this object; it and `buffers` must be at
-  /// the same time.
+  /// the same time. Starts a thread that builds the tree of triangles.
   NearField(Session& session, const Basis& basis, const Scene& scene, const SceneBuffers& buffers,
             const NearOptions& options);
+
+  /// Waits for the tree and uploads it, once. Call before the scene changes; trace() calls it. Throws Error(run_time) if
+  /// Embree fails or device memory does not suffice.
+  void finish();
 
   /// Call after positions of the scene changed.
   void move();
 
-  /// Corrects the irradiance that `gatherer` gathered last for `camera`. `lights`, `scale`, `occluded`: as for
-  /// Shader::light() and Gatherer::gather().
+  /// Traces the rays of what `camera` sees, in the grids that `gatherer` gathered from last. Hits stay valid while camera,
+  /// triangles and grids are the same.
+  void trace(const Surface& camera, const Gatherer& gatherer);
+
+  /// Corrects the irradiance that `gatherer` gathered last for `camera`, by the hits of the last trace(). `lights`, `scale`,
+  /// `occluded`: as for Shader::light() and Gatherer::gather().
   void add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
            float scale, const Buffer* occluded, Buffer& irradiance);
 
@@ -44,11 +53,13 @@ class NearField {
   const Scene& scene_;
   const SceneBuffers& buffers_;
   NearOptions options_;
-  TriangleTree tree_;
+  std::future<TriangleTree> building_;
+  std::optional<TriangleTree> tree_;  ///< none until finish()
   Kernel points_kernel_, trace_, light_, emit_, near_, blur_, widen_, add_;
+  std::optional<Kernel> others_;   ///< with step > 1
   std::optional<Kernel> reflect_;  ///< with more than one bounce
   Buffer nodes_, leaves_, directions_, views_;
-  Buffer points_, distances_, counts_, hits_, radiances_, differences_, blurred_;
+  Buffer points_, distances_, counts_, hits_, radiances_, near_light_, blurred_;
   std::size_t plane_ = 0;  ///< numbers of a plane of the buffers
 };
 

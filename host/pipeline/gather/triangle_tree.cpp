@@ -86,23 +86,31 @@ void split(const RTCBuildPrimitive* part, unsigned axis, float position, RTCBoun
   *upper[axis] = *lower[axis] = position;
 }
 
-/// `moves`: builds fast. Otherwise several leaves may hold a triangle, each for a part of it, since boxes then overlap
-/// less.
-BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles, bool moves, Pool& pool) {
+/// Moving triangles are not cut in parts.
+RTCBuildQuality quality_for(std::size_t triangles, bool moves, const TreeLimits& limits) {
+  if (triangles <= limits.parts && !moves) return RTC_BUILD_QUALITY_HIGH;
+  return triangles <= limits.areas ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW;
+}
+
+BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles, bool moves,
+                 const TreeLimits& limits, Pool& pool) {
   const std::unique_ptr<std::remove_pointer_t<RTCDevice>, void (*)(RTCDevice)> device(
       rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
   if (!device) check_embree(nullptr, false);
   const std::unique_ptr<std::remove_pointer_t<RTCBVH>, void (*)(RTCBVH)> tree(rtcNewBVH(device.get()),
                                                                               rtcReleaseBVH);
   check_embree(device.get(), tree != nullptr);
+  const RTCBuildQuality quality = quality_for(triangles.size(), moves, limits);
+  const bool parts = quality == RTC_BUILD_QUALITY_HIGH;
   std::vector<RTCBuildPrimitive> primitives;
+  primitives.reserve(parts ? triangles.size() * 5 / 4 : triangles.size());
   for (const std::uint32_t triangle : triangles) {
     const Bounds b = bounds_of_triangle(scene, triangle);
     primitives.push_back({b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
   }
-  if (!moves) primitives.resize(triangles.size() * 5 / 4);  // room for parts
+  if (parts) primitives.resize(triangles.size() * 5 / 4);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.buildQuality = moves ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH;
+  arguments.buildQuality = quality;
   arguments.splitPrimitive = split;
   arguments.maxBranchingFactor = CLPV_TREE_WIDTH;
   arguments.maxDepth = CLPV_TREE_DEPTH - 2;  // without the root that joins two trees
@@ -190,7 +198,7 @@ struct Flattener {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Scene& scene) {
+TriangleTree::TriangleTree(const Scene& scene, const TreeLimits& limits) : limits_(limits) {
   std::vector<bool> moves(scene.triangles.size(), false);
   for (const MeshRange& part : scene.moving) {
     std::fill_n(moves.begin() + part.first_triangle, part.triangles, true);
@@ -214,7 +222,7 @@ void TriangleTree::move(const Scene& scene) {
 void TriangleTree::add(const Scene& scene, const std::vector<std::uint32_t>& triangles, int lane) {
   if (triangles.empty()) return;
   Pool pool;
-  BuiltNode* root = build(scene, triangles, lane == kMoving, pool);
+  BuiltNode* root = build(scene, triangles, lane == kMoving, limits_, pool);
   const int child = Flattener{scene, nodes_, leaves_}.append(*root, 2);
   Bounds box = bounds_of_triangle(scene, triangles.front());
   for (const std::uint32_t triangle : triangles) {

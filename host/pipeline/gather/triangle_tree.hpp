@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,11 +16,17 @@ namespace clpv {
 /// A row: eight numbers, float or 32-bit integer as kernels/shared/tree.h says.
 using TreeRow = std::array<float, CLPV_TREE_WIDTH>;
 
+/// Largest numbers of triangles for the slower builders, whose boxes overlap less: by surface area with triangles cut in
+/// parts, and by surface area. More triangles are sorted along a Morton curve.
+struct TreeLimits {
+  std::size_t parts = 500'000, areas = 1'000'000;
+};
+
 /// Moving triangles have a tree of their own below the root, so that motion rebuilds only that.
 class TriangleTree {
  public:
   /// Throws Error(run_time) if Embree fails.
-  explicit TriangleTree(const Scene& scene);
+  explicit TriangleTree(const Scene& scene, const TreeLimits& limits = {});
 
   /// Rebuilds the tree of the moving triangles (Scene::moving). The scene has the same triangles as before.
   void move(const Scene& scene);
@@ -32,6 +39,7 @@ class TriangleTree {
  private:
   void add(const Scene& scene, const std::vector<std::uint32_t>& triangles, int lane);
 
+  TreeLimits limits_;
   std::vector<std::uint32_t> moving_;  ///< triangles
   std::vector<TreeRow> nodes_, leaves_;
   std::size_t fixed_nodes_ = 0, fixed_leaves_ = 0;  ///< rows that motion does not change

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Points of the near field's pixels (near_layout.h).
+//
+// near_points
+//   First layer: of each block of CLPV_NEAR_STEP x CLPV_NEAR_STEP pixels the first. Empties all other points.
+// near_others
+//   Second layer: of each block the first pixel whose surface no near pixel of the four by four blocks around it has.
+//
+// In:   depths [m], normals   the camera's surface (surface.h); grids: ClpvGrid of each cascade
+// Out:  points                planes of shared/near.h, with their border
+// A work-item processes eight near pixels of a row.
+#include "gather/near_surface.h"
+#include "gather/radiance.h"
+#include "raster/surface_row.h"
+
+// Cell of the cascades at eight positions [m], blended like their light; 0 outside the mask `wanted`.
+CLPV_INLINE realW find_reach(__global const ClpvGrid* grids, const uint cascades, const Vec position, const intW wanted) {
+  realW reach = ZERO, remaining = wanted ? ONE : ZERO;
+  for (uint c = 0; c < cascades; ++c) {
+    const ClpvGrid grid = grids[c];
+    const realW share = cascade_share(grid, position);
+    reach += share * remaining * grid.cell;
+    remaining *= 1.0f - share;
+  }
+  return reach;
+}
+
+// Surfaces of eight pixels of the camera.
+typedef struct {
+  intW seen;
+  Vec position, normal;
+} CameraPixels;
+
+// Loads the pixels (x, y), of those in the mask `inside`.
+CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const float* depths, __global const float4* normals,
+                                    const intW x, const int y, const intW inside, CameraPixels* c) {
+  const uintW pixel = inside ? as_uintW(y * (int)view.width + x) : (uintW)(0u);
+  PixelRow p;
+  p.x = to_realW(x);
+  p.y = (realW)((float)y);
+  Rows rows;
+  gather_rows(normals, pixel, &rows);
+  const realW depth = (realW)CLPV_GATHER(depths, pixel);
+  c->seen = inside & (depth > ZERO);
+  c->position = vec_masked(c->seen, row_positions(view, p, depth));
+  c->normal = vec_masked(c->seen, vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z)));
+}
+
+CLPV_INLINE void store_points(const NearRow r, const Vec position, const Vec normal, const realW reach,
+                              __global float* points) {
+  store_near_vectors(position, points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  store_near_vectors(normal, points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+  store_lanes(reach, points + CLPV_NEAR_REACH * r.plane + r.at);
+}
+
+__kernel void near_points(const ClpvView view, __global const float* depths, __global const float4* normals,
+                          __global const ClpvGrid* grids, const uint cascades, __global float* points) {
+  const NearRow r = find_near_row(view, (int)get_global_id(0) - CLPV_NEAR_COLUMNS / W,
+                                  (int)get_global_id(1) - CLPV_NEAR_ROWS);
+  if ((uint)(r.x + CLPV_NEAR_COLUMNS) >= r.pitch || r.y >= (int)r.height + CLPV_NEAR_ROWS) return;
+  const intW x = r.x + lane_numbers();
+  const intW inside = (x >= 0) & (x < (int)r.width) & (r.y >= 0 && r.y < (int)near_pixels(view.height) ? -1 : 0);
+  CameraPixels c;
+  load_camera_pixels(view, depths, normals, x * CLPV_NEAR_STEP, r.y * CLPV_NEAR_STEP, inside, &c);
+  store_points(r, c.position, c.normal, find_reach(grids, cascades, c.position, c.seen), points);
+}
+
+#if CLPV_NEAR_LAYERS > 1
+// Mask of the surfaces that none of the near pixels in columns and rows `from` to `to` has.
+CLPV_INLINE intW on_no_surface(__global const float* points, const NearRow r, const int from, const int to,
+                               const CameraPixels c, intW wanted) {
+  for (int dy = from; dy <= to; ++dy) {
+    for (int dx = from; dx <= to; ++dx) {
+      NearSurfaces n;
+      load_near_surfaces(points, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
+      wanted &= ~same_surface(n, c.position, c.normal);
+    }
+  }
+  return wanted;
+}
+
+__kernel void near_others(const ClpvView view, __global const float* depths, __global const float4* normals,
+                          __global const ClpvGrid* grids, const uint cascades, __global float* points) {
+  const NearRow first = find_near_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(first) || first.y >= (int)near_pixels(view.height)) return;
+  const intW x = (first.x + lane_numbers()) * CLPV_NEAR_STEP;
+  intW found = (intW)(0);
+  Vec position = vec(ZERO, ZERO, ZERO), normal = position;
+  for (int dy = 0; dy < CLPV_NEAR_STEP && first.y * CLPV_NEAR_STEP + dy < (int)view.height; ++dy) {
+    for (int dx = 0; dx < CLPV_NEAR_STEP; ++dx) {
+      CameraPixels c;
+      load_camera_pixels(view, depths, normals, x + dx, first.y * CLPV_NEAR_STEP + dy, x + dx < (int)view.width, &c);
+      intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & ~found);
+      if (lane_bits(wanted) == 0u) continue;
+      wanted = on_no_surface(points, first, -1, 2, c, wanted);
+      if (lane_bits(wanted) == 0u) continue;
+      found |= wanted;
+      position = vec(wanted ? c.position.x : position.x, wanted ? c.position.y : position.y,
+                     wanted ? c.position.z : position.z);
+      normal = vec(wanted ? c.normal.x : normal.x, wanted ? c.normal.y : normal.y, wanted ? c.normal.z : normal.z);
+    }
+  }
+  const NearRow second = find_near_row(view, get_global_id(0), (int)(get_global_id(1) + near_second(view)));
+  store_points(second, position, normal, find_reach(grids, cascades, position, found), points);
+}
+#endif

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Surfaces of the near field's pixels, and which of them are one (near_filter.cl).
+#ifndef CLPV_NEAR_SURFACE_H
+#define CLPV_NEAR_SURFACE_H
+
+#include "gather/near_layout.h"
+
+#define CLPV_SAME_NORMAL 0.7f  // minimum cosine between normals
+#define CLPV_SAME_PLANE 0.1f   // maximum distance from the tangent plane [R]
+
+// Surfaces of eight pixels.
+typedef struct {
+  Vec position, normal;
+  realW reach;
+} NearSurfaces;
+
+CLPV_INLINE void load_near_surfaces(__global const float* points, const uint plane, const uint at, NearSurfaces* s) {
+  s->position = load_near_vectors(points + CLPV_NEAR_POSITION * plane, plane, at);
+  s->normal = load_near_vectors(points + CLPV_NEAR_NORMAL * plane, plane, at);
+  s->reach = load_lanes(points + CLPV_NEAR_REACH * plane + at);
+}
+
+// Mask of the surfaces that are one with those at `position`.
+CLPV_INLINE intW same_surface(const NearSurfaces s, const Vec position, const Vec normal) {
+  const realW off = fabs(vec_dot(vec_minus(s.position, position), normal));
+  return (vec_dot(normal, s.normal) > (realW)(CLPV_SAME_NORMAL)) & (off < CLPV_SAME_PLANE * s.reach);
+}
+
+#if CLPV_NEAR_LAYERS > 1
+// Spreads pixels over eight pixels of the camera from a multiple of eight on: on each the near pixel at its left, or with
+// `right` the next one.
+#if CLPV_NEAR_STEP == 2
+#define CLPV_SPREAD(v) (right ? (v).s11223344 : (v).s00112233)
+#elif CLPV_NEAR_STEP == 4
+#define CLPV_SPREAD(v) (right ? (v).s11112222 : (v).s00001111)
+#else
+#define CLPV_SPREAD(v) (right ? (v).s11111111 : (v).s00000000)
+#endif
+CLPV_INLINE Vec spread_vectors(const Vec v, const bool right) {
+  return vec(CLPV_SPREAD(v.x), CLPV_SPREAD(v.y), CLPV_SPREAD(v.z));
+}
+CLPV_INLINE void spread_surfaces(NearSurfaces* s, const bool right) {
+  s->position = spread_vectors(s->position, right);
+  s->normal = spread_vectors(s->normal, right);
+  s->reach = CLPV_SPREAD(s->reach);
+}
+#endif
+
+#endif
