@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # clpv on Debian 12 with PoCL, built and installed: docker build -t clpv . && docker run --rm clpv check
-# Untested with Docker; tests cover the scripts and CMake commands in it.
+# Not built by the tests, which cover its parts: scripts/setup, scripts/build, and `cmake --install` (package.consumer).
 FROM debian:12
 COPY . /clpv
 WORKDIR /clpv

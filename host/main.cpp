@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <csignal>
+
 #include "cli/commands.hpp"
 #include "support/helpers.hpp"
 #include "support/interrupt.hpp"
 
 int main(int argc, char** argv) {
   clpv::catch_interrupts();
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` then fails with a reason
   clpv::set_helper_program("/proc/self/exe");
   return clpv::run_program(argc, argv);
 }

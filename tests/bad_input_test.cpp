@@ -100,15 +100,27 @@ TEST_F(BadInputTest, UrisThatLeaveTheFolder) {
     return path;
   };
   EXPECT_EQ(load_scene(load_with("here.png")).textures.size(), 1u);
-  EXPECT_EQ(load_scene(load_with("../in/here.png")).textures.size(), 1u) << "it comes back";
   EXPECT_EQ(load_scene(load_with("inner.png")).textures.size(), 1u) << "a link that stays inside";
-  for (const std::string& uri :
-       {std::string("../secret.png"), std::string("%2e%2e/secret.png"), std::string("%2E%2E%2Fsecret.png"),
-        std::string("..\\secret.png"), std::string("./../secret.png"),
-        std::string("here.png/../../secret.png"), absolute, "//" + absolute, "file://" + absolute,
-        std::string("http://localhost/secret.png"), std::string("C:secret.png"), std::string("link.png"),
-        std::string("out/secret.png"), std::string("."), std::string(""), std::string("none.png"),
-        std::string("here.png%00"), std::string("%zz")}) {
+  for (const std::string& uri : {std::string("../secret.png"),
+                                 std::string("../in/here.png"),
+                                 (folder / "in/here.png").string(),
+                                 std::string("%2e%2e/secret.png"),
+                                 std::string("%2E%2E%2Fsecret.png"),
+                                 std::string("..\\secret.png"),
+                                 std::string("./../secret.png"),
+                                 std::string("here.png/../../secret.png"),
+                                 absolute,
+                                 "//" + absolute,
+                                 "file://" + absolute,
+                                 std::string("http://localhost/secret.png"),
+                                 std::string("C:secret.png"),
+                                 std::string("link.png"),
+                                 std::string("out/secret.png"),
+                                 std::string("."),
+                                 std::string(""),
+                                 std::string("none.png"),
+                                 std::string("here.png%00"),
+                                 std::string("%zz")}) {
     const std::string message = rejection(load_with(uri));
     EXPECT_THAT(message, AllOf(HasSubstr("/images/0/uri"), HasSubstr("allowed: a relative path"))) << uri;
   }

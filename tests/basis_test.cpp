@@ -165,9 +165,8 @@ std::string rejection(const std::string& name, double lambda) {
 
 TEST(Rejected, IllConditionedSetsNamingLambdaAndNumber) {
   const std::string message = rejection("srbf14", 0.01);
-  EXPECT_THAT(message, ::testing::HasSubstr("srbf14"));
-  EXPECT_THAT(message, ::testing::HasSubstr("lambda 0.01"));
-  EXPECT_THAT(message, ::testing::ContainsRegex("condition number of the Gram matrix: found [0-9.]+e\\+"));
+  EXPECT_THAT(message, ::testing::HasSubstr("lambda: found 0.01 with basis srbf14"));
+  EXPECT_THAT(message, ::testing::ContainsRegex("lambda: found .*condition number of [0-9.]+e\\+"));
   EXPECT_NO_THROW(make_basis("srbf4", 0.01));
 }
 

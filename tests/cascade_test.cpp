@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -47,6 +48,22 @@ TEST(Cascade, MovesByWholeCellsOnly) {
   EXPECT_EQ(at(0.1f), at(0.9f));
   EXPECT_EQ(at(1.1f), at(0.9f) + 1);
   EXPECT_EQ(at(-0.1f), at(0.1f) - 1);
+}
+
+TEST(Cascade, RejectsCellsBelowTheResolutionOfCoordinates) {
+  const std::string message = test::error_of(ExitCode::usage, [] {
+    cascade_grids({1e7f, 0, 0}, 2, 12.5, 32);
+  });
+  EXPECT_THAT(message, ::testing::HasSubstr("cascade-size: found 12.5"));
+  EXPECT_THAT(message, ::testing::HasSubstr("allowed here: 3200 or more"));  // floats are 1 m apart there
+  for (const int count : {1, 2, 3}) {
+    for (const double size : {3200.0, 3613.7}) {
+      const auto grids = cascade_grids({9.9e6f, 3.3f, -1.1e6f}, count, size, 32);
+      for (int c = 1; c < count; ++c) EXPECT_NO_THROW(offset_in_coarser(grids[c], grids[c - 1]));
+    }
+  }
+  EXPECT_NO_THROW(cascade_grids({0, 0, 0}, 8, 1e-6, 512));
+  EXPECT_NO_THROW(cascade_grids({1e7f, 1e7f, 1e7f}, 8, 1e7, 512));
 }
 
 /// A floor of that edge [m], and a camera in its middle.

@@ -3,9 +3,7 @@
 #include "support/output_file.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstring>
 #include <iterator>
 
@@ -67,23 +65,6 @@ TEST_F(OutputFile, FollowsASymbolicLinkToAFileOrToNone) {
     EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
     EXPECT_EQ(read_file(folder_ / "target"), text);
   }
-}
-
-TEST_F(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
-  const fs::path path = folder_ / "out.txt";
-  write_file(path, std::string_view("old"));
-  // A limit on file size stands in for the full disk.
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit small{1000, before.rlim_max};
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string message = error_of(ExitCode::run_time, [&] { write_file(path, std::string(5000, 'x')); });
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_NE(message.find(path.string()), std::string::npos);
-  EXPECT_EQ(read_file(path), "old");
-  EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {

@@ -19,10 +19,11 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kFrame = " render " CLPV_SOURCE_DIR
-                           "/tests/oclgrind/tiny.gltf --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 "
-                           "--shadow-size 8 --basis sh2 "
-                           "--transport sampled --gather all --blockers seen ";
+const std::string kAnyGrid = " render " CLPV_SOURCE_DIR
+                             "/tests/oclgrind/tiny.gltf --cascades 1 --cascade-size 5 --rsm-size 8 "
+                             "--shadow-size 8 --basis sh2 "
+                             "--transport sampled --gather all --blockers seen ";
+const std::string kFrame = kAnyGrid + "--grid 5 ";
 const std::string kTiny = kFrame + "--width 12 --height 9 ";
 
 class Starved : public ::testing::Test {
@@ -129,6 +130,43 @@ TEST_F(Starved, OfASmallDisk) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: No space left on device"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
+}
+
+/// A frame under `ulimit`, whose kernels are compiled already; then its folder's files on stderr.
+class Limited : public Starved {
+ protected:
+  Outcome limited(const std::string& limit, const std::string& frame) {
+    const std::string folder = folder_.path().string();
+    return run("ulimit -c 0; " + limit + " && timeout 600 env " + usual_kernels() +
+               "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() + " " CLPV_PROGRAM + frame +
+               "-o " + folder + "/a.exr; code=$?; ls -A " + folder + " >&2; exit $code");
+  }
+};
+
+// SIGXFSZ once ended the program without a word.
+TEST_F(Limited, FileSizes) {
+  folder_.write("a.exr", "old");
+  const Outcome outcome = limited("ulimit -f 16", kFrame + "--width 120 --height 90 ");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: File too large"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
+  EXPECT_EQ(read_file(folder_ / "a.exr"), "old");
+}
+
+// PoCL once aborted, or clpv advised to install it.
+TEST_F(Limited, AddressSpaceAndOpenFiles) {
+  const auto expect_reported = [this](const std::string& limit, const std::string& frame) {
+    SCOPED_TRACE(limit);
+    const Outcome outcome = limited(limit, frame);
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("(" + limit.substr(0, 9) + ")"));
+    EXPECT_THAT(outcome.err, Not(HasSubstr("apt install")));
+    EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+  };
+  for (const char* limit :
+       {"ulimit -v 64000", "ulimit -v 300000", "ulimit -v 1000000", "ulimit -n 4", "ulimit -n 20"})
+    expect_reported(limit, kTiny);
+  expect_reported("ulimit -v 2500000", kAnyGrid + "--width 12 --height 9 --grid 300 ");
 }
 
 /// The driver's cache on a full or read-only disk, where one may be mounted.

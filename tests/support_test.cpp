@@ -6,13 +6,22 @@
 #include <set>
 #include <string_view>
 
+#include "clpv/version.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/process.hpp"
 #include "support/text.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv::support_test {
 namespace {
+
+TEST(Version, HasAnEntryInTheCitationAndTheChanges) {
+  const std::string source = CLPV_SOURCE_DIR;
+  EXPECT_THAT(test::read_file(source + "/CITATION.cff"),
+              ::testing::HasSubstr("\nversion: " + version() + "\n"));
+  EXPECT_THAT(test::read_file(source + "/CHANGELOG.md"), ::testing::HasSubstr("\n## " + version() + " ("));
+}
 
 TEST(Printable, TextStaysAsItIs) {
   for (const std::string text :

@@ -23,11 +23,10 @@ constexpr int kBinSides[] = {2, 4};  // bins along each edge of a cube face
 void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
   condition_ = condition_number(gram);
   if (!(condition_ <= kMaxCondition)) {
-    throw Error(
-        ExitCode::usage,
-        "{} with lambda {}: condition number of the Gram matrix: found {:.3g}, allowed: at most {:.0e}; "
-        "use a larger lambda",
-        name_, lambda_text(), condition_, kMaxCondition);
+    throw Error(ExitCode::usage,
+                "lambda: found {} with basis {}, whose Gram matrix then has a condition number of {:.3g}; "
+                "allowed: a larger one, with which it is at most {:.0e}",
+                lambda_text(), name_, condition_, kMaxCondition);
   }
   gram_inverse_ = inverse(gram);
   gram_ = std::move(gram);

@@ -101,8 +101,9 @@ class Refinement {
       return;
     }
     if (left == 0)
-      throw Error(ExitCode::run_time, "{} with lambda {} is too peaked to integrate", basis_.name(),
-                  basis_.lambda_text());
+      throw Error(ExitCode::usage,
+                  "lambda: found {} with basis {}, too peaked to integrate; allowed: a smaller one",
+                  basis_.lambda_text(), basis_.name());
     for (std::size_t i = 0; i < children.size(); ++i) refine(children[i], finer[i], left - 1);
   }
 

@@ -34,7 +34,7 @@ std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon);
 
 /// Returns nodes over the polygons that integrate products of two basis functions, and of powers of |w_x|,
 /// |w_y|, |w_z| and |w|_1, with a relative error of 1e-14. Splits at coordinate planes and at the basis's
-/// creases. Throws Error(run_time) if the basis is too peaked (lambda very near 1).
+/// creases. Throws Error(usage) if the basis is too peaked (lambda very near 1).
 std::vector<QuadratureNode> quadrature(const Basis& basis, const std::vector<SphericalPolygon>& polygons);
 
 }  // namespace clpv

@@ -150,7 +150,7 @@ void help(Session& session, const Options& options) {
   const Claims claims(options.claims);
   std::vector<Stage> stages = stages_of(options);
   std::ranges::reverse(stages);
-  std::ranges::stable_partition(stages, [](Stage stage) { return stage == Stage::sweep; });
+  std::stable_partition(stages.begin(), stages.end(), [](Stage stage) { return stage == Stage::sweep; });
   const auto take_from = [&](Stage stage) {
     check_stage(
         session, options, stage, [&](const Job& job) { return claims.take(job.name()); },

@@ -16,6 +16,7 @@
 #include "device/cl_error.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
+#include "support/limits.hpp"
 #include "support/log.hpp"
 #include "support/progress.hpp"
 
@@ -153,9 +154,11 @@ std::string rank_prefix(const Shared& shared) {
   return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
 }
 
-/// Logs the error and aborts the other ranks.
-int report_failure(const Shared& shared, ExitCode code, const char* message) {
-  std::cerr << "clpv: " << rank_prefix(shared) << message << std::endl;
+/// Logs the error, with limits that may explain it, and aborts the other ranks.
+int report_failure(const Shared& shared, ExitCode code, const std::string& message) {
+  const bool limited =
+      (code == ExitCode::run_time || code == ExitCode::device) && message.find("ulimit") == std::string::npos;
+  std::cerr << "clpv: " << rank_prefix(shared) << message << (limited ? limits_note() : "") << std::endl;
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }

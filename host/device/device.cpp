@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "device/cl_error.hpp"
+#include "support/limits.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
@@ -59,6 +60,11 @@ void describe(Device& device) {
   device.compute_units = handle.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   device.max_alloc_bytes = handle.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   device.memory_bytes = handle.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  if (device.type == "cpu") {
+    // PoCL allocates a buffer when a kernel first uses it, and aborts if it cannot.
+    device.memory_bytes = std::min(device.memory_bytes, address_space_left());
+    device.max_alloc_bytes = std::min(device.max_alloc_bytes, address_space_left());
+  }
   device.images = handle.getInfo<CL_DEVICE_IMAGE_SUPPORT>() == CL_TRUE;
   const std::string extensions = handle.getInfo<CL_DEVICE_EXTENSIONS>();
   const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
@@ -143,8 +149,9 @@ std::string_view choice_or_environment(std::string_view choice) {
   return choice.empty() && environment != nullptr ? environment : choice;
 }
 
-/// Lists all devices. Throws Error(device) if platforms exist but none has a device.
+/// Lists all devices. Throws Error(device) if platforms exist but none has a device, and as require_limits().
 std::vector<Device> found_devices() {
+  require_limits();
   DeviceList list = list_devices();
   if (list.devices.empty() && !list.platforms_without_devices.empty()) {
     throw Error(

@@ -16,7 +16,11 @@ namespace clpv {
 namespace {
 
 // Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
-constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192, kMaxPixels = 16384, kMaxMetres = 1e6;
+constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192, kMaxPixels = 16384;
+// Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a float's limits; the largest
+// holds every scene (bounds::kCoordinate).
+constexpr double kMinMetres = 1e-6, kMaxMetres = 1e7;
+constexpr int kMinRsm = 2, kMinShadow = 4;  // texels: fewer have no interior, and no filter
 constexpr int kMaxCascades = 8;
 constexpr int kMaxStride = 16;
 constexpr int kMaxEntries = 65536;  // minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
@@ -110,12 +114,12 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("cascades", o.cascades, "number of cascades, each twice as large as the previous one",
         Range{1, kMaxCascades});
   visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: from the scene, else 12.5",
-        Range{0, kMaxMetres, true});
+        Range{kMinMetres, kMaxMetres});
   visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map (RSM)",
-        Range{1, kMaxTexels});
+        Range{kMinRsm, kMaxTexels});
   visit("rsm-format", o.rsm_format, "RSM format; paper: 32-bit depth, 8-bit normal and flux", Named{});
   visit("shadow-size", o.shadow_size, "texels along each side of a shadow map for direct light",
-        Range{1, kMaxTexels});
+        Range{kMinShadow, kMaxTexels});
   visit("blockers", o.blockers,
         "source of indirect shadows: all triangles of the scene, surfels of RSM and G-buffer, or none",
         Named{});

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <ranges>
 
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
@@ -136,10 +135,15 @@ std::uint32_t GltfAccessor::sparse_index(std::size_t i) const {
 const std::uint8_t* GltfAccessor::address(std::size_t element, int component) const {
   const std::size_t within = component_bytes_ * static_cast<unsigned>(component);
   if (sparse_count_ > 0) {
-    const auto range = std::views::iota(std::size_t{0}, sparse_count_);
-    const auto i =
-        std::ranges::lower_bound(range, element, {}, [&](std::size_t k) { return sparse_index(k); });
-    if (i != range.end() && sparse_index(*i) == element) return &sparse_values_[*i * element_bytes_ + within];
+    std::size_t i = 0;  // first sparse index that is not below `element`, by bisection
+    for (std::size_t end = sparse_count_; i < end;) {
+      const std::size_t middle = i + (end - i) / 2;
+      if (sparse_index(middle) < element)
+        i = middle + 1;
+      else
+        end = middle;
+    }
+    if (i < sparse_count_ && sparse_index(i) == element) return &sparse_values_[i * element_bytes_ + within];
   }
   return values_.empty() ? nullptr : &values_[element * stride_ + within];
 }

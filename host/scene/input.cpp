@@ -51,8 +51,11 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::
   };
   const std::optional<std::string> decoded = percent_decoded(uri);
   if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) reject_uri("malformed");
+  const fs::path relative = *decoded;
+  if (relative.is_absolute()) reject_uri("an absolute path");
+  if (std::ranges::find(relative, fs::path("..")) != relative.end()) reject_uri("which contains '..'");
   std::error_code failure;
-  const fs::path real = fs::canonical(folder / *decoded, failure);
+  const fs::path real = fs::canonical(folder / relative, failure);
   if (failure) reject_uri("no such file");
   if (!lies_in(real, fs::canonical(folder))) reject_uri("which leaves the model's folder");
   if (!fs::is_regular_file(real)) reject_uri(fs::is_directory(real) ? "a folder" : "no regular file");

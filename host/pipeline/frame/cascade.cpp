@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "support/error.hpp"
 
@@ -16,6 +17,29 @@ constexpr double kFarTooLarge =
     4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
 
 constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
+
+/// Distance of floats at the grid's corner that is farthest from the coordinates' origin [m].
+double resolution(const ClpvGrid& grid) {
+  double farthest = 0;
+  for (const float origin : grid.origin)
+    farthest = std::max({farthest, -double{origin}, origin + static_cast<double>(grid.n) * grid.cell});
+  const auto corner = static_cast<float>(farthest);
+  return std::nextafter(corner, std::numeric_limits<float>::infinity()) - corner;
+}
+
+/// Rejects cells so small that the rounding of a coarser grid's origin shifts them.
+void require_resolved(const std::vector<ClpvGrid>& grids, double size) {
+  for (std::size_t c = 0; c < grids.size(); ++c) {
+    const double cell = grids[c].cell,
+                 least = resolution(grids[std::min(c + 1, grids.size() - 1)]) / kAligned;
+    if (cell >= least) continue;
+    throw Error(
+        ExitCode::usage,
+        "cascade-size: found {:.4g}, with which cascade {} has cells of {:.4g} m, too small for float "
+        "coordinates at this camera; allowed here: {:.4g} or more",
+        size, c, cell, size * least / cell);
+  }
+}
 
 }  // namespace
 
@@ -33,6 +57,7 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
     }
     grids.push_back(grid);
   }
+  require_resolved(grids, size);
   return grids;
 }
 

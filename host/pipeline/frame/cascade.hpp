@@ -15,12 +15,12 @@ static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
 
 /// Returns `count` grids of `cells`^3 cells, finest first, with edges `size`, 2 size, 4 size ... [m]. Each is centred
 /// at `eye` [m] and snapped to whole cells. Camera motion inside a cell moves no grid, so light does not flicker
-/// (Kaplanyan & Dachsbacher 2010, section 5).
+/// (Kaplanyan & Dachsbacher 2010, section 5). Throws Error(usage) that names `cascade-size` if float coordinates at `eye` are
+/// too coarse for the cells.
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
 
 /// Returns the offset from the coarser grid's minimum corner to the finer one's, in finer cells. Throws
 /// Error(run_time) if the finer grid is not half as wide, or not inside the coarser one.
-/// as wide, or not inside.
 std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer);
 
 /// Returns the edge of the finest cascade for `scene` [m]. It is `size` if the coarsest of `count` cascades then

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// Random values and combinations of every option of `clpv render`, on scenes at the limits of sizes and lights. Each run writes
+// finite pixels, or ends with code 2 to 5 and a message that names an option or the scene file, within a minute.
+#include "tests/support/random_options.hpp"
+
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "image/image_io.hpp"
+#include "options/show.hpp"
+#include "pipeline/frame/scene_options.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_here.hpp"
+
+namespace clpv::random_options_test {
+namespace {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+constexpr std::chrono::seconds kPatience{60};
+constexpr int kKernels = 3;   // combinations of options that compile
+constexpr int kNumbers = 12;  // combinations of other options with each
+const Caps kCaps{{"width", 24},       {"height", 24},     {"grid", 12},    {"rsm-size", 48},
+                 {"shadow-size", 48}, {"iterations", 12}, {"cascades", 4}, {"table-size", 1024}};
+
+/// A number from the environment, for longer runs by hand.
+int number_from(const char* variable, int usual) {
+  const char* set = std::getenv(variable);
+  return set == nullptr ? usual : std::atoi(set);
+}
+
+/// Options whose values change kernels' text, which then compile anew.
+bool changes_kernels(const OptionDescription& option) {
+  static const std::vector<std::string> kNumbers{"lambda", "grid", "table-size", "gather-offset", "cascades"};
+  return option.allowed.find('|') != std::string::npos || std::ranges::count(kNumbers, option.name) > 0;
+}
+
+std::string words_of_options(const OptionValues& given) {
+  std::string words;
+  for (const auto& [name, value] : given) words += fmt::format(" --{} {}", name, value);
+  return words;
+}
+
+class RandomOptions : public ::testing::Test {
+ protected:
+  RandomOptions() {
+    for (const double size : {1e-6, 1e-3, 1.0, 1e3, 1e7}) write_scenes(size);
+  }
+
+  /// A floor, a wall, and degenerate triangles: no area, no length, and thin ones; a mesh of none.
+  void write_model(const std::string& name, double size) {
+    GltfBuilder model;
+    std::vector<float> positions;
+    for (const auto& [x, y, z] : std::initializer_list<std::array<double, 3>>{
+             {-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 1, -1}, {1, 1, -1}, {0, 1e-7, 0}})
+      for (const double value : {x, y, z}) positions.push_back(static_cast<float>(value * size));
+    const std::vector<std::uint16_t> indices{0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4, 6, 6, 6, 0, 0, 2, 0, 2, 6};
+    const int position = model.accessor("VEC3", positions), index = model.accessor("SCALAR", indices);
+    model.add("meshes", {{"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", index}}}}});
+    model.add("nodes", {{"mesh", 0}});
+    model.add("nodes", {{"name", "empty"}});
+    model.finish(name + ".bin");
+    folder_.write(name + ".bin", model.binary);
+    folder_.write(name + ".gltf", model.document.dump());
+  }
+
+  void write_scenes(double size) {
+    const std::string name = fmt::format("size{}", size);
+    write_model(name, size);
+    const auto point = [&](double x, double y, double z) { return json{x * size, y * size, z * size}; };
+    for (const std::size_t lights : {0, 1, 64}) {
+      json scene{{"model", name + ".gltf"}};
+      const json target = point(0.1, 0.4, -1);
+      scene["cameras"] = {
+          {{"name", "outside"}, {"eye", point(0.3, 0.6, 0.95)}, {"target", target}, {"near", 1e-6}},
+          {{"name", "in-floor"},
+           {"eye", point(0, 0, 0)},
+           {"target", target},
+           {"vertical_fov_degrees", 179.9}},
+          {{"name", "upwards"}, {"eye", point(0.2, 0.3, 0.4)}, {"target", point(0.2, 1, -0.9)}}};
+      if (lights == 0) scene["sky"] = {{"radiance", {1e10, 1e-30, 1}}};
+      for (std::size_t i = 0; i < lights; ++i) {
+        const double brightness = choices_.scale_between(1e-30, 1e9);
+        const char* const kinds[] = {"directional", "point", "spot"};
+        const std::string kind = choices_.of(kinds);
+        json light{{"kind", kind}};
+        light[kind == "directional" ? "illuminance_lux" : "intensity_candela"] = brightness;
+        if (kind != "point") light["direction"] = {choices_.between(-1, 1), -1, choices_.between(-1, 1)};
+        if (kind != "directional") light["position"] = point(choices_.between(-1, 1), 0.9, 0.1);
+        scene["lights"].push_back(light);
+      }
+      const std::string file = fmt::format("{}-{}.json", name, lights);
+      folder_.write(file, scene.dump());
+      scenes_.push_back(file);
+    }
+  }
+
+  OptionValues drawn(bool kernels, std::size_t one_in) {
+    OptionValues given;
+    for (const OptionDescription& option : list_options(RenderOptions{})) {
+      if (changes_kernels(option) != kernels || !choices_.one_in(one_in)) continue;
+      if (const std::string value = drawn_value(option, choices_, kCaps); !value.empty())
+        given[option.name] = value;
+    }
+    return given;
+  }
+
+  /// Camera, sun, medium, view and extreme image sizes.
+  std::string drawn_surroundings(OptionValues& given) {
+    std::string words;
+    const double size = choices_.scale_between(1e-6, 1e7);
+    if (choices_.one_in(4)) {
+      words += fmt::format(" --eye {},{},{} --target 0,0,0", size, choices_.between(-1, 1) * size, size / 3);
+      if (choices_.one_in(2)) words += fmt::format(" --fov {}", choices_.between(0.01, 179.9));
+      if (choices_.one_in(2)) words += fmt::format(" --near-plane {}", choices_.scale_between(1e-6, 1e7));
+    } else {
+      const char* const cameras[] = {"outside", "in-floor", "upwards"};
+      words += fmt::format(" --camera {}", choices_.of(cameras));
+    }
+    if (choices_.one_in(4)) words += fmt::format(" --sun 0.2,-1,0.1,{}", choices_.scale_between(1e-30, 1e15));
+    if (choices_.one_in(6)) {
+      const char* const media[] = {"0", "1e6", "1e6,1e6,0.9", "1e-6,0,-0.9", "0,1e6", "0.3,0.1,0.5"};
+      words += fmt::format(" --medium {}", choices_.of(media));
+    }
+    words += fmt::format(" --view {}", choices_.of(names_of<Show>()));
+    if (choices_.one_in(12)) {
+      const std::pair<const char*, const char*> sizes[] = {{"1", "1"}, {"16384", "1"}, {"1", "16384"}};
+      std::tie(given["width"], given["height"]) = choices_.of(sizes);
+    }
+    return words;
+  }
+
+  /// Renders a random scene; returns true if there is an image.
+  bool expect_image_or_reason(OptionValues given) {
+    const std::string words = drawn_surroundings(given) + words_of_options(given);
+    SCOPED_TRACE(words);
+    const auto start = std::chrono::steady_clock::now();
+    const std::string scene = choices_.of(scenes_);
+    const Outcome outcome = run_here(fmt::format("-q render {}{} -o out.exr", scene, words), folder_.path());
+    EXPECT_LT(std::chrono::steady_clock::now() - start, kPatience);
+    ++codes_[outcome.exit_code];
+    if (outcome.exit_code != 0) {
+      EXPECT_THAT(outcome.exit_code, ::testing::AllOf(::testing::Ge(2), ::testing::Le(5))) << outcome.err;
+      EXPECT_TRUE(names_an_option(outcome.err) || outcome.err.find(scene) != std::string::npos)
+          << outcome.err;
+      return false;
+    }
+    const Image image = read_image(folder_ / "out.exr");
+    EXPECT_EQ(std::ranges::count_if(image.pixels, [](float value) { return !std::isfinite(value); }), 0)
+        << scene << " of " << image.pixels.size();
+    std::filesystem::remove(folder_ / "out.exr");
+    return true;
+  }
+
+  static bool names_an_option(const std::string& message) {
+    std::vector<std::string> names{"view", "sun", "medium", "eye", "target", "fov", "near-plane", "camera"};
+    for (const OptionDescription& option : list_options(RenderOptions{})) names.push_back(option.name);
+    return std::ranges::any_of(names, [&](const std::string& name) {
+      return message.find("--" + name) != std::string::npos ||
+             message.find(name + ": found") != std::string::npos;
+    });
+  }
+
+  std::mt19937_64 random_{static_cast<std::uint64_t>(number_from("CLPV_RANDOM_SEED", 1))};
+  Choices choices_{[this](std::size_t end) { return random_() % end; }};
+  TemporaryFolder folder_;
+  std::vector<std::string> scenes_;
+  std::map<int, int> codes_;
+};
+
+// CLPV_RANDOM_KERNELS, CLPV_RANDOM_NUMBERS and CLPV_RANDOM_SEED make other and longer runs.
+TEST_F(RandomOptions, GiveAnImageOrAReason) {
+  const int kernels = number_from("CLPV_RANDOM_KERNELS", kKernels),
+            numbers = number_from("CLPV_RANDOM_NUMBERS", kNumbers);
+  for (int k = 0; k < kernels;) {
+    const OptionValues compiled = drawn(true, 4);
+    if (!expect_image_or_reason(compiled)) continue;  // they contradict each other; the next ones compile
+    ++k;
+    for (int n = 1; n < numbers; ++n) {
+      OptionValues given = drawn(false, 2);
+      given.insert(compiled.begin(), compiled.end());
+      expect_image_or_reason(given);
+    }
+  }
+  EXPECT_GE(codes_[0], kernels);
+  for (const auto& [code, count] : codes_) RecordProperty(fmt::format("code_{}", code), count);
+  fmt::print("exit codes: {}\n", codes_);
+}
+
+}  // namespace
+}  // namespace clpv::random_options_test
