@@ -132,13 +132,13 @@ TEST_F(Starved, OfASmallDisk) {
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
 }
 
-/// A frame under `ulimit`, whose kernels are compiled already; then its folder's files on stderr.
+/// A command under `ulimit`; then its folder's files on stderr.
 class Limited : public Starved {
  protected:
-  Outcome limited(const std::string& limit, const std::string& frame) {
+  Outcome limited(const std::string& limit, const std::string& command) {
     const std::string folder = folder_.path().string();
     return run("ulimit -c 0; " + limit + " && timeout 600 env " + usual_kernels() +
-               "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() + " " CLPV_PROGRAM + frame +
+               "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() + " " CLPV_PROGRAM + command +
                "-o " + folder + "/a.exr; code=$?; ls -A " + folder + " >&2; exit $code");
   }
 };
@@ -146,7 +146,9 @@ class Limited : public Starved {
 // SIGXFSZ once ended the program without a word.
 TEST_F(Limited, FileSizes) {
   folder_.write("a.exr", "old");
-  const Outcome outcome = limited("ulimit -f 16", kFrame + "--width 120 --height 90 ");
+  const Outcome outcome =
+      limited("ulimit -f 16",
+              " pathtrace " CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf --width 120 --height 90 --spp 1 ");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: File too large"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
@@ -154,7 +156,7 @@ TEST_F(Limited, FileSizes) {
 }
 
 // PoCL once aborted, or clpv advised to install it.
-TEST_F(Limited, AddressSpaceAndOpenFiles) {
+TEST_F(Limited, AddressSpaceAndFilesOfADriver) {
   const auto expect_reported = [this](const std::string& limit, const std::string& frame) {
     SCOPED_TRACE(limit);
     const Outcome outcome = limited(limit, frame);
@@ -163,8 +165,8 @@ TEST_F(Limited, AddressSpaceAndOpenFiles) {
     EXPECT_THAT(outcome.err, Not(HasSubstr("apt install")));
     EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
   };
-  for (const char* limit :
-       {"ulimit -v 64000", "ulimit -v 300000", "ulimit -v 1000000", "ulimit -n 4", "ulimit -n 20"})
+  for (const char* limit : {"ulimit -v 64000", "ulimit -v 300000", "ulimit -v 1000000", "ulimit -n 4",
+                            "ulimit -n 20", "ulimit -f 16"})
     expect_reported(limit, kTiny);
   expect_reported("ulimit -v 2500000", kAnyGrid + "--width 12 --height 9 --grid 300 ");
 }

@@ -17,7 +17,8 @@ constexpr std::uint64_t kMiB = 1 << 20;
 // of heap each. Measured on two cores: 690 MiB from opening the device to the end of a small frame.
 constexpr std::uint64_t kCompilerBytes = 512 * kMiB, kCoreBytes = 128 * kMiB;
 constexpr std::uint64_t kLeastLeft = 64 * kMiB;
-constexpr std::uint64_t kLeastFiles = 64;  // libraries, a linker's inputs, caches
+constexpr std::uint64_t kLeastFiles = 64;        // libraries, a linker's inputs, caches
+constexpr std::uint64_t kLeastFileBytes = kMiB;  // compiled kernels have 0.1 MiB
 
 std::uint64_t limit_of(int resource) {
   rlimit limit{};
@@ -54,6 +55,10 @@ void require_limits() {
   if (const std::uint64_t files = limit_of(RLIMIT_NOFILE); files < kLeastFiles) {
     throw Error(ExitCode::run_time, "open files (ulimit -n): found {}, allowed for OpenCL: {} or more", files,
                 kLeastFiles);
+  }
+  if (const std::uint64_t bytes = limit_of(RLIMIT_FSIZE); bytes < kLeastFileBytes) {
+    throw Error(ExitCode::run_time, "file size (ulimit -f): found {} KiB, allowed for OpenCL: {} or more",
+                bytes / 1024, kLeastFileBytes / 1024);
   }
 }
 

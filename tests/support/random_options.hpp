@@ -2,6 +2,8 @@
 // Random values of render options, drawn from the ranges in the option table, for tests and fuzzing.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
