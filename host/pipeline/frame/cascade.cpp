@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/error.hpp"
-
 namespace clpv {
 namespace {
 
@@ -14,8 +12,6 @@ namespace {
 constexpr double kRoom = 32.0 / 24;
 constexpr double kFarTooLarge =
     4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
-
-constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
 
 }  // namespace
 
@@ -59,27 +55,6 @@ bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double s
 bool reaches(const ClpvGrid& grid, const glm::dvec3& position) {
   const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
   return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
-}
-
-std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
-  if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
-    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,
-                coarser.cell);
-  }
-  const int most = static_cast<int>(finer.n) + 1;
-  std::array<int, 3> offset{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double cells = (double{finer.origin[axis]} - coarser.origin[axis]) / finer.cell;
-    const double whole = std::round(cells);
-    if (std::abs(cells - whole) > kAligned || whole < -1 || whole > most) {
-      throw Error(ExitCode::run_time,
-                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
-                  "numbers -1..{} allowed",
-                  axis, cells, most);
-    }
-    offset[axis] = whole;
-  }
-  return offset;
 }
 
 }  // namespace clpv

@@ -2,7 +2,6 @@
 // Positions of the cascade grids: nested around the camera and snapped to whole cells.
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -17,11 +16,6 @@ static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
 /// at `eye` [m] and snapped to whole cells. Camera motion inside a cell moves no grid, so light does not flicker
 /// (Kaplanyan & Dachsbacher 2010, section 5).
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
-
-/// Returns the offset from the coarser grid's minimum corner to the finer one's, in finer cells. Throws
-/// Error(run_time) if the finer grid is not half as wide, or not inside the coarser one.
-/// as wide, or not inside.
-std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer);
 
 /// Returns the edge of the finest cascade for `scene` [m]. It is `size` if the coarsest of `count` cascades then
 /// encloses the scene's bounding box from each camera (at 0 s), and is not far too large. Otherwise it is the smallest

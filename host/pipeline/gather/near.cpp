@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/near.hpp"
 
-#include <algorithm>
-
 #include "basis/near_directions.hpp"
 #include "kernels/shared/near.h"
 
@@ -25,7 +23,7 @@ ProgramSource near_source(const char* file, const SceneBuffers& buffers, const N
       .flag("CLPV_TEXTURED", buffers.textured)
       .flag("CLPV_COLOURED", buffers.coloured)
       .flag("CLPV_EMISSIVE", buffers.emissive)
-      .flag("CLPV_MEDIUM", options.medium);
+      .flag("CLPV_MEDIUM", buffers.medium);
   return source;
 }
 
@@ -116,7 +114,7 @@ Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
 }
 
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
-                           const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
+                           const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
                          tiles_down(near_pixels(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
@@ -126,25 +124,18 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
     set_hits(emit_, view, fresh).launch(rays, group);
     fresh = false;
   }
-  for (const ShadowedLight& shadowed : lights) {
-    const cl_uint count = shadowed.views.size();
-    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView), "views of a light");
-    session_.write(views_, shadowed.views);
-    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
-      set_hits(light_, view, fresh)
-          .add(shadowed.light, views_, count, which, count > 0 ? shadowed.depths[which] : Buffer())
-          .launch(rays, group);
-      fresh = false;
-    }
-  }
+  for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
+    add_shadow_map(set_hits(light_, view, fresh), shadowed, which).launch(rays, group);
+    fresh = false;
+  });
   if (!reflect_) return;
   set_hits(*reflect_, view, fresh);
-  gatherer.add_radiance(*reflect_, scale, occluded);
+  gatherer.add_radiance(*reflect_);
   reflect_->launch(rays, group);
 }
 
 void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                    float scale, const Buffer* occluded, Buffer& irradiance) {
+                    Buffer& irradiance) {
   const ClpvView& view = camera.view;
   reserve(view);
   const unsigned width = near_pixels(view.width, options_.step),
@@ -158,9 +149,9 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
       .launch(cl::NDRange(tiles_along(width), tiles_down(height)), cl::NDRange(1, 1));
-  light_hits(camera, gatherer, lights, scale, occluded);
+  light_hits(camera, gatherer, lights);
   near_.set(view, points_, directions_, distances_, radiances_, differences_);
-  gatherer.add_radiance(near_, scale, occluded);
+  gatherer.add_radiance(near_);
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, differences_, blurred_).launch(rows, kTileRow);
   widen_.set(view, points_, blurred_, differences_).launch(rows, kTileRow);
