@@ -24,7 +24,7 @@ class Bouncer {
   /// `series`: the coarsest cascade evaluates the series of all bounces; finer ones interpolate incident flux.
   Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series);
 
-  /// Sets the reflectors of a cascade (ReflectorVoxelizer::reflectors), which must outlive this object. For the
+  /// Sets the reflectors of a cascade (reflector_masks), which must outlive this object. For the
   /// coarsest cascade it also restarts the series: S = R.
   void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
