@@ -95,7 +95,7 @@ Job gather_job(Bench& bench, const Variant& variant) {
   p->irradiance = session.buffer(bytes, "bench: irradiance");
   Job job;
   job.reset = [p, &session, bytes] { session.fill_zero(p->irradiance, bytes); };
-  job.run = [p, &views] { p->gatherer.gather(views.camera, p->grids, p->accumulated, p->irradiance); };
+  job.run = [p, &views] { p->gatherer.gather(views.camera, {p->grids, p->accumulated}, p->irradiance); };
   job.verify = [p, &bench, &views, variant, pixels] {
     const RenderOptions& o = variant.options;
     const std::string key = fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),

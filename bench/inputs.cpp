@@ -88,7 +88,8 @@ const std::vector<float>& Inputs::areas(int cascade) {
   const auto [entry, made] = areas_.try_emplace(cascade);
   if (made) {
     Volume geometry(session_, {options_.grid + 1, 3, 1}, "bench: geometry volume");
-    BlockerVoxelizer(session_, scene_, options_.grid, 1, {}).voxelize(0, views(cascade).grid, geometry);
+    VoxelField(session_, scene_, blocker_masks(scene_, options_.grid, 1, {}))
+        .update(0, views(cascade).grid, geometry);
     entry->second = geometry.read(session_);
   }
   return entry->second;

@@ -56,7 +56,7 @@ struct CascadeSweep {
 
   void run() {
     if (geometry) sweeper.set_blockers(0, *geometry);
-    sweeper.sweep(0, grids, injected, accumulated);
+    sweeper.sweep({0, grids, injected}, accumulated);
   }
 };
 

@@ -19,7 +19,7 @@ if(CLPV_BUILD_PROGRAM)
   find_package(CLI11 REQUIRED)
 endif()
 find_package(Threads REQUIRED)
-# Embree 3 (Debian 12) or 4 (Debian 13); host/pathtracer/embree.hpp handles both.
+# Embree 3 (Debian 12) or 4 (Debian 13); CLPV_EMBREE_MAJOR tells sources which.
 set(CLPV_EMBREE "" CACHE STRING "Version of Embree, 3 or 4; empty: the installed one, preferably 3")
 if(NOT CLPV_EMBREE STREQUAL "4")
   find_package(embree 3 QUIET)

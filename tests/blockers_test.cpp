@@ -29,7 +29,7 @@ struct Shares {
 Shares blocked(const Scene& scene) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  BlockerVoxelizer(test_session(), buffers, kGrid, 1, {}).voxelize(0, kCells, geometry);
+  VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {})).update(0, kCells, geometry);
   return {geometry.read(test_session())};
 }
 

@@ -87,7 +87,7 @@ SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3
 }
 
 /// Irradiance E [W/m^2] of each pixel, by the CPU reference, from volumes of grid_of(0),
-/// grid_of(1), ... `occluded`: bytes as CellVisibility stores them.
+/// grid_of(1), ... `occluded`: bytes as VoxelField stores them.
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, GatherOptions options,
                                const std::vector<reference::Volume>& light, const SurfaceImage& image,
                                const std::vector<std::uint8_t>& occluded = {}) {
@@ -275,7 +275,7 @@ TEST(Gather, HiddenCellsDoNotLightASurface) {
 TEST(Gather, AllCellsCountWhereNoneIsVisible) {
   const auto basis = make_basis("sh2");
   const SurfaceImage image = walk({-1, 0.1, 0.3}, {1, -0.2, 0.1}, kTilted);
-  const std::vector<std::uint8_t> nothing(CellVisibility::bytes(kGrid), 0xff);
+  const std::vector<std::uint8_t> nothing(visibility_bytes(kGrid), 0xff);
   const std::vector<glm::dvec3> found = gather(*basis, TransportKind::sampled, {.gather = Gathering::visible},
                                                {uniform(times(1.75, basis->constant()))}, image, nothing);
   expect_all(found, 4 * 1.75 / (kCell * kCell));
@@ -303,8 +303,8 @@ TEST(Gather, RejectsWhatDoesNotFit) {
   const Volume small(test_session(), {kGrid - 1, 4, 3}, "test: light");
   Buffer e = test_session().buffer(kPixels * sizeof(cl_float4), "test: E");
   Surface camera;
-  EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {&small}, e), Error);
-  EXPECT_THROW(gatherer.gather(camera, {grid_of(0)}, {}, e), Error);
+  EXPECT_THROW(gatherer.gather(camera, {{grid_of(0)}, {&small}}, e), Error);
+  EXPECT_THROW(gatherer.gather(camera, {{grid_of(0)}, {}}, e), Error);
 }
 
 }  // namespace

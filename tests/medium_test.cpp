@@ -16,6 +16,7 @@
 #include "pipeline/raster/view.hpp"
 #include "reference/sweep.hpp"
 #include "scene/load.hpp"
+#include "scene/medium.hpp"
 #include "scene/sky.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/numbers.hpp"
@@ -81,7 +82,7 @@ TEST(Medium, PartOfARayIsThatInTheBox) {
   const ClpvMedium medium = medium_of(glm::vec3(1), {}, 0, {-1, -2, -3}, {1, 2, 3});
   const double far = std::numeric_limits<double>::infinity();
   const auto length = [&](const glm::dvec3& origin, const glm::dvec3& direction, double end) {
-    return reference::medium_part(medium, origin, direction, end).length();
+    return medium_part(medium, origin, direction, end).length();
   };
   EXPECT_DOUBLE_EQ(length({-5, 0, 0}, {1, 0, 0}, far), 2);
   EXPECT_DOUBLE_EQ(length({-5, 0, 0}, {1, 0, 0}, 5), 1);
@@ -212,8 +213,7 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
     for (std::uint32_t i = 0; i < kDirections; ++i) {
       const glm::dvec3 w = phase_direction({0, 0, 1}, 0, sobol_point(i, 3));
       expected +=
-          4 * pi / kDirections *
-          reference::transmittance(medium, reference::medium_part(medium, glm::dvec3(middle), w, 100))[c];
+          4 * pi / kDirections * transmittance(medium, medium_part(medium, glm::dvec3(middle), w, 100))[c];
     }
     double found = 0;  // mean of the eight cells around the middle
     for (int i = 0; i < 8; ++i) {

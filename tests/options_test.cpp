@@ -16,7 +16,9 @@
 #include "options/show.hpp"
 #include "options/stage_options.hpp"
 #include "options/stages.hpp"
+#include "options/validate.hpp"
 #include "scene/light_kind.hpp"
+#include "scene/sky.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "tests/support/error_of.hpp"
@@ -90,6 +92,26 @@ TEST(Options, ABasisReplacesAFileOfCentres) {
   set_option(options, "centres", "mine.json");
   set_option(options, "basis", "sh2");
   EXPECT_EQ(options.centres, "");
+}
+
+TEST(Options, ContradictionsAreRejectedByTheFirstOption) {
+  Scene plain, under_a_sky, in_fog;
+  under_a_sky.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(1)));
+  in_fog.medium.emplace();
+  const auto rejected = [](const std::string& option, const Scene& scene, const auto& change) {
+    RenderOptions options;
+    change(options);
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { validate(options, scene); }),
+                ::testing::StartsWith(option + ": found"));
+  };
+  const auto steps = [](RenderOptions& o) { o.transport = TransportKind::sampled; };
+  for (const Scene* scene : {&plain, &under_a_sky, &in_fog}) EXPECT_NO_THROW(validate({}, *scene));
+  rejected("blocking", plain, [](RenderOptions& o) { o.blocking = Blocking::one_sided; });
+  rejected("lobe-time", plain, [](RenderOptions& o) { o.lobe_time = LobeTime::kernel; });
+  rejected("bounces", plain, [&](RenderOptions& o) { steps(o), o.bounces = Bounces::two; });
+  rejected("near", plain, [&](RenderOptions& o) { steps(o), o.near = Near::traced; });
+  rejected("transport", under_a_sky, steps);
+  rejected("transport", in_fog, steps);
 }
 
 /// Those that are no options, which the tests above go through.

@@ -115,9 +115,9 @@ TEST(RadianceAtPoints, IsThatOfTheReference) {
       for (std::size_t i = 0; i < values.size(); ++i)
         volumes.back().values[i] = double{values[i]} / light.scale;
     }
-    const std::size_t bytes = CellVisibility::bytes(options.grid);
+    const std::size_t bytes = visibility_bytes(options.grid);
     std::vector<std::uint8_t> occluded;
-    if (light.occluded != nullptr) occluded = session.read<std::uint8_t>(*light.occluded, 2 * bytes);
+    if (light.occluded.exists()) occluded = session.read<std::uint8_t>(light.occluded, 2 * bytes);
     std::vector<reference::Cascade> cascades;
     for (std::size_t c = 0; c < 2; ++c)
       cascades.push_back({light.grids[c], &volumes[c], occluded.empty() ? nullptr : &occluded[c * bytes]});

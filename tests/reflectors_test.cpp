@@ -39,9 +39,9 @@ struct Areas {
 
 Areas reflected(const Scene& scene) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  ReflectorVoxelizer reflector(test_session(), buffers, kGrid, 1, {});
-  reflector.voxelize(0, kGridCells);
-  return {reflector.reflectors(0).read(test_session())};
+  Volume reflectors(test_session(), {kGrid, kCellFaces, 3}, "test: reflectors");
+  VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {})).update(0, kGridCells, reflectors);
+  return {reflectors.read(test_session())};
 }
 
 TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {

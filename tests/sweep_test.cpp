@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -327,12 +328,26 @@ TEST(Sweep, ASquareConvergesToItsClosedForm) {
   EXPECT_LT(fine.wall, 0.8 * coarse.wall);
 }
 
+TEST(Sweep, PlansHaveTheSweepsOfTheMethod) {
+  const auto few = [](Bounces bounces, bool scatters, bool coarsest) {
+    const std::vector<SweepStep> plan = sweep_plan(bounces, scatters, coarsest);
+    EXPECT_TRUE(plan.back().all_directions);
+    return std::ranges::count(plan, false, &SweepStep::all_directions);
+  };
+  EXPECT_EQ(few(Bounces::one, true, true), 0);
+  EXPECT_EQ(few(Bounces::two, false, false), 1);
+  EXPECT_EQ(few(Bounces::two, true, false), 1);
+  EXPECT_EQ(few(Bounces::all, false, true), 2);
+  EXPECT_EQ(few(Bounces::all, false, false), 0) << "interpolates the incident flux of the coarser cascade";
+  EXPECT_EQ(few(Bounces::all, true, false), 8);
+}
+
 TEST(Sweep, RejectsGridsThatAreNotNested) {
   const auto basis = make_basis("bins24");
   Sweeper sweeper(test_session(), *basis, swept_by(*basis), {.grid = 6, .parts = {1, 1}, .blocking = false});
   Volume light(test_session(), {6, kSweepBins, 3}, "test: light");
   const auto grids = cascade_grids(glm::vec3(0), 3, 3, 6);
-  EXPECT_THROW(sweeper.sweep(1, {grids[0], grids[2]}, light, light), Error);
+  EXPECT_THROW(sweeper.sweep({1, {grids[0], grids[2]}, light}, light), Error);
 }
 
 TEST(Sweep, RejectsVolumesThatKernelsCannotAddress) {

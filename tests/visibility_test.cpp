@@ -22,10 +22,9 @@ const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
 /// Bytes of all points, by the kernel.
 std::vector<std::uint8_t> occluded(const Scene& scene, const ClpvGrid& grid = kCells) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  CellVisibility visibility(test_session(), buffers, static_cast<int>(grid.n), 1);
+  VoxelField visibility(test_session(), buffers, visibility_masks(static_cast<int>(grid.n), 1));
   visibility.update(0, grid);
-  return test_session().read<std::uint8_t>(visibility.occluded(),
-                                           CellVisibility::bytes(static_cast<int>(grid.n)));
+  return test_session().read<std::uint8_t>(visibility.masks(), visibility_bytes(static_cast<int>(grid.n)));
 }
 
 /// Cube and point of a byte.

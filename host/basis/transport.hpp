@@ -11,7 +11,6 @@
 #include "basis/basis.hpp"
 #include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
-#include "basis/transport.hpp"
 #include "support/named_enum.hpp"
 
 namespace clpv {

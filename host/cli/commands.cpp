@@ -74,8 +74,6 @@ void reject_misspelt_command(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands({})) {
     if (!command->get_group().empty()) names.push_back(command->get_name());
   }
-  if (const std::string renamed = reject_old_name(*word); !renamed.empty())
-    throw Error(ExitCode::usage, "{}", renamed);
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
   if (edits(*word, *nearest) <= kMaxEdits)
@@ -102,14 +100,6 @@ void reject_misspelt_option(const CLI::App& app) {
     if (edits(given, nearest) > kMaxEdits) continue;
     throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?", commands.front()->get_name(),
                 given, nearest);
-  }
-}
-
-/// Throws Error(usage) that names the successor of a renamed option.
-void reject_renamed_options(int argc, const char* const* argv) {
-  for (const std::string word : std::span(argv, static_cast<std::size_t>(argc))) {
-    const std::string renamed = word.starts_with("--") ? reject_old_name(word.substr(0, word.find('='))) : "";
-    if (!renamed.empty()) throw Error(ExitCode::usage, "{}", renamed);
   }
 }
 
@@ -218,7 +208,6 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
-  reject_renamed_options(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError&) {

@@ -95,21 +95,6 @@ std::string group_of(const std::string& name) {
 
 }  // namespace
 
-std::string reject_old_name(const std::string& name) {
-  static const std::map<std::string, std::string> kRenamed{{"reference", "pathtrace"},
-                                                           {"block", "blockers"},
-                                                           {"reflect", "reflectors"},
-                                                           {"see", "visibility"},
-                                                           {"--search", "python3 -m clpv.search"},
-                                                           {"--occlusion", "--blockers none|scene|seen"},
-                                                           {"--table", "--evaluate buffer|image"},
-                                                           {"--out", "--output"},
-                                                           {"--json", "--format json, or --output FILE.json"},
-                                                           {"--csv", "--output FILE.csv"}};
-  const auto found = kRenamed.find(name);
-  return found == kRenamed.end() ? "" : fmt::format("'{}' is now '{}'", name, found->second);
-}
-
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, const std::string& help,
                         const NumberRange& range) {
   const auto take = [&value, name, range](const std::string& text) {

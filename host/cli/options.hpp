@@ -45,10 +45,6 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member,
       ->default_str(std::string(name_of(member)));
 }
 
-/// Returns an error that names the successor if a command, option or choice has been renamed since the last release,
-/// else "".
-std::string reject_old_name(const std::string& name);
-
 /// Adds an option that takes several values of an enumeration, separated by commas.
 template <NamedEnum E>
 CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vector<E>& members,
@@ -59,7 +55,6 @@ CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vect
   };
   return command.add_option_function<std::vector<std::string>>(option, take, help)
       ->delimiter(',')
-      ->check(reject_old_name)
       ->check(CLI::IsMember(names_of<E>()));
 }
 

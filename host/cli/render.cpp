@@ -112,7 +112,7 @@ void run(const Options& options, const Shared& shared) {
   Session session(choose_device(shared.device), ProgramCache::of_user(),
                   compilation_of(request, shared.device));
   Frame frame(session, scene, resolved);
-  stats.end_startup(session);
+  stats.end_startup();
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
                 session.device().driver);
   spdlog::debug("options: {}", to_json(resolved).dump());

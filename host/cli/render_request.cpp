@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.hpp"
+#include "options/validate.hpp"
 #include "parallel/ranks.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "scene/load.hpp"
@@ -50,73 +51,12 @@ void add_shown_options(CLI::App& command, RenderRequest& request) {
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 
-namespace {
-
-/// Where an option's value comes from, for errors.
-std::string source_of(const OptionValues& given, const RenderOptions& options, const char* name) {
-  if (given.contains(name)) return {};
-  const std::string preset = preset_note(options, name);
-  return preset.empty() ? " (the default)" : preset;
-}
-
-/// A condition under which some options have an effect, and what it depends on.
-struct Effect {
-  bool exists;
-  std::vector<const char*> options;
-  std::string without;  ///< the option and value that take the effect away
-  std::string with;     ///< values with which there is one
-};
-
-std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& options) {
-  const auto found = [&](const char* name, std::string_view value) {
-    return fmt::format("--{} {}{}", name, value, source_of(given, options, name));
-  };
-  const bool sweeps = options.transport == TransportKind::sweep;
-  const bool centred = !make_basis(options)->centres().empty();
-  const bool tables = options.lobe == LobeKind::rotate || options.evaluate != Evaluation::exact;
-  const std::string transport = found("transport", name_of(options.transport)),
-                    basis = found("basis", options.basis);
-  return {
-      {!sweeps, {"iterations"}, transport, "--transport sampled or exact"},
-      {sweeps, {"directions", "coarser-directions"}, transport, "--transport sweep"},
-      {options.cascades > 1,
-       {"coarser-directions"},
-       found("cascades", std::to_string(options.cascades)),
-       "--cascades 2 or more"},
-      {centred, {"lambda", "lobe", "evaluate"}, basis, "a basis with centres (srbf...)"},
-      {!sweeps, {"evaluate"}, transport, "--transport sampled or exact"},
-      {tables,
-       {"table-size"},
-       found("lobe", name_of(options.lobe)),
-       "--lobe rotate or --evaluate buffer or image"},
-      {sweeps, {"near-size", "near-rays"}, transport, "--transport sweep"},
-      {options.traces_near(),
-       {"near-size", "near-rays"},
-       found("near", name_of(options.near)),
-       "--near traced"},
-      {options.blocked(),
-       {"blocking"},
-       found("blockers", name_of(options.blockers)),
-       "--blockers scene or seen"},
-      {options.blockers == Blockers::seen,
-       {"blocker-stride"},
-       found("blockers", name_of(options.blockers)),
-       "--blockers seen"},
-  };
-}
-
-}  // namespace
-
 RenderOptions resolve_request(const RenderRequest& request, const Scene& scene) {
   const RenderOptions options = resolve_options(request.frame, scene);
-  for (const Effect& effect : effects_of(request.frame, options)) {
-    if (effect.exists) continue;
-    for (const char* name : effect.options) {
-      const auto given = request.frame.find(name);
-      if (given == request.frame.end()) continue;
-      throw Error(ExitCode::usage, "--{} {} has no effect with {}; allowed with {}", name, given->second,
-                  effect.without, effect.with);
-    }
+  try {
+    reject_without_effect(request.frame, options);
+  } catch (const Error& error) {
+    throw Error(error.code(), "--{}", error.what());
   }
   return options;
 }

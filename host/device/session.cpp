@@ -56,8 +56,9 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
 void dump(const ProgramSource& source, const std::string& text) {
   const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
   if (folder == nullptr || *folder == '\0') return;
+  const std::string name = std::filesystem::path(source.file).filename().string();
   const std::filesystem::path file =
-      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), std::filesystem::path(source.file).filename().string());
+      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), name);
   try {
     write_file(file, text);
   } catch (const Error& error) {

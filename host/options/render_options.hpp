@@ -3,6 +3,7 @@
 // image metadata and presets use this table. Independent of OpenCL.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -64,6 +65,9 @@ struct RenderOptions {
     return evaluate == Evaluation::image ? TableStorage::image : TableStorage::buffer;
   }
 };
+
+/// Options that the user set, by name.
+using OptionValues = std::map<std::string, std::string>;
 
 /// Creates the basis and transport of the options. Throws as make_basis and load_basis do.
 std::unique_ptr<Basis> make_basis(const RenderOptions& options);

@@ -22,15 +22,14 @@ PropagateOptions propagate_options(const RenderOptions& options) {
           .format = options.format()};
 }
 
-SweepOptions sweep_options(const RenderOptions& options, const std::optional<ClpvMedium>& medium) {
+SweepOptions sweep_options(const RenderOptions& options) {
   std::vector<int> parts(static_cast<std::size_t>(options.cascades), parts_of(options.coarser_directions));
   parts.front() = parts_of(options.directions);
   return {.grid = options.grid,
           .parts = parts,
           .blocking = options.blocked(),
           .bounces = options.bounces,
-          .format = options.format(),
-          .medium = medium};
+          .format = options.format()};
 }
 
 GatherOptions gather_options(const RenderOptions& options, bool medium) {
@@ -67,12 +66,11 @@ int near_step(const RenderOptions& options) {
 
 }  // namespace
 
-NearOptions near_options(const RenderOptions& options, bool medium) {
+NearOptions near_options(const RenderOptions& options) {
   return {.gather = gather_options(options),
           .step = near_step(options),
           .rays = rays_of(options.near_rays),
-          .reflects = options.bounces != Bounces::one,
-          .medium = medium};
+          .reflects = options.bounces != Bounces::one};
 }
 
 MediumOptions medium_options(const RenderOptions& options) {

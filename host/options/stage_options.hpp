@@ -13,6 +13,7 @@
 namespace clpv {
 
 struct RenderOptions;
+struct Sky;
 
 struct InjectOptions {
   int grid = 32;  ///< cells along each axis
@@ -58,6 +59,7 @@ struct SweepOptions {
   VolumeFormat format = {};        ///< of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
   std::optional<ClpvMedium> medium = {};
+  const Sky* sky = nullptr;  ///< lights the coarsest cascade at its border; used by the constructor alone
 };
 
 struct GatherOptions {
@@ -77,7 +79,6 @@ struct NearOptions {
   int step = 1;               ///< traces one of step x step pixels: 1, 2, 4 or 8
   int rays = 2;               ///< per traced pixel, a power of two
   bool reflects = false;      ///< surfaces that rays hit also reflect the volumes' light
-  bool medium = false;        ///< lights have one
 };
 
 struct MediumOptions {
@@ -89,10 +90,10 @@ struct MediumOptions {
 /// `unit_flux_lobes`: as in Transport.
 InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes);
 PropagateOptions propagate_options(const RenderOptions& options);
-SweepOptions sweep_options(const RenderOptions& options, const std::optional<ClpvMedium>& medium = {});
+SweepOptions sweep_options(const RenderOptions& options);
 /// `medium`: the scene has one.
 GatherOptions gather_options(const RenderOptions& options, bool medium = false);
-NearOptions near_options(const RenderOptions& options, bool medium = false);
+NearOptions near_options(const RenderOptions& options);
 MediumOptions medium_options(const RenderOptions& options);
 
 }  // namespace clpv

@@ -41,7 +41,7 @@ enum class Pass {
   inject_geometry,
   blockers,
   reflectors,
-  propagate,   ///< steps, or a sweep with its bounces
+  propagate,   ///< steps, or a sweep with its bounces and its scattering in a medium
   visibility,  ///< per cascade
   gather,
   near_trace,  ///< rays of the near field, while their hits are not cached

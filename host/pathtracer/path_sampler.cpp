@@ -17,9 +17,9 @@
 
 #include "basis/sampling.hpp"
 #include "reference/lighting.hpp"
-#include "reference/medium.hpp"
 #include "reference/view.hpp"
 #include "scene/light_kind.hpp"
+#include "scene/medium.hpp"
 
 namespace clpv::reference {
 namespace {

@@ -15,9 +15,9 @@
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
-#include "reference/medium.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
+#include "scene/medium.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 

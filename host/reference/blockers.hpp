@@ -12,7 +12,7 @@
 
 namespace clpv::reference {
 
-/// Bounds on the covered shares [0, 1] of BlockerVoxelizer: 3 numbers per corner, one channel. Rounding decides whether a
+/// Bounds on the covered shares [0, 1] of blocker_masks(): 3 numbers per corner, one channel. Rounding decides whether a
 /// sample very close to an edge, a cell boundary or an alpha cutoff is covered: `lower` excludes and `upper` includes it.
 struct BlockerBounds {
   Volume lower, upper;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/gather/cascades.h and kernels/gather/gather_packed.h: samples of a cascade's volume and its weight, in double.
+// CPU reference of kernels/gather/cascades.h and kernels/gather/gather_packed.h: samples of a cascade's volume and its
+// weight, in double.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `gather` (kernels/gather/gather.cl): irradiance from light volumes, in double (docs/method.md, 'Gathering').
+// CPU reference of stage `gather` (kernels/gather/gather.cl): irradiance from light volumes, in double
+// (docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace clpv::reference {
 struct Cascade {
   ClpvGrid grid{};
   const Volume* accumulated = nullptr;
-  /// Bits of CellVisibility; required if GatherOptions::gather is `visible`.
+  /// Bits of visibility_masks(); required if GatherOptions::gather is `visible`.
   const std::uint8_t* occluded = nullptr;
 };
 

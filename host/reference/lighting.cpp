@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "reference/medium.hpp"
 #include "reference/view.hpp"
 #include "scene/light_kind.hpp"
+#include "scene/medium.hpp"
 
 namespace clpv::reference {
 

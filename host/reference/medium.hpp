@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Paths through a homogeneous medium in a box (kernels/shared/light.h, kernels/gather/medium.h), and CPU references of stage `medium`
-// (kernels/gather/medium.cl) and of the light that it scatters in cells (kernels/sweep/sweep_medium.cl), in double.
+// CPU references of stage `medium` (kernels/gather/medium.cl) and of the light that a medium scatters in cells
+// (kernels/sweep/sweep_medium.cl), in double.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,23 +15,6 @@
 #include "reference/volume.hpp"
 
 namespace clpv::reference {
-
-/// Part of a ray inside a medium, in lengths of the ray's direction; empty if end <= start.
-struct MediumPart {
-  double start = 0, end = 0;
-
-  double length() const { return end > start ? end - start : 0; }
-};
-
-/// Returns the part of origin + t direction, t in (0, end), in the medium. `end` may be infinite.
-MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction,
-                       double end);
-
-/// exp(-sigma_t l) for each channel. `part`: of a ray with a unit direction [m].
-glm::dvec3 transmittance(const ClpvMedium& medium, const MediumPart& part);
-
-/// Returns true if light is scattered or absorbed at all.
-bool attenuates(const ClpvMedium& medium);
 
 struct MediumScene {
   const ClpvMedium& medium;

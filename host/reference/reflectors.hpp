@@ -9,7 +9,7 @@
 
 namespace clpv::reference {
 
-/// Reflecting areas of ReflectorVoxelizer: R_a of six faces per cell, three channels.
+/// Reflecting areas of reflector_masks(): R_a of six faces per cell, three channels.
 struct ReflectingAreas {
   Volume areas;
   /// Tolerance of each number: rounding decides whether samples very close to an edge, a cell boundary or an alpha cutoff are

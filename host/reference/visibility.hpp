@@ -11,8 +11,8 @@
 
 namespace clpv::reference {
 
-/// Bounds on the bits of CellVisibility: one byte per point, one bit per cell of its cube, set if a triangle crosses the segment
-/// between them. Rounding decides where a segment ends very close to a triangle or passes very close to its edge: `lower`
+/// Bounds on the bits of visibility_masks(): one byte per point, one bit per cell of its cube, set if a triangle
+/// crosses the segment between them. Rounding decides where a segment ends very close to a triangle or passes very close to its edge: `lower`
 /// excludes those bits, `upper` includes them.
 struct Occlusion {
   std::vector<std::uint8_t> lower, upper;

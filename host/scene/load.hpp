@@ -36,7 +36,8 @@ class MovingScene {
   void set_cameras(std::vector<SceneCamera> cameras);
   void set_lights(std::vector<SceneLight> lights);
 
-  /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the scene's bounding box at the present time.
+  /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the scene's bounding box at
+  /// the present time.
   void set_medium(std::optional<ClpvMedium> medium);
 
   Scene take() && { return std::move(scene_); }

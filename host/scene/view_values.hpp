@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cameras, lights and media of the public interface (clpv/scene.hpp) as those of a scene, and back. The only checks of their numbers.
+// Converts cameras, lights and media of the public interface (clpv/scene.hpp) to those of a scene and back. The only
+// checks of their numbers.
 #pragma once
 
 #include <functional>

@@ -34,7 +34,7 @@ struct Variant {
 
 /// One byte per point between cells of all cascades; each cell is occluded from half of them.
 std::vector<std::uint8_t> random_occlusion(std::mt19937& random) {
-  std::vector<std::uint8_t> occluded(kCascades * CellVisibility::bytes(kGrid));
+  std::vector<std::uint8_t> occluded(kCascades * visibility_bytes(kGrid));
   for (std::uint8_t& bits : occluded) bits = random() % 256;
   return occluded;
 }
@@ -70,12 +70,12 @@ CheckResult check_one(Session& session, const Basis& basis, TransportKind transp
   std::vector<Cascade> cascades;
   for (int c = 0; c < kCascades; ++c) {
     volumes.push_back(&lit[c]);
-    cascades.push_back({grids[c], &light[c], occluded.data() + c * CellVisibility::bytes(kGrid)});
+    cascades.push_back({grids[c], &light[c], occluded.data() + c * visibility_bytes(kGrid)});
   }
   const Surface camera = upload_surface(session, image);
   Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer(session, basis, transport, options)
-      .gather(camera, grids, volumes, irradiance, 1, visible ? &occluded_on_device : nullptr);
+      .gather(camera, {grids, volumes, 1, visible ? occluded_on_device : Buffer()}, irradiance);
   std::vector<glm::dvec4> expected;
   for (const glm::dvec3& e : gather(basis, transport, options, cascades, image))
     expected.emplace_back(e, 0.0);

@@ -155,6 +155,7 @@ std::vector<ShadowedLight> on_device(Session& session, const std::vector<MappedL
       there.views.push_back(map.view);
       there.depths.push_back(session.upload(map.depth, "check: shadow map"));
     }
+    there.view_table = session.upload(there.views, "check: views of a light");
   }
   return shadowed;
 }

@@ -52,9 +52,9 @@ CheckResult check_one_medium(Session& session, const MediumVariant& variant) {
   const Surface camera = upload_surface(session, image);
   Buffer pixels = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer gatherer(session, *basis, TransportKind::sweep, options.gather);
-  gatherer.gather(camera, grids, volumes, pixels);
+  gatherer.gather(camera, {grids, volumes}, pixels);
   MediumLight scattered(session, *basis, variant.medium, options);
-  scattered.scatter(camera, gatherer, on_device(session, lights), 1, nullptr);
+  scattered.scatter(camera, gatherer, on_device(session, lights));
   scattered.add(camera, true, pixels);
 
   std::vector<glm::dvec4> expected;

@@ -77,7 +77,7 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
   const std::vector<MappedLight> lights = near_lights(random);
   const std::vector<ClpvGrid> grids =
       cascade_grids({0.1f, 0.2f, 0.3f}, kNearCascades, kNearFinestEdge, kNearGrid);
-  std::vector<std::uint8_t> occluded(kNearCascades * CellVisibility::bytes(kNearGrid));
+  std::vector<std::uint8_t> occluded(kNearCascades * visibility_bytes(kNearGrid));
   for (std::uint8_t& bits : occluded) bits = random() % 256;
   std::vector<Volume> light;
   std::vector<clpv::Volume> lit;
@@ -89,7 +89,7 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
   std::vector<Cascade> cascades;
   for (int c = 0; c < kNearCascades; ++c) {
     volumes.push_back(&lit[c]);
-    cascades.push_back({grids[c], &light[c], occluded.data() + c * CellVisibility::bytes(kNearGrid)});
+    cascades.push_back({grids[c], &light[c], occluded.data() + c * visibility_bytes(kNearGrid)});
   }
   const NearOptions options{.gather = {.grid = kNearGrid,
                                        .gather = variant.gather,
@@ -101,15 +101,15 @@ CheckResult check_one_near(Session& session, const NearVariant& variant) {
                             .reflects = variant.reflects};
 
   const Buffer occluded_there = session.upload(occluded, "check: occluded cells");
-  const Buffer* hidden = variant.gather == Gathering::visible ? &occluded_there : nullptr;
+  const Buffer hidden = variant.gather == Gathering::visible ? occluded_there : Buffer();
   const Surface camera = upload_surface(session, image);
   Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
   Gatherer gatherer(session, *basis, TransportKind::sweep, options.gather);
-  gatherer.gather(camera, grids, volumes, irradiance, 1, hidden);
+  gatherer.gather(camera, {grids, volumes, 1, hidden}, irradiance);
   const SceneBuffers buffers = upload_scene(session, scene);
   clpv::NearField field(session, *basis, scene, buffers, options);
   field.trace(camera, gatherer);
-  field.add(camera, gatherer, on_device(session, lights), 1, hidden, irradiance);
+  field.add(camera, gatherer, on_device(session, lights), irradiance);
 
   const NearResult wanted = near(*basis, options, {scene, materials, lights, cascades}, image,
                                  gather(*basis, TransportKind::sweep, options.gather, cascades, image));

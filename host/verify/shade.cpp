@@ -44,15 +44,6 @@ MappedLight mapped(const ClpvLight& light, std::mt19937& random) {
   return mapped;
 }
 
-ShadowedLight upload(Session& session, const MappedLight& light) {
-  ShadowedLight shadowed{light.light, {}, {}};
-  for (const ShadowMap& map : light.maps) {
-    shadowed.views.push_back(map.view);
-    shadowed.depths.push_back(session.upload(map.depth, "check: shadow map"));
-  }
-  return shadowed;
-}
-
 }  // namespace
 
 CheckResults check_shade(Session& session, const CheckScope& scope) {
@@ -73,9 +64,7 @@ CheckResults check_shade(Session& session, const CheckScope& scope) {
   CheckResults results;
   const auto check = [&](Show show, const std::vector<MappedLight>& lights, const std::string& variant) {
     compare_selected(scope, "shade", variant, results, [&] {
-      std::vector<ShadowedLight> shadowed;
-      for (const MappedLight& light : lights) shadowed.push_back(upload(session, light));
-      shader.light(camera, shadowed);
+      shader.light(camera, on_device(session, lights));
       shader.show(show, camera, gathered, shown);
       return compare_pixels(session.read<cl_float4>(shown, pixels),
                             shade(show, image, direct_irradiance(lights, image), indirect), image.view.width,

@@ -88,6 +88,7 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
   const int count = c.parts.size();
   const float cell = kEdge / c.grid;
   const std::vector<ClpvGrid> grids = cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), count, kEdge, c.grid);
+  const Sky unscaled_sky = uneven_sky(1);
   Sweeper sweeper(session, *basis, transport,
                   {.grid = c.grid,
                    .parts = c.parts,
@@ -95,13 +96,10 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                    .bounces = c.bounces,
                    .format = c.format,
                    .form = c.form,
-                   .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
-  if (c.sky) {
-    sweeper.set_sky(uneven_sky(1));
-    sweeper.scale_sky(kSkyScale);
-  }
+                   .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt,
+                   .sky = c.sky ? &unscaled_sky : nullptr});
   const std::vector<MappedLight> in_medium = lights_in(kSweptMedium);
-  const std::vector<ShadowedLight> shadowed = on_device(session, in_medium);
+  const std::vector<ShadowedLight> shadowed = scaled(on_device(session, in_medium), kMediumScale);
   std::vector<Volume> lights, blockers, reflectors, scattered(count);
   std::vector<SweptCascade> cascades;
   std::vector<const Volume*> reflecting;
@@ -124,10 +122,9 @@ CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
                        geometry = on_device(session, blockers[i], c.format),
                        sides = on_device(session, reflectors[i], c.format);
     clpv::Volume swept(session, {c.grid, swept_basis()->size(), 3}, "check: swept", c.format);
-    sweeper.set_medium(i, grids[i], shadowed, kMediumScale);
     if (c.blocking) sweeper.set_blockers(i, geometry);
-    if (c.bounces != Bounces::one) sweeper.set_reflectors(i, sides);
-    sweeper.sweep(i, grids, light, swept);
+    if (c.bounces != Bounces::one) sweeper.set_reflectors(i, grids[i], sides);
+    sweeper.sweep({static_cast<std::size_t>(i), grids, light, kSkyScale, shadowed}, swept);
     found[i] = swept.read(session);
   }
   const Sky sky = uneven_sky(kSkyScale);

@@ -46,7 +46,7 @@ CheckResults check_blockers(Session& session, const CheckScope& scope) {
   CheckResults results;
   const auto compare = [&](const VolumeFormat& format) {
     clpv::Volume geometry(session, shape, "check: blockers", format);
-    BlockerVoxelizer(session, buffers, kGrid, 1, format).voxelize(0, kCells, geometry);
+    VoxelField(session, buffers, blocker_masks(buffers, kGrid, 1, format)).update(0, kCells, geometry);
     const std::vector<float> found = geometry.read(session);
     CheckResult result{"blockers", format_name(format), 0, tolerance("blockers", format.storage), {}};
     for (std::size_t at = 0; at < found.size(); ++at) {
@@ -69,9 +69,9 @@ CheckResults check_reflectors(Session& session, const CheckScope& scope) {
   const ReflectingAreas expected = voxelize_reflectors(scene, kCells);
   CheckResults results;
   const auto compare = [&](const VolumeFormat& format) {
-    ReflectorVoxelizer reflector(session, buffers, kGrid, 1, format);
-    reflector.voxelize(0, kCells);
-    const std::vector<float> found = reflector.reflectors(0).read(session);
+    clpv::Volume reflectors(session, {kGrid, kCellFaces, 3}, "check: reflectors", format);
+    VoxelField(session, buffers, reflector_masks(buffers, kGrid, format)).update(0, kCells, reflectors);
+    const std::vector<float> found = reflectors.read(session);
     CheckResult result{"reflectors", format_name(format), 0, tolerance("reflectors", format.storage), {}};
     for (std::size_t at = 0; at < found.size(); ++at) {
       const double wanted = expected.areas.values[at], tolerated = expected.tolerance.values[at];
@@ -95,11 +95,11 @@ CheckResult compare_visibility(Session& session) {
   const Scene scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   const Occlusion expected = occlude(scene, kCells);
-  CellVisibility visibility(session, buffers, kGrid, kCascade + 1);
+  VoxelField visibility(session, buffers, visibility_masks(kGrid, kCascade + 1));
   visibility.update(0, kCells);
   visibility.update(kCascade, kCells);
-  const std::size_t bytes = CellVisibility::bytes(kGrid);
-  const auto found = session.read<std::uint8_t>(visibility.occluded(), bytes * (kCascade + 1));
+  const std::size_t bytes = visibility_bytes(kGrid);
+  const auto found = session.read<std::uint8_t>(visibility.masks(), bytes * (kCascade + 1));
   CheckResult result{"visibility", "triangles", 0, tolerance("visibility"), {}};
   for (std::size_t point = 0; point < bytes; ++point) {
     const std::uint8_t bits = found[kCascade * bytes + point], lower = expected.lower[point],

@@ -17,6 +17,7 @@
 #include "reference/view.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "verify/inputs.hpp"
 
 namespace clpv {
 namespace shade_scenes {
@@ -130,25 +131,14 @@ inline const std::array<glm::dvec3, 6> kDirections = {glm::dvec3(1, 0, 0), glm::
                                                       glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0),
                                                       glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)};
 
-inline ShadowedLight upload(const MappedLight& light) {
-  ShadowedLight shadowed{light.light, {}, {}};
-  for (const ShadowMap& map : light.maps) {
-    shadowed.views.push_back(map.view);
-    shadowed.depths.push_back(test_session().upload(map.depth, "test: shadow map"));
-  }
-  return shadowed;
-}
-
 /// E of each pixel, by the kernels: whether a surface shadows itself is a matter of float32.
 inline std::vector<glm::vec4> lit_colours(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
-  std::vector<ShadowedLight> shadowed;
-  for (const MappedLight& light : lights) shadowed.push_back(upload(light));
   const std::size_t pixels = image.depth.size();
   const Buffer irradiance = test_session().upload(std::vector<cl_float4>(pixels), "test: irradiance");
   Buffer shown = test_session().buffer(pixels * sizeof(glm::vec4), "test: image");
   const Surface camera = upload_surface(test_session(), image);
   Shader shader(test_session());
-  shader.light(camera, shadowed);
+  shader.light(camera, reference::on_device(test_session(), lights));
   shader.show(Show::direct, camera, irradiance, shown);
   return test_session().read<glm::vec4>(shown, pixels);
 }

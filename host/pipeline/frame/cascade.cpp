@@ -86,25 +86,4 @@ bool reaches(const ClpvGrid& grid, const glm::dvec3& position) {
   return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
 }
 
-std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
-  if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
-    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,
-                coarser.cell);
-  }
-  const int most = static_cast<int>(finer.n) + 1;
-  std::array<int, 3> offset{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double cells = (double{finer.origin[axis]} - coarser.origin[axis]) / finer.cell;
-    const double whole = std::round(cells);
-    if (std::abs(cells - whole) > kAligned || whole < -1 || whole > most) {
-      throw Error(ExitCode::run_time,
-                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
-                  "numbers -1..{} allowed",
-                  axis, cells, most);
-    }
-    offset[axis] = whole;
-  }
-  return offset;
-}
-
 }  // namespace clpv

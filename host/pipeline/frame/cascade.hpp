@@ -2,7 +2,6 @@
 // Positions of the cascade grids: nested around the camera and snapped to whole cells.
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -18,10 +17,6 @@ static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
 /// (Kaplanyan & Dachsbacher 2010, section 5). Throws Error(usage) that names `cascade-size` if float coordinates at `eye` are
 /// too coarse for the cells.
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
-
-/// Returns the offset from the coarser grid's minimum corner to the finer one's, in finer cells. Throws
-/// Error(run_time) if the finer grid is not half as wide, or not inside the coarser one.
-std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer);
 
 /// Returns the edge of the finest cascade for `scene` [m]. It is `size` if the coarsest of `count` cascades then
 /// encloses the scene's bounding box from each camera (at 0 s), and is not far too large. Otherwise it is the smallest

@@ -11,7 +11,6 @@
 #include "device/session.hpp"
 #include "image/image.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame_cascades.hpp"
 #include "pipeline/frame/frame_lights.hpp"
@@ -28,7 +27,8 @@ namespace clpv {
 /// Holds all device memory of a frame. Call render() any number of times, for one or several cameras.
 class Frame {
  public:
-  /// Throws Error(run_time) if device memory does not suffice.
+  /// Throws Error(usage) for contradictory options (validate), Error(device) for volumes too large for the device, and
+  /// Error(run_time) if device memory does not suffice.
   Frame(Session& session, const Scene& scene, const RenderOptions& options);
   Frame(const Frame&) = delete;  // stages hold references to other members
   Frame& operator=(const Frame&) = delete;
@@ -74,9 +74,9 @@ class Frame {
  private:
   void rasterize_camera(const SceneCamera& camera);
   void require_light(const char* what) const;
-  void gather(const Surface& surface, Buffer& irradiance);
+  /// Key of what the near field's rays depend on.
+  CacheKey seen_by_rays(const std::vector<ClpvGrid>& grids) const;
   void show(Show view);
-  void draw_cells(std::vector<float>& image);
 
   Session& session_;
   const Scene& scene_;
@@ -93,7 +93,6 @@ class Frame {
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
   std::optional<Kernel> radiance_;  ///< of radiance_at(), built when it is first called
-  std::vector<Cached> packed_;      ///< accumulated light as packed by the gatherer
   Cached near_hits_;                ///< of near_
   Buffer irradiance_;               ///< float4 per pixel, like image_
   Buffer image_;

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basis/bounce.hpp"
 #include "pipeline/frame/frame_volumes.hpp"
+#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "support/fingerprint.hpp"
 
 namespace clpv {
@@ -22,22 +26,26 @@ FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBu
       accumulated_(
           volumes(options.cascades, light_shape(options, swept ? *swept : basis), "accumulated light")),
       geometry_(volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
+      reflected_(volumes(options.bounces == Bounces::one ? 0 : options.cascades,
+                         {options.grid, kCellFaces, 3}, "reflectors")),
       links_(options.cascades),
       visible_cells_(options.cascades),
-      reflected_(options.cascades),
       keys_(options.cascades) {
   if (swept) {
-    sweeper_.emplace(session, basis, transport, sweep_options(options, scene.medium));
-    if (scene.sky) sweeper_->set_sky(*scene.sky);
+    SweepOptions sweep = sweep_options(options);
+    sweep.medium = scene.medium;
+    sweep.sky = scene.sky.get();
+    sweeper_.emplace(session, basis, transport, sweep);
   } else {
     propagator_.emplace(session, basis, transport, propagate_options(options));
   }
   if (!geometry_.empty() && !blocked_by_view(options))
-    blocker_.emplace(session, buffers, options.grid, options.cascades, options.format());
-  if (options.bounces != Bounces::one)
-    reflector_.emplace(session, buffers, options.grid, options.cascades, options.format());
+    blockers_.emplace(session, buffers,
+                      blocker_masks(buffers, options.grid, options.cascades, options.format()));
+  if (!reflected_.empty())
+    reflectors_.emplace(session, buffers, reflector_masks(buffers, options.grid, options.format()));
   if (options.gather == Gathering::visible)
-    visibility_.emplace(session, buffers, options.grid, options.cascades);
+    visibility_.emplace(session, buffers, visibility_masks(options.grid, options.cascades));
 } catch (const TooLarge& error) {
   throw Error(
       error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), options.grid,
@@ -63,7 +71,6 @@ const Volume* FrameCascades::geometry(int cascade) {
 void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface& camera) {
   grids_ = grids;
   camera_ = &camera;
-  if (scene_.sky) sweeper_->scale_sky(lights_.scale());
   for (int cascade = options_.cascades; cascade-- > 0;) keys_[cascade] = keys_of(cascade);
 }
 
@@ -75,14 +82,14 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   keys.triangles = Fingerprint().add(place).add(buffers_.clusters->instant()).value();
   keys.injected = Fingerprint().add(place).add(lights_.sources_key(cascade)).value();
   if (!geometry_.empty()) keys.geometry = keys.triangles;
-  if (!geometry_.empty() && !blocker_)
+  if (!geometry_.empty() && !blockers_)
     keys.geometry =
         Fingerprint().add(keys.triangles).add(lights_.rsms_key(cascade)).add(camera_->view).value();
   // All bounces depend on the blockers.
   keys.reflected = Fingerprint().add(keys.triangles).add(keys.geometry).value();
   Fingerprint accumulated;
   accumulated.add(keys.injected).add(keys.geometry);
-  if (reflector_) accumulated.add(keys.reflected);
+  if (reflectors_) accumulated.add(keys.reflected);
   // A sweep reads border light from the next coarser cascade, and stores the halo of the next finer one.
   if (sweeper_) accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
   if (sweeper_ && cascade + 1 < options_.cascades) accumulated.add(keys_[cascade + 1].accumulated);
@@ -105,9 +112,9 @@ void FrameCascades::update_blockers(int cascade) {
   if (geometry_.empty()) return;
   CachedVolume& geometry = of_cascade(geometry_, cascade);
   geometry.cached.update(keys_[cascade].geometry, [&] {
-    if (!blocker_) return inject_geometry(cascade, *geometry.volume);
+    if (!blockers_) return inject_geometry(cascade, *geometry.volume);
     const StageScope scope(session_, {Pass::blockers, cascade});
-    blocker_->voxelize(cascade, grids_[cascade], *geometry.volume);
+    blockers_->update(cascade, grids_[cascade], *geometry.volume);
   });
 }
 
@@ -125,12 +132,13 @@ void FrameCascades::update_links(int cascade) {
 }
 
 void FrameCascades::update_reflectors(int cascade) {
-  if (!reflector_) return;
-  reflected_[cascade].update(keys_[cascade].reflected, [&] {
+  if (!reflectors_) return;
+  CachedVolume& reflected = reflected_[cascade];
+  reflected.cached.update(keys_[cascade].reflected, [&] {
     const StageScope scope(session_, {Pass::reflectors, cascade});
     update_links(cascade);
-    reflector_->voxelize(cascade, grids_[cascade]);
-    sweeper_->set_reflectors(cascade, reflector_->reflectors(cascade));
+    reflectors_->update(cascade, grids_[cascade], *reflected.volume);
+    sweeper_->set_reflectors(cascade, grids_[cascade], *reflected.volume);
   });
 }
 
@@ -142,25 +150,20 @@ void FrameCascades::update_visibility(int cascade) {
   });
 }
 
-void FrameCascades::scatter(int cascade) {
-  if (!scene_.medium) return;
-  const StageScope scope(session_, {Pass::medium, cascade});
-  sweeper_->set_medium(cascade, grids_[cascade], lights_.shadowed(), lights_.scale());
-}
-
 void FrameCascades::propagate(int cascade) {
-  Volume& accumulated = *accumulated_[cascade].volume;
-  accumulated_[cascade].cached.update(keys_[cascade].accumulated, [&] {
+  CachedVolume& accumulated = accumulated_[cascade];
+  accumulated.cached.update(keys_[cascade].accumulated, [&] {
     inject(cascade);
     update_blockers(cascade);
-    scatter(cascade);
     update_reflectors(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
-      return propagator_->propagate({injected, geometry(cascade), accumulated}, options_.iterations);
+      return propagator_->propagate({injected, geometry(cascade), *accumulated.volume}, options_.iterations);
     update_links(cascade);
-    sweeper_->sweep(cascade, grids_, injected, accumulated);
+    SweepInput input{static_cast<std::size_t>(cascade), grids_, injected, lights_.scale()};
+    if (scene_.medium) input.lights = scaled(lights_.shadowed(), lights_.scale());
+    sweeper_->sweep(input, *accumulated.volume);
   });
 }
 
@@ -175,8 +178,12 @@ void FrameCascades::update(int cascade, const CascadeObserver& observer) {
 }
 
 GatheredLight FrameCascades::light() const {
-  GatheredLight light{grids_, {}, visibility_ ? &visibility_->occluded() : nullptr, lights_.scale()};
-  for (const CachedVolume& accumulated : accumulated_) light.accumulated.push_back(accumulated.volume.get());
+  GatheredLight light{.grids = grids_, .accumulated = {}, .scale = lights_.scale()};
+  if (visibility_) light.occluded = visibility_->masks();
+  for (std::size_t c = 0; c < accumulated_.size(); ++c) {
+    light.accumulated.push_back(accumulated_[c].volume.get());
+    light.keys.push_back(keys_[c].accumulated);
+  }
   return light;
 }
 

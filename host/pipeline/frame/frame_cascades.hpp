@@ -12,15 +12,14 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/voxels/blockers.hpp"
 #include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/gather/gather.hpp"
 #include "pipeline/inject/inject.hpp"
-#include "pipeline/steps/propagate.hpp"
-#include "pipeline/voxels/reflectors.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
+#include "pipeline/steps/propagate.hpp"
 #include "pipeline/sweep/sweep.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -36,14 +35,6 @@ struct CascadeVolumes {
 };
 using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 
-/// Accumulated light of a render, ready to be gathered; finest cascade first.
-struct GatheredLight {
-  std::vector<ClpvGrid> grids;
-  std::vector<const Volume*> accumulated;
-  const Buffer* occluded;  ///< CellVisibility::occluded(); null where all cells light a surface
-  float scale;             ///< factor by which the volumes scale the light
-};
-
 class FrameCascades {
  public:
   /// All arguments must outlive this object. `swept`: basis of swept light; null without a sweep.
@@ -57,8 +48,7 @@ class FrameCascades {
   /// Updates the light of a cascade. Call for the coarsest cascade first.
   void update(int cascade, const CascadeObserver& observer);
 
-  /// Key of a cascade's accumulated light.
-  CacheKey key(int cascade) const { return keys_[cascade].accumulated; }
+  /// Light of the cascades at the grids of the last prepare().
   GatheredLight light() const;
 
  private:
@@ -74,17 +64,16 @@ class FrameCascades {
   std::vector<CachedVolume> volumes(int count, const VolumeShape& shape, const char* what) const;
   static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, int cascade);
   Keys keys_of(int cascade) const;
+  const Volume* geometry(int cascade);
 
   /// Each function updates one result of a cascade, and first the inputs it depends on.
   void inject(int cascade);
   void update_blockers(int cascade);
   void update_links(int cascade);
   void update_reflectors(int cascade);
-  void scatter(int cascade);
   void propagate(int cascade);
   void update_visibility(int cascade);
   void inject_geometry(int cascade, Volume& geometry);
-  const Volume* geometry(int cascade);
 
   Session& session_;
   const Scene& scene_;
@@ -92,15 +81,15 @@ class FrameCascades {
   const RenderOptions& options_;
   FrameLights& lights_;
   Injector injector_;
-  std::optional<BlockerVoxelizer> blocker_;      ///< none: surfaces in the RSMs and the G-buffer block
-  std::optional<ReflectorVoxelizer> reflector_;  ///< none with one bounce
-  std::optional<Propagator> propagator_;         ///< one of the two
+  std::optional<VoxelField> blockers_;    ///< none: surfaces in the RSMs and the G-buffer block
+  std::optional<VoxelField> reflectors_;  ///< none with one bounce
+  std::optional<VoxelField> visibility_;  ///< none: all cells light a surface
+  std::optional<Propagator> propagator_;  ///< one of the two
   std::optional<Sweeper> sweeper_;
-  std::optional<CellVisibility> visibility_;  ///< none: all cells light a surface
   std::vector<CachedVolume> injected_, accumulated_;
-  std::vector<CachedVolume> geometry_;  ///< none without occlusion
-  /// Contents of the sweeper (links and face albedos) and of `visibility_`, per cascade.
-  std::vector<Cached> links_, visible_cells_, reflected_;
+  std::vector<CachedVolume> geometry_;         ///< none without occlusion
+  std::vector<CachedVolume> reflected_;        ///< face albedos; none with one bounce
+  std::vector<Cached> links_, visible_cells_;  ///< contents of the sweeper and of visibility_, per cascade
   std::vector<ClpvGrid> grids_;
   std::vector<Keys> keys_;
   const Surface* camera_ = nullptr;

@@ -83,6 +83,8 @@ void FrameLights::rasterize_shadows() {
     // Shadow maps depend only on the views, not on intensity.
     lit.shadow_cached.update(key_of({}, lit.shadow.views), [&] {
       const StageScope scope(session_, {Pass::rasterize_shadow, {}, lit.index});
+      session_.reserve(lit.shadow.view_table, lit.shadow.views.size() * sizeof(ClpvView), "views of a light");
+      session_.write(lit.shadow.view_table, lit.shadow.views);
       lit.shadow.depths.resize(lit.shadow.views.size());
       for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
         session_.reserve(lit.shadow.depths[v], texels * sizeof(float), "shadow map");
@@ -159,11 +161,6 @@ float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& ligh
   if (format.storage != Storage::float16 || !(flux > 0)) return 1;
   const double doublings = std::floor(std::log2(kFull * std::numbers::pi / flux));
   return std::exp2(std::clamp(doublings, -kMaxDoubling, kMaxDoubling));
-}
-
-ClpvLight scaled(ClpvLight light, float scale) {
-  for (float& component : light.intensity) component *= scale;
-  return light;
 }
 
 }  // namespace clpv

@@ -15,7 +15,7 @@
 #include "pipeline/frame/frame_emission.hpp"
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
-#include "pipeline/raster/shade.hpp"
+#include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
 #include "scene/scene.hpp"
 #include "scene/sky.hpp"
@@ -98,8 +98,5 @@ class FrameLights {
 /// `other`: upper bound of the flux that all other sources send through such a cell [W] (max_emitted_flux).
 float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
                   double other = 0);
-
-/// Returns the light with its intensity multiplied by a factor.
-ClpvLight scaled(ClpvLight light, float scale);
 
 }  // namespace clpv

@@ -51,7 +51,7 @@ nlohmann::json to_json(const std::vector<StageTime>& times) {
   return stages;
 }
 
-void FrameStats::end_startup(const Session&) {
+void FrameStats::end_startup() {
   startup_ms_ = since_mark();
   mark_ = Clock::now();
 }

@@ -15,7 +15,7 @@ namespace clpv {
 class FrameStats {
  public:
   void begin_startup() { mark_ = Clock::now(); }
-  void end_startup(const Session& session);  ///< device opened, programs built, scene uploaded
+  void end_startup();  ///< device opened, programs built, scene uploaded
   void end_first_frame(Session& session);  ///< the first launches compile kernels for their work-group sizes
   void begin_frame() { mark_ = Clock::now(); }
   /// Adds the stage times of the timeline; frames of one camera have equal stages. The statistics report medians over

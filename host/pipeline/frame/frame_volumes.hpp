@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Shapes and number of a frame's volumes, and checks that device and options allow them.
+// Shapes and number of a frame's volumes.
 #pragma once
 
-#include <cstddef>
 #include <memory>
 
 #include "basis/basis.hpp"
-#include "device/session.hpp"
 #include "options/render_options.hpp"
 #include "volume/volume_format.hpp"
 
@@ -15,7 +13,7 @@ namespace clpv {
 VolumeShape light_shape(const RenderOptions& options, const Basis& basis);
 VolumeShape geometry_shape(const RenderOptions& options, const Basis& basis);
 
-/// Shape of a volume of swept light; null without a sweep.
+/// Basis of swept light; null without a sweep.
 std::unique_ptr<Basis> swept_basis(const RenderOptions& options);
 
 /// Returns true if surfaces in the camera's G-buffer block light. A new view then recomputes the RSMs and injected
@@ -28,9 +26,5 @@ int injected_volumes(const RenderOptions& options);
 
 /// Number of stored geometry volumes: one per cascade for scene blockers, else one; 0 without occlusion.
 int geometry_volumes(const RenderOptions& options);
-
-/// Returns `options` after checking them. Throws Error(usage) for contradictory options, Error(device) for volumes
-/// too large for the device.
-const RenderOptions& checked(const Session& session, const RenderOptions& options, const Basis& basis);
 
 }  // namespace clpv

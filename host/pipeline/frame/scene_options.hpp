@@ -2,16 +2,10 @@
 // Options of a user, and the values they resolve to for a scene.
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "options/render_options.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
-
-/// Options that the user set, by name.
-using OptionValues = std::map<std::string, std::string>;
 
 /// Resolves options: first the preset or the defaults, then the scene's values, then the user's other options. The
 /// cascades of a bare model enclose it unless their size is set. Throws Error(usage) for an invalid value.

@@ -77,58 +77,64 @@ Kernel& Gatherer::gather_kernel(std::size_t cascades, bool points) {
   return gather_.try_emplace(key, session_, source, "gather").first->second;
 }
 
-void Gatherer::require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                           const std::vector<const Volume*>& volumes) const {
+void Gatherer::require_fit(const Surface& camera, const GatheredLight& light) const {
   if (camera.format != RsmFormat::float32)
     throw Error(ExitCode::run_time, "gather: the camera's view is not float32");
-  if (volumes.size() != grids.size()) {
-    throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades", volumes.size(), grids.size());
+  if (light.accumulated.size() != light.grids.size()) {
+    throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades", light.accumulated.size(),
+                light.grids.size());
   }
-  for (const Volume* volume : volumes)
+  for (const Volume* volume : light.accumulated)
     clpv::require_fit(*volume, {options_.grid, coefficients_, 3}, options_.format, "gathering");
+  if (sees() && !light.occluded.exists())
+    throw Error(ExitCode::run_time, "gather: no occluded cells, which gather 'visible' needs");
 }
 
 void Gatherer::reserve(std::size_t cascades) {
   session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
-  if (!packs()) return;
+  if (!packs() || cascades <= packed_keys_.size()) return;
   const std::size_t n = options_.grid, pairs = pairs_;
   session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
+  packed_keys_.assign(cascades, std::nullopt);
 }
 
-void Gatherer::pack(const Volume& volume, std::size_t slot) {
+/// Packs the volumes that are new or changed.
+void Gatherer::pack(const GatheredLight& light) {
   const std::size_t n = options_.grid;
-  pack_->set(volume.memory(), packed_, static_cast<cl_uint>(slot * n * n * n));
-  stencil_.launch(*pack_, 1);
+  for (std::size_t c = 0; c < light.grids.size(); ++c) {
+    const auto key = light.keys.empty() ? std::nullopt : std::optional(light.keys[c]);
+    if (key && packed_keys_[c] == key) continue;
+    pack_->set(light.accumulated[c]->memory(), packed_, static_cast<cl_uint>(c * n * n * n));
+    stencil_.launch(*pack_, 1);
+    packed_keys_[c] = key;
+  }
 }
 
-void Gatherer::gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                      const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale,
-                      const Buffer* occluded, const std::vector<bool>& changed) {
-  require_fit(camera, grids, accumulated);
-  if (sees() && occluded == nullptr) throw Error(ExitCode::run_time, "gather: occlusion buffer required with visibility on");
-  reserve(grids.size());
-  cascades_ = grids.size();
-  session_.write(grids_, grids);
+void Gatherer::gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance) {
+  require_fit(camera, light);
+  reserve(light.grids.size());
+  session_.write(grids_, light.grids);
+  cascades_ = light.grids.size();
+  scale_ = light.scale;
+  occluded_ = light.occluded;
   const bool points = camera.position.exists();
-  Kernel& kernel = gather_kernel(grids.size(), points);
-  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_,
-             static_cast<cl_uint>(grids.size()), 1 / scale, irradiance);
+  Kernel& kernel = gather_kernel(cascades_, points);
+  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_, cascades_,
+             1 / scale_, irradiance);
   if (packs()) {
-    for (std::size_t c = 0; c < grids.size(); ++c) {
-      if (changed.empty() || changed[c]) pack(*accumulated[c], c);
-    }
+    pack(light);
     kernel.add(packed_);
-    if (sees()) kernel.add(*occluded);
+    if (sees()) kernel.add(occluded_);
   } else {
-    for (const Volume* volume : accumulated) kernel.add(volume->memory());
+    for (const Volume* volume : light.accumulated) kernel.add(volume->memory());
   }
   table_.add_to(kernel);
   kernel.launch(rows_of_tiles(camera.view), kTileRow);
 }
 
-void Gatherer::add_radiance(Kernel& kernel, float scale, const Buffer* occluded) const {
-  kernel.add(grids_, cascades_, 1 / scale, packed_);
-  if (sees()) kernel.add(*occluded);
+void Gatherer::add_radiance(Kernel& kernel) const {
+  kernel.add(grids_, cascades_, 1 / scale_, packed_);
+  if (sees()) kernel.add(occluded_);
 }
 
 }  // namespace clpv

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
@@ -14,14 +15,23 @@
 #include "kernels/shared/grid.h"
 #include "options/stage_options.hpp"
 #include "pipeline/inject/lookup_table.hpp"
-#include "pipeline/steps/stencil.hpp"
 #include "pipeline/raster/surface.hpp"
+#include "pipeline/steps/stencil.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
 
 /// Adds to a program's source what kernels/gather/radiance.h needs. `swept`: basis of swept light.
 ProgramSource with_radiance(ProgramSource source, const Basis& swept, const GatherOptions& options);
+
+/// Accumulated light of a frame's cascades, finest first.
+struct GatheredLight {
+  std::vector<ClpvGrid> grids;
+  std::vector<const Volume*> accumulated;  ///< one per grid
+  float scale = 1;                         ///< factor by which the volumes scale the light (light_scale)
+  Buffer occluded = {};                    ///< of `grids`, for Gathering::visible: VoxelField::masks()
+  std::vector<std::uint64_t> keys = {};    ///< of the volumes' contents; empty: unknown
+};
 
 /// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces). c is the volume, sampled trilinearly
 /// `gather_offset` cells off the surface. Negative E is clamped to 0.
@@ -34,16 +44,10 @@ class Gatherer {
  public:
   Gatherer(Session& session, const Basis& basis, TransportKind transport, const GatherOptions& options);
 
-  /// Finest cascade first; `accumulated` has one volume per grid. `camera` has format float32;
-  /// points without a view are allowed.
+  /// `camera` has format float32; points without a view are allowed.
   /// `irradiance`: float4 per pixel, E of red, green, blue [W/m^2] and 0; all 0 without a surface.
-  /// `scale`: factor by which the volumes scale the light (light_scale.hpp).
-  /// `occluded`: CellVisibility::occluded() of these grids, if GatherOptions::gather is `visible`.
-  /// `changed`: volumes that changed since the last call; empty: all.
   /// Throws Error(run_time) if counts or shapes do not match, or device memory does not suffice.
-  void gather(const Surface& camera, const std::vector<ClpvGrid>& grids,
-              const std::vector<const Volume*>& accumulated, Buffer& irradiance, float scale = 1,
-              const Buffer* occluded = nullptr, const std::vector<bool>& changed = {});
+  void gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance);
 
   /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() on the device.
   const Buffer& grids() const { return grids_; }
@@ -53,17 +57,15 @@ class Gatherer {
   /// needs packed volumes.
   bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
 
-  /// Adds the arguments CLPV_RADIANCE (kernels/gather/radiance.h): the packed volumes of the last gather(). `scale`, `occluded`: as
-  /// for gather().
-  void add_radiance(Kernel& kernel, float scale, const Buffer* occluded) const;
+  /// Adds the arguments CLPV_RADIANCE (kernels/gather/radiance.h): the packed volumes of the last gather().
+  void add_radiance(Kernel& kernel) const;
 
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
   Kernel& gather_kernel(std::size_t cascades, bool points);
-  void require_fit(const Surface& camera, const std::vector<ClpvGrid>& grids,
-                   const std::vector<const Volume*>& volumes) const;
+  void require_fit(const Surface& camera, const GatheredLight& light) const;
   void reserve(std::size_t cascades);
-  void pack(const Volume& volume, std::size_t slot);
+  void pack(const GatheredLight& light);
 
   Session& session_;
   GatherOptions options_;
@@ -74,8 +76,10 @@ class Gatherer {
   std::optional<Kernel> pack_;
   /// By number of cascades, 0 for packed volumes, and whether surfaces are points without a view.
   std::map<std::pair<std::size_t, bool>, Kernel> gather_;
-  Buffer packed_, grids_;
+  Buffer packed_, grids_, occluded_;
+  std::vector<std::optional<std::uint64_t>> packed_keys_;  ///< of the volumes in packed_
   cl_uint cascades_ = 0;
+  float scale_ = 1;
 };
 
 }  // namespace clpv

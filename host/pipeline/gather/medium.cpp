@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/medium.hpp"
 
-#include <algorithm>
-
 #include "kernels/shared/near.h"
 
 namespace clpv {
@@ -51,25 +49,17 @@ void MediumLight::reserve(const ClpvView& view) {
 }
 
 void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer,
-                          const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
+                          const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   reserve(view);
   const cl::NDRange rows(tiles_along(medium_pixels(view.width)), medium_pixels(view.height));
   volumes_.set(view, camera.depth, medium_, ends_, scattered_);
-  gatherer.add_radiance(volumes_, scale, occluded);
+  gatherer.add_radiance(volumes_);
   volumes_.launch(rows, kTileRow);
-  for (const ShadowedLight& shadowed : lights) {
-    const cl_uint count = shadowed.views.size();
-    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView),
-                     "views of a light in the medium");
-    session_.write(views_, shadowed.views);
-    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
-      light_
-          .set(view, camera.depth, shadowed.light, views_, count, which,
-               count > 0 ? shadowed.depths[which] : Buffer(), scattered_)
-          .launch(rows, kTileRow);
-    }
-  }
+  for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
+    light_.set(view, camera.depth);
+    add_shadow_map(light_, shadowed, which).add(scattered_).launch(rows, kTileRow);
+  });
   blur_.set(view, ends_, scattered_, blurred_).launch(rows, kTileRow);
 }
 

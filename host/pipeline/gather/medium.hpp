@@ -9,7 +9,7 @@
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
 #include "pipeline/gather/gather.hpp"
-#include "pipeline/raster/shade.hpp"
+#include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
 
 namespace clpv {
@@ -19,10 +19,8 @@ class MediumLight {
   /// `basis`: of the gathered light, swept_basis(). `medium`: that of all lights given to scatter().
   MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium, const MediumOptions& options);
 
-  /// Computes the scattered light before `camera`: of `lights`, and of the volumes that `gatherer` gathered last. `scale`,
-  /// `occluded`: as for Gatherer::gather().
-  void scatter(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-               float scale, const Buffer* occluded);
+  /// Computes the scattered light before `camera`: of `lights`, and of the volumes that `gatherer` gathered last.
+  void scatter(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights);
 
   /// Adds the light of the last scatter() to an image of `camera`, which the medium attenuates. `alone`: replaces the image.
   void add(const Surface& camera, bool alone, Buffer& image);
@@ -34,7 +32,7 @@ class MediumLight {
   ClpvMedium medium_;
   MediumOptions options_;
   Kernel light_, volumes_, blur_, add_;
-  Buffer views_, ends_, scattered_, blurred_;
+  Buffer ends_, scattered_, blurred_;
   std::size_t plane_ = 0;  ///< numbers of a plane of the buffers
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/near.hpp"
 
-#include <algorithm>
-
 #include "basis/near_directions.hpp"
 #include "kernels/shared/near.h"
 
@@ -37,7 +35,7 @@ ProgramSource near_source(const char* file, const SceneBuffers& buffers, const N
       .flag("CLPV_TEXTURED", buffers.textured)
       .flag("CLPV_COLOURED", buffers.coloured)
       .flag("CLPV_EMISSIVE", buffers.emissive)
-      .flag("CLPV_MEDIUM", options.medium);
+      .flag("CLPV_MEDIUM", buffers.medium);
   return source;
 }
 
@@ -138,7 +136,7 @@ Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
 }
 
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
-                           const std::vector<ShadowedLight>& lights, float scale, const Buffer* occluded) {
+                           const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
                          tiles_down(near_rows(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
@@ -148,20 +146,13 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
     set_hits(emit_, view, fresh).launch(rays, group);
     fresh = false;
   }
-  for (const ShadowedLight& shadowed : lights) {
-    const cl_uint count = shadowed.views.size();
-    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView), "views of a light");
-    session_.write(views_, shadowed.views);
-    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
-      set_hits(light_, view, fresh)
-          .add(shadowed.light, views_, count, which, count > 0 ? shadowed.depths[which] : Buffer())
-          .launch(rays, group);
-      fresh = false;
-    }
-  }
+  for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
+    add_shadow_map(set_hits(light_, view, fresh), shadowed, which).launch(rays, group);
+    fresh = false;
+  });
   if (!reflect_) return;
   set_hits(*reflect_, view, fresh);
-  gatherer.add_radiance(*reflect_, scale, occluded);
+  gatherer.add_radiance(*reflect_);
   reflect_->launch(rays, group);
 }
 
@@ -186,13 +177,13 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
 }
 
 void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                    float scale, const Buffer* occluded, Buffer& irradiance) {
+                    Buffer& irradiance) {
   const ClpvView& view = camera.view;
-  light_hits(camera, gatherer, lights, scale, occluded);
+  light_hits(camera, gatherer, lights);
   const cl::NDRange rows(tiles_along(near_pixels(view.width, options_.step)),
                          near_rows(view.height, options_.step));
   near_.set(view, points_, directions_, distances_, radiances_, near_light_);
-  gatherer.add_radiance(near_, scale, occluded);
+  gatherer.add_radiance(near_);
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, near_light_, blurred_).launch(rows, kTileRow);
   widen_.set(view, points_, blurred_, near_light_).launch(rows, kTileRow);

@@ -13,7 +13,7 @@
 #include "options/stage_options.hpp"
 #include "pipeline/gather/gather.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
-#include "pipeline/raster/shade.hpp"
+#include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
 #include "pipeline/gather/triangle_tree.hpp"
 
@@ -33,20 +33,18 @@ class NearField {
   /// Call after positions of the scene changed.
   void move();
 
-  /// Traces the rays of what `camera` sees, in the grids that `gatherer` gathered from last. Hits stay valid while camera,
-  /// triangles and grids are the same.
+  /// Traces the rays of what `camera` sees, in the grids that `gatherer` gathered from last. Hits stay valid while
+  /// camera, triangles and grids are the same.
   void trace(const Surface& camera, const Gatherer& gatherer);
 
-  /// Corrects the irradiance that `gatherer` gathered last for `camera`, by the hits of the last trace(). `lights`, `scale`,
-  /// `occluded`: as for Shader::light() and Gatherer::gather().
+  /// Corrects the irradiance that `gatherer` gathered last for `camera`, by the hits of the last trace().
   void add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-           float scale, const Buffer* occluded, Buffer& irradiance);
+           Buffer& irradiance);
 
  private:
   void upload_tree();
   void reserve(const ClpvView& view);
-  void light_hits(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                  float scale, const Buffer* occluded);
+  void light_hits(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights);
   Kernel& set_hits(Kernel& kernel, const ClpvView& view, bool fresh);
 
   Session& session_;
@@ -58,7 +56,7 @@ class NearField {
   Kernel points_kernel_, trace_, light_, emit_, near_, blur_, widen_, add_;
   std::optional<Kernel> others_;   ///< with step > 1
   std::optional<Kernel> reflect_;  ///< with more than one bounce
-  Buffer nodes_, leaves_, directions_, views_;
+  Buffer nodes_, leaves_, directions_;
   Buffer points_, distances_, counts_, hits_, radiances_, near_light_, blurred_;
   std::size_t plane_ = 0;  ///< numbers of a plane of the buffers
 };

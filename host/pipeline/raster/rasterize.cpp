@@ -96,13 +96,13 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
   return resolve_.try_emplace(wanted, session_, source, name).first->second;
 }
 
-void Rasterizer::find_visible(const Pass& pass) {
-  const std::size_t pixels = padded_pixels(pass.view), slices = slice_count(pass.view);
+void Rasterizer::find_visible(const Drawing& drawing) {
+  const std::size_t pixels = padded_pixels(drawing.view), slices = slice_count(drawing.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   session_.reserve(slice_counts_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
-  draw(pass, 0, list_clusters(pass.view), true);
+  draw(drawing, 0, list_clusters(drawing.view), true);
 }
 
 /// Lists the triangle clusters that may be visible and returns their number.
@@ -114,17 +114,18 @@ unsigned Rasterizer::list_clusters(const ClpvView& view) {
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
-void Rasterizer::set_up(const Pass& pass, unsigned first, unsigned count) {
-  const cl_uint cull = pass.cull_back_faces ? 1 : 0;
+void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) {
+  const cl_uint cull = drawing.cull_back_faces ? 1 : 0;
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
-  session_.fill_zero(slice_counts_, slice_count(pass.view) * sizeof(cl_uint));
+  session_.fill_zero(slice_counts_, slice_count(drawing.view) * sizeof(cl_uint));
   if (count == 0) return;
   set_up_
-      .set(pass.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices, scene_.triangles,
-           scene_.materials, counts_, list_room(), listed_, entry_room(), entries_, slice_counts_, to_clip_)
+      .set(drawing.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
+           scene_.triangles, scene_.materials, counts_, list_room(), listed_, entry_room(), entries_,
+           slice_counts_, to_clip_)
       .launch(count * kItemsARun, kRasterGroup);
   set_up_clipped_
-      .set(pass.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
+      .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, slice_counts_, to_clip_)
       .launch(kClippers, kRasterGroup);
 }
@@ -142,10 +143,10 @@ void Rasterizer::bin(const ClpvView& view) {
 
 /// Lists the triangles of a range of clusters by tile, and grows lists that are too short. Returns false if a list
 /// would exceed its limit.
-bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
+bool Rasterizer::list(const Drawing& drawing, unsigned first, unsigned count) {
   for (;;) {
-    set_up(pass, first, count);
-    bin(pass.view);
+    set_up(drawing, first, count);
+    bin(drawing.view);
     const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
     const std::size_t listed = counts[CLPV_LISTED], entered = counts[CLPV_ENTERED];
     if (count > 1 && (counts[CLPV_ENTERED_TOO_MANY] > 0 || entered > max_listed_)) return false;
@@ -157,10 +158,10 @@ bool Rasterizer::list(const Pass& pass, unsigned first, unsigned count) {
 
 /// Draws a range of clusters. `fresh`: starts from an empty surface, else adds to it. Halves the range if the tile
 /// lists would exceed their limit.
-void Rasterizer::draw(const Pass& pass, unsigned first, unsigned count, bool fresh) {
-  if (list(pass, first, count)) return draw_tiles(pass.view, fresh);
-  draw(pass, first, count / 2, fresh);
-  draw(pass, first + count / 2, count - count / 2, false);
+void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh) {
+  if (list(drawing, first, count)) return draw_tiles(drawing.view, fresh);
+  draw(drawing, first, count / 2, fresh);
+  draw(drawing, first + count / 2, count - count / 2, false);
 }
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {

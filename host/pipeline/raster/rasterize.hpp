@@ -38,7 +38,7 @@ class Rasterizer {
   void rasterize_shadow(const ClpvView& view, Buffer& depth);
 
  private:
-  struct Pass {
+  struct Drawing {
     ClpvView view;
     bool cull_back_faces;
   };
@@ -55,11 +55,11 @@ class Rasterizer {
   cl_uint list_room() const;   ///< capacity in triangles
   cl_uint entry_room() const;  ///< capacity in entries
   void clear(Surface& surface);
-  void find_visible(const Pass& pass);
+  void find_visible(const Drawing& drawing);
   unsigned list_clusters(const ClpvView& view);
-  void draw(const Pass& pass, unsigned first, unsigned count, bool fresh);
-  bool list(const Pass& pass, unsigned first, unsigned count);
-  void set_up(const Pass& pass, unsigned first, unsigned count);
+  void draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh);
+  bool list(const Drawing& drawing, unsigned first, unsigned count);
+  void set_up(const Drawing& drawing, unsigned first, unsigned count);
   void bin(const ClpvView& view);
   void draw_tiles(const ClpvView& view, bool fresh);
 

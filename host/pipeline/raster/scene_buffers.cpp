@@ -135,7 +135,6 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   buffers.materials = session.upload(with_textures(scene.materials, buffers.white), "materials");
   buffers.textures = session.upload(table.levels, "texture table");
   buffers.texels = session.upload(table.texels, "textures");
-  buffers.vertex_count = scene.vertices.size();
   buffers.triangle_count = scene.triangles.size();
   buffers.textured = std::any_of(scene.materials.begin(), scene.materials.end(), is_textured);
   buffers.coloured = is_coloured(scene.vertices);

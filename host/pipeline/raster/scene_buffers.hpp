@@ -20,7 +20,7 @@ struct SceneBuffers {
   Buffer textures;
   Buffer texels;       ///< 4 bytes a texel: sRGB-encoded RGB, linear alpha
   unsigned white = 0;  ///< index of the white texture
-  unsigned vertex_count = 0, triangle_count = 0;
+  unsigned triangle_count = 0;
   /// Features of the scene: textures, vertex colours other than 1, emissive materials, masked materials.
   bool textured = false, coloured = false, emissive = false, masked = false, medium = false;
   Bounds bounds;                               ///< of all vertices [m]

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/raster/shade.hpp"
 
-#include <algorithm>
-
 #include "pipeline/raster/surface.hpp"
 #include "support/error.hpp"
 
@@ -50,25 +48,13 @@ void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& ligh
     session_.reserve(direct_, pixels_ * sizeof(cl_float4), "direct light");
   }
   if (lights.empty()) session_.fill_zero(direct_, pixels_ * sizeof(cl_float4));
-  bool fresh = true;
-  for (const ShadowedLight& shadowed : lights) {
-    require_fit(shadowed);
-    add(camera, shadowed, fresh);
-    fresh = false;
-  }
-}
-
-void Shader::add(const Surface& camera, const ShadowedLight& shadowed, bool fresh) {
-  const std::size_t count = shadowed.views.size();
-  session_.reserve(views_, count * sizeof(ClpvView), "a light's views");
-  session_.write(views_, shadowed.views);
-  for (std::size_t which = 0; which < std::max<std::size_t>(count, 1); ++which) {
-    light_
-        .set(camera.view, camera.depth, camera.normal, shadowed.light, views_, static_cast<cl_uint>(count),
-             static_cast<cl_uint>(which), count > 0 ? shadowed.depths[which] : Buffer(),
-             static_cast<cl_uint>(fresh && which == 0 ? 1 : 0), direct_)
-        .launch(rows_of_tiles(camera.view), kTileRow);
-  }
+  for (const ShadowedLight& shadowed : lights) require_fit(shadowed);
+  cl_uint fresh = 1;
+  for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
+    light_.set(camera.view, camera.depth, camera.normal);
+    add_shadow_map(light_, shadowed, which).add(fresh, direct_).launch(rows_of_tiles(camera.view), kTileRow);
+    fresh = 0;
+  });
 }
 
 void Shader::show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image) {

@@ -7,21 +7,11 @@
 
 #include "device/kernel.hpp"
 #include "device/session.hpp"
-#include "kernels/shared/light.h"
 #include "options/show.hpp"
+#include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
 
 namespace clpv {
-
-/// A light and its shadow maps: a depth buffer per view, one float per texel, row 0 first. Depth is along the view's
-/// forward axis [m]; 0 means no surface. Several views share their eye and together cover all lit directions. A
-/// surface uses the view whose forward axis is nearest to its direction. Without a view the light casts no shadow. A
-/// surface outside the map is lit.
-struct ShadowedLight {
-  ClpvLight light{};
-  std::vector<ClpvView> views;
-  std::vector<Buffer> depths;
-};
 
 class Shader {
  public:
@@ -38,12 +28,9 @@ class Shader {
   void show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image);
 
  private:
-  void add(const Surface& camera, const ShadowedLight& shadowed, bool fresh);
-
   Session& session_;
   Kernel light_, shade_;
   Buffer direct_;  // float4 per pixel, E of all lights
-  Buffer views_;   // views of the current light
   std::size_t pixels_ = 0;
 };
 

@@ -11,12 +11,12 @@ constexpr int kChannels = 3;
 
 }  // namespace
 
-Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& options)
+Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series)
     : volumes_(session, options.grid, options.format),
       reflectors_(options.parts.size()),
       inject_reflected_(session, volumes_.program("sweep/bounce.cl", bounce_source_text(basis)),
                         "inject_reflected") {
-  if (options.bounces != Bounces::all) return;
+  if (!series) return;
   const ProgramSource program = volumes_.program("sweep/bounce.cl", bounce_source_text(basis));
   inject_unit_.emplace(session, program, "inject_unit");
   extend_series_.emplace(session, program, "extend_series");

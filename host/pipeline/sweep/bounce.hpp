@@ -21,11 +21,10 @@ namespace clpv {
 /// and `bounced` are light volumes of the basis. Deterministic to the bit.
 class Bouncer {
  public:
-  /// `options`.bounces: two or all. With all, only the coarsest cascade evaluates the series; finer ones interpolate
-  /// incident flux.
-  Bouncer(Session& session, const Basis& basis, const SweepOptions& options);
+  /// `series`: the coarsest cascade evaluates the series of all bounces; finer ones interpolate incident flux.
+  Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series);
 
-  /// Sets the reflectors of a cascade (ReflectorVoxelizer::reflectors), which must outlive this object. For the
+  /// Sets the reflectors of a cascade (reflector_masks), which must outlive this object. For the
   /// coarsest cascade it also restarts the series: S = R.
   void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
@@ -41,10 +40,10 @@ class Bouncer {
   void inject_series(const Buffer& first_swept, const Buffer& second_swept, const Volume& injected,
                      Volume& bounced);
 
-  /// Incident flux on the faces of a cascade with all bounces, written by sweep_collect.cl; null for the finest
-  /// cascade.
+  /// Incident flux on the faces of a cascade, written by sweep_collect.cl; null for the finest cascade and without a
+  /// series.
   const Buffer* incident(std::size_t cascade) const {
-    return cascade == 0 ? nullptr : &incident_[cascade - 1];
+    return cascade == 0 || incident_.empty() ? nullptr : &incident_[cascade - 1];
   }
   /// Writes I + R D. D is interpolated from incident() of the next coarser cascade. `offset`: offset_in_coarser().
   void inject_interpolated(std::size_t cascade, const std::array<int, 3>& offset, const Volume& injected,
@@ -54,9 +53,9 @@ class Bouncer {
   SweepVolumes volumes_;
   std::vector<const Volume*> reflectors_;
   const Volume* series_ = nullptr;         ///< S so far: R of the coarsest cascade, or series_volume_
-  std::unique_ptr<Volume> series_volume_;  ///< null with two bounces
+  std::unique_ptr<Volume> series_volume_;  ///< null without a series
   std::vector<Buffer>
-      incident_;  ///< flux on each face of all cascades except the finest; empty with two bounces
+      incident_;  ///< flux on each face of all cascades except the finest; empty without a series
   Kernel inject_reflected_;
   std::optional<Kernel> inject_unit_, extend_series_, inject_series_, inject_interpolated_;
 };

@@ -5,7 +5,6 @@
 
 #include "basis/sweep.hpp"
 #include "codegen/sweep_source.hpp"
-#include "pipeline/frame/frame_lights.hpp"
 #include "pipeline/sweep/sweep_tables.hpp"
 
 namespace clpv {
@@ -14,7 +13,8 @@ namespace {
 constexpr std::size_t kSourceVolumes = 3 * kSweepBins;
 
 ProgramSource scattering_program(const SweepVolumes& volumes, const ClpvMedium& medium) {
-  ProgramSource source = volumes.program("sweep/sweep_medium.cl", scatter_source_text(double{medium.anisotropy}));
+  ProgramSource source =
+      volumes.program("sweep/sweep_medium.cl", scatter_source_text(double{medium.anisotropy}));
   source.literals.flag("CLPV_MEDIUM", true);
   return source;
 }
@@ -30,6 +30,10 @@ std::vector<cl_float4> mean_directions() {
 
 }  // namespace
 
+bool scatters(const std::optional<ClpvMedium>& medium) {
+  return medium && std::ranges::any_of(medium->scattering, [](float sigma) { return sigma > 0; });
+}
+
 SweepMedium::SweepMedium(Session& session, const SweepVolumes& volumes, const ClpvMedium& medium, int grid,
                          std::size_t cascades)
     : session_(session),
@@ -44,29 +48,18 @@ SweepMedium::SweepMedium(Session& session, const SweepVolumes& volumes, const Cl
     inside_.push_back(zeroed_buffer(session, numbers * sizeof(float), "cells in the medium"));
 }
 
-bool SweepMedium::scatters() const {
-  return std::ranges::any_of(medium_.scattering, [](float sigma) { return sigma > 0; });
-}
-
 void SweepMedium::place(std::size_t cascade, const ClpvGrid& grid) {
   session_.write(inside_[cascade], cells_in_medium(medium_, grid));
 }
 
-void SweepMedium::scatter_lights(const ClpvGrid& grid, const std::vector<ShadowedLight>& lights,
-                                 float scale) {
-  if (!scatters()) return;
+void SweepMedium::scatter_lights(const ClpvGrid& grid, const std::vector<ShadowedLight>& lights) {
+  if (!scatters(medium_)) return;
   session_.fill_zero(of_lights_, of_lights_.bytes());
-  for (const ShadowedLight& shadowed : lights) {
-    const cl_uint count = shadowed.views.size();
-    session_.reserve(views_, std::max<std::size_t>(count, 1) * sizeof(ClpvView),
-                     "views of a light in the medium");
-    session_.write(views_, shadowed.views);
-    for (cl_uint which = 0; which < std::max(count, 1u); ++which) {
-      scatter_lights_.set(grid, scaled(shadowed.light, scale), views_, count, which,
-                          count > 0 ? shadowed.depths[which] : Buffer(), bins_, of_lights_);
-      volumes_.launch(scatter_lights_, 1);
-    }
-  }
+  for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
+    scatter_lights_.set(grid);
+    add_shadow_map(scatter_lights_, shadowed, which).add(bins_, of_lights_);
+    volumes_.launch(scatter_lights_, 1);
+  });
 }
 
 void SweepMedium::scatter_swept(const Buffer& swept) {

@@ -6,8 +6,15 @@
 #include <utility>
 
 #include "basis/sweep.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
+namespace {
+
+constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
+
+}  // namespace
+
 std::vector<ClpvSweepBin> sweep_bin_table(int grid) {
   const LinkVolumes links = link_volumes();
   const std::vector<SweepBin> bins = sweep_bins(1);
@@ -101,6 +108,27 @@ SweepMeans sweep_means(const Basis& basis, int parts) {
     }
   }
   return table;
+}
+
+std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
+  if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
+    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,
+                coarser.cell);
+  }
+  const int most = static_cast<int>(finer.n) + 1;
+  std::array<int, 3> offset{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = (double{finer.origin[axis]} - coarser.origin[axis]) / finer.cell;
+    const double whole = std::round(cells);
+    if (std::abs(cells - whole) > kAligned || whole < -1 || whole > most) {
+      throw Error(ExitCode::run_time,
+                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
+                  "numbers -1..{} allowed",
+                  axis, cells, most);
+    }
+    offset[axis] = whole;
+  }
+  return offset;
 }
 
 }  // namespace clpv

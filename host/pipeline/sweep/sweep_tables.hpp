@@ -2,6 +2,7 @@
 // Tables of bins and directions for the kernels of the sweep (kernels/shared/sweep.h).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -29,5 +30,9 @@ struct SweepMeans {
   std::vector<float> means;       ///< 24 parts^2 x emitting; 0 for entries that a bin does not need
 };
 SweepMeans sweep_means(const Basis& basis, int parts);
+
+/// Returns the offset from the coarser grid's minimum corner to the finer one's, in finer cells. Throws
+/// Error(run_time) if the finer grid is not half as wide, or not inside the coarser one.
+std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer);
 
 }  // namespace clpv

@@ -4,33 +4,25 @@
 namespace clpv {
 namespace {
 
-constexpr unsigned kMaxOccluders = 1u << 20;  // per launch
-constexpr std::size_t kPoints = 64;           // points per cube between cell centres, one byte each
-
-ProgramSource program_of(int grid) {
-  ProgramSource source{"voxels/visibility.cl", {}, {}};
-  source.literals.integer("CLPV_GRID", grid);
-  return source;
-}
-
-/// One cube between centres for each cell except the last ones.
-VoxelMaskShape occlusion_shape(int grid, int cascades) {
-  return {grid, grid - 1, kPoints / sizeof(cl_uint), static_cast<std::size_t>(cascades)};
-}
+constexpr std::size_t kPoints = 64;  // points per cube between cell centres, one byte each
 
 }  // namespace
 
-std::size_t CellVisibility::bytes(int grid) {
-  return occlusion_shape(grid, 1).bytes();
+VoxelKind visibility_masks(int grid, int cascades) {
+  // One cube between centres for each cell except the last ones.
+  const VoxelMaskShape shape{grid, grid - 1, kPoints / sizeof(cl_uint), static_cast<std::size_t>(cascades)};
+  VoxelKind kind{.what = "cells occluded by triangles",
+                 .shape = shape,
+                 .max_triangles = 1u << 20,
+                 .program = {"voxels/visibility.cl", {}, {}},
+                 .kernel = "occlude_cells",
+                 .textured = false};
+  kind.program.literals.integer("CLPV_GRID", grid);
+  return kind;
 }
 
-CellVisibility::CellVisibility(Session& session, const SceneBuffers& scene, int grid, int cascades)
-    : occluded_(session, scene, occlusion_shape(grid, cascades), kMaxOccluders,
-                "cells occluded by triangles"),
-      triangles_(session, program_of(grid), "occlude_cells") {}
-
-void CellVisibility::update(std::size_t cascade, const ClpvGrid& grid) {
-  occluded_.update(cascade, grid, triangles_, occluded_.buffer(), occluded_.slot(cascade));
+std::size_t visibility_bytes(int grid) {
+  return visibility_masks(grid, 1).shape.bytes();
 }
 
 }  // namespace clpv

@@ -3,7 +3,6 @@
 // (kernels/voxels/voxel_masks.cl).
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,10 +12,9 @@
 #include "kernels/shared/grid.h"
 #include "kernels/shared/region.h"
 #include "pipeline/raster/scene_buffers.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv {
-
-inline constexpr std::size_t kMaskGroup = 64;  // work-items per group
 
 static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
 
@@ -31,35 +29,40 @@ struct VoxelMaskShape {
   std::size_t bytes() const { return words_a_cascade() * cascades * sizeof(cl_uint); }
 };
 
-class VoxelMasks {
- public:
-  /// `scene` must not change except by upload_moving(). `max_triangles`: maximum number of triangles per launch, since larger
-  /// launches take seconds on some devices. Throws Error(run_time) if device memory does not suffice.
-  VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape, unsigned max_triangles,
-             const std::string& what);
+/// What triangles set in the cells of cascades: blocker_masks(), reflector_masks() or visibility_masks().
+struct VoxelKind {
+  std::string what;  ///< for errors
+  VoxelMaskShape shape;
+  unsigned max_triangles;  ///< of one launch, since larger launches take seconds on some devices
+  /// Kernel that sets masks of a region's cells from triangles in any order. Its arguments are the region, the clusters
+  /// (triangle_number of kernels/voxels/region.h), the scene's triangles, its textures if `textured`, the masks,
+  /// and the index of the cascade's masks if `indexed`.
+  ProgramSource program;
+  std::string kernel;
+  bool textured = true, indexed = true;
+  /// Kernel that computes a volume from the masks, and from their index if `indexed`; empty: none.
+  ProgramSource volume_program = {};
+  std::string volume_kernel = {};
+};
 
-  /// Updates a cascade's masks for the position of `grid` and the current scene. `voxelize`: kernel that sets masks of
-  /// the region's cells from triangles in any order. Its arguments are the region, the clusters (triangle_number
-  /// of kernels/voxels/region.h), the scene's triangles, and `rest`.
-  template <KernelArgument... Rest>
-  void update(std::size_t cascade, const ClpvGrid& grid, Kernel& voxelize, const Rest&... rest) {
-    const std::optional<ClpvRegion> region = prepare(cascade, grid);
-    if (!region) return;
-    const unsigned step = std::max(max_triangles_ / CLPV_CLUSTER, 1u);
-    for (unsigned first = 0; first < near_; first += step) {
-      const cl_uint count = std::min(near_ - first, step);
-      voxelize.set(*region, clusters_, cl_uint{first}, count, scene_.triangle_count, scene_.vertices,
-                   scene_.triangles, scene_.materials, rest...);
-      voxelize.launch(cl::NDRange(std::size_t{count} * CLPV_CLUSTER), cl::NDRange(CLPV_CLUSTER));
-    }
-  }
+/// Masks that triangles set in the cells of cascades, and the volumes that follow from them. Deterministic: the order
+/// of triangles does not matter.
+class VoxelField {
+ public:
+  /// `scene` must not change except by upload_moving(). Throws Error(run_time) if device memory does not suffice.
+  VoxelField(Session& session, const SceneBuffers& scene, VoxelKind kind);
+
+  /// Updates a cascade's masks for the position of `grid` and the current scene.
+  void update(std::size_t cascade, const ClpvGrid& grid);
+  /// The same, and overwrites `volume`.
+  void update(std::size_t cascade, const ClpvGrid& grid, Volume& volume);
 
   /// Masks of all stored cascades, finest first.
-  const Buffer& buffer() const { return masks_; }
-  /// Returns the index of a cascade's masks among `VoxelMaskShape::cascades`.
-  cl_uint slot(std::size_t cascade) const;
+  const Buffer& masks() const { return masks_; }
 
  private:
+  /// Index of a cascade's masks among the stored cascades.
+  cl_uint slot(std::size_t cascade) const;
   struct State {  ///< inputs of a cascade's masks
     ClpvRegion place;
     unsigned instant;
@@ -76,11 +79,12 @@ class VoxelMasks {
 
   Session& session_;
   SceneBuffers scene_;
-  VoxelMaskShape shape_;
-  unsigned max_triangles_, near_ = 0;  ///< near_: number of listed clusters
+  VoxelKind kind_;
+  unsigned near_ = 0;  ///< number of listed clusters
   std::vector<std::optional<State>> states_;
   Buffer masks_, spare_, clusters_;
-  Kernel move_, clear_;
+  Kernel voxelize_, move_, clear_;
+  std::optional<Kernel> volume_;
 };
 
 }  // namespace clpv

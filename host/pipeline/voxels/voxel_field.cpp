@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/voxels/voxel_masks.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -12,6 +13,7 @@ namespace {
 constexpr double kReach = 0.51;
 // Bases are this many grids apart; the base is constant while a cascade moves within that distance.
 constexpr int kGridsApart = 4;
+constexpr std::size_t kMaskGroup = 64;  // work-items per group
 
 /// Returns the position of a grid. Its first cell is at least two grids from the base along each axis, so that cell
 /// indices nearby are not negative.
@@ -67,29 +69,52 @@ std::size_t VoxelMaskShape::words_a_cascade() const {
   return along * along * along * words;
 }
 
-VoxelMasks::VoxelMasks(Session& session, const SceneBuffers& scene, const VoxelMaskShape& shape,
-                       unsigned max_triangles, const std::string& what)
+VoxelField::VoxelField(Session& session, const SceneBuffers& scene, VoxelKind kind)
     : session_(session),
       scene_(scene),
-      shape_(shape),
-      max_triangles_(max_triangles),
-      states_(shape.cascades),
-      masks_(session.buffer(shape.bytes(), what)),
+      kind_(std::move(kind)),
+      states_(kind_.shape.cascades),
+      masks_(session.buffer(kind_.shape.bytes(), kind_.what)),
       clusters_(session.buffer(std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
-                               what + ": clusters")),
+                               kind_.what + ": clusters")),
+      voxelize_(session, kind_.program, kind_.kernel),
       move_(session, kMasks, "move_masks"),
       clear_(session, kMasks, "clear_masks") {
-  if (shape.valid == 0) session_.fill_zero(masks_, shape.bytes());  // no other code writes them
-  if (shape.cascades > 1)
-    spare_ = session.buffer(shape.words_a_cascade() * sizeof(cl_uint), what + ": moved");
+  if (!kind_.volume_kernel.empty()) volume_.emplace(session, kind_.volume_program, kind_.volume_kernel);
+  if (kind_.shape.valid == 0) session_.fill_zero(masks_, kind_.shape.bytes());  // no other code writes them
+  if (kind_.shape.cascades > 1)
+    spare_ = session.buffer(kind_.shape.words_a_cascade() * sizeof(cl_uint), kind_.what + ": moved");
 }
 
-cl_uint VoxelMasks::slot(std::size_t cascade) const {
+void VoxelField::update(std::size_t cascade, const ClpvGrid& grid) {
+  const std::optional<ClpvRegion> region = prepare(cascade, grid);
+  if (!region) return;
+  const unsigned step = std::max(kind_.max_triangles / CLPV_CLUSTER, 1u);
+  for (cl_uint first = 0; first < near_; first += step) {
+    const cl_uint count = std::min(near_ - first, step);
+    voxelize_.set(*region, clusters_, first, count, scene_.triangle_count, scene_.vertices, scene_.triangles,
+                  scene_.materials);
+    if (kind_.textured) voxelize_.add(scene_.textures, scene_.texels);
+    voxelize_.add(masks_);
+    if (kind_.indexed) voxelize_.add(slot(cascade));
+    voxelize_.launch(cl::NDRange(std::size_t{count} * CLPV_CLUSTER), cl::NDRange(CLPV_CLUSTER));
+  }
+}
+
+void VoxelField::update(std::size_t cascade, const ClpvGrid& grid, Volume& volume) {
+  update(cascade, grid);
+  Kernel& kernel = volume_.value().set(masks_);
+  if (kind_.indexed) kernel.add(slot(cascade));
+  const std::size_t cells = kind_.shape.cells;
+  kernel.add(volume.memory()).launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMaskGroup, 1, 1));
+}
+
+cl_uint VoxelField::slot(std::size_t cascade) const {
   return std::min(cascade, states_.size() - 1);
 }
 
 /// Clears the stale masks and returns their region; none if all masks are current.
-std::optional<ClpvRegion> VoxelMasks::prepare(std::size_t cascade, const ClpvGrid& grid) {
+std::optional<ClpvRegion> VoxelField::prepare(std::size_t cascade, const ClpvGrid& grid) {
   std::optional<State>& state = states_[slot(cascade)];
   const ClpvRegion place = place_of(grid);
   const ClpvRegion region = state ? stale_cells(*state, place) : whole(place);
@@ -102,19 +127,19 @@ std::optional<ClpvRegion> VoxelMasks::prepare(std::size_t cascade, const ClpvGri
   return region.boxes > 0 ? std::optional(region) : std::nullopt;
 }
 
-ClpvRegion VoxelMasks::whole(ClpvRegion place) const {
-  const int last = shape_.cells - 1;
+ClpvRegion VoxelField::whole(ClpvRegion place) const {
+  const int last = kind_.shape.cells - 1;
   add_box(place, {{0, 0, 0}, {last, last, last}});
   return place;
 }
 
 /// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if a grid moved
 /// and only one cascade is stored, or if more than one time step passed.
-ClpvRegion VoxelMasks::stale_cells(const State& state, ClpvRegion place) const {
+ClpvRegion VoxelField::stale_cells(const State& state, ClpvRegion place) const {
   if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
   for (int a = 0; a < 3; ++a) {
     place.moved[a] = place.first[a] - state.place.first[a];
-    const bool movable = spare_.exists() && std::abs(place.moved[a]) < shape_.valid;
+    const bool movable = spare_.exists() && std::abs(place.moved[a]) < kind_.shape.valid;
     if (place.moved[a] != 0 && !movable) return whole(place);
   }
   add_new_cells(place);
@@ -122,8 +147,8 @@ ClpvRegion VoxelMasks::stale_cells(const State& state, ClpvRegion place) const {
   return place;
 }
 
-void VoxelMasks::add_new_cells(ClpvRegion& region) const {
-  const int last = shape_.valid - 1;
+void VoxelField::add_new_cells(ClpvRegion& region) const {
+  const int last = kind_.shape.valid - 1;
   for (int a = 0; a < 3; ++a) {
     const int moved = region.moved[a];
     ClpvBox slab{{0, 0, 0}, {last, last, last}};
@@ -132,10 +157,10 @@ void VoxelMasks::add_new_cells(ClpvRegion& region) const {
   }
 }
 
-void VoxelMasks::add_moved(ClpvRegion& region) const {
+void VoxelField::add_moved(ClpvRegion& region) const {
   for (const Bounds& moved : scene_.clusters->moved()) {
     ClpvBox box;
-    const double most = 2.0 * shape_.cells;
+    const double most = 2.0 * kind_.shape.cells;
     for (int a = 0; a < 3; ++a) {
       const auto cell = [&](float at, double reach) -> int {
         const double from_first = (double{at} - region.base[a]) / region.cell - region.first[a];
@@ -149,8 +174,8 @@ void VoxelMasks::add_moved(ClpvRegion& region) const {
 }
 
 /// Adds a box to a region; if there are too many boxes, merges all into one.
-void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
-  const std::optional<ClpvBox> inside = within(box, shape_.valid);
+void VoxelField::add_box(ClpvRegion& region, const ClpvBox& box) const {
+  const std::optional<ClpvBox> inside = within(box, kind_.shape.valid);
   if (!inside) return;
   ClpvBox& all = region.all;
   if (region.boxes == 0) all = *inside;
@@ -166,28 +191,29 @@ void VoxelMasks::add_box(ClpvRegion& region, const ClpvBox& box) const {
 }
 
 /// Moves the masks that stay valid, and clears those to recompute.
-void VoxelMasks::clear(std::size_t cascade, const ClpvRegion& region) {
-  const std::size_t bytes = shape_.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
-  const std::size_t along = shape_.cells;
-  const auto words = static_cast<cl_int>(shape_.words);
+void VoxelField::clear(std::size_t cascade, const ClpvRegion& region) {
+  const std::size_t bytes = kind_.shape.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
+  const std::size_t along = kind_.shape.cells;
+  const auto words = static_cast<cl_int>(kind_.shape.words);
   const cl::NDRange cells(along, along, along), group(kMaskGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(masks_, bytes, from);
   if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
-    move_.set(region, shape_.cells, shape_.valid, words, masks_, slot(cascade), spare_).launch(cells, group);
+    move_.set(region, kind_.shape.cells, kind_.shape.valid, words, masks_, slot(cascade), spare_)
+        .launch(cells, group);
     session_.copy(spare_, masks_, bytes, from);
   }
-  clear_.set(region, shape_.cells, words, masks_, slot(cascade)).launch(cells, group);
+  clear_.set(region, kind_.shape.cells, words, masks_, slot(cascade)).launch(cells, group);
 }
 
-bool VoxelMasks::is_whole(const ClpvRegion& region) const {
+bool VoxelField::is_whole(const ClpvRegion& region) const {
   return region.boxes == 1 &&
          std::all_of(region.all.low, region.all.low + 3, [](int low) { return low == 0; }) &&
          std::all_of(region.all.high, region.all.high + 3,
-                     [&](int high) { return high == shape_.valid - 1; });
+                     [&](int high) { return high == kind_.shape.valid - 1; });
 }
 
 /// Lists the clusters of triangles in or near the region.
-void VoxelMasks::list_clusters(const ClpvRegion& region) {
+void VoxelField::list_clusters(const ClpvRegion& region) {
   std::vector<Bounds> reaches;
   for (unsigned b = 0; b < region.boxes; ++b) reaches.push_back(reach_of(region, region.box[b]));
   const std::vector<cl_uint> near = scene_.clusters->which([&](const Bounds& cluster) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Voxelised triangles are the same whether computed from nothing or updated as cascades and
 // triangles move.
-#include "pipeline/voxels/voxel_masks.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 
-namespace clpv::voxel_masks_test {
+namespace clpv::voxel_field_test {
 namespace {
 
 using namespace test;
@@ -67,33 +67,32 @@ struct Left {
 class Stages {
  public:
   explicit Stages(const SceneBuffers& buffers)
-      : visibility_(test_session(), buffers, kGrid, 2),
-        blocker_(test_session(), buffers, kGrid, 2, {}),
-        reflector_(test_session(), buffers, kGrid, 1, {}) {}
+      : visibility_(test_session(), buffers, visibility_masks(kGrid, 2)),
+        blockers_(test_session(), buffers, blocker_masks(buffers, kGrid, 2, {})),
+        reflectors_(test_session(), buffers, reflector_masks(buffers, kGrid, {})) {}
 
   Left bring(const ClpvGrid& grid) {
     visibility_.update(1, grid);
-    blocker_.voxelize(1, grid, geometry_);
-    reflector_.voxelize(0, grid);
-    const std::size_t bytes = CellVisibility::bytes(kGrid);
-    const auto occluded = test_session().read<std::uint8_t>(visibility_.occluded(), 2 * bytes);
+    blockers_.update(1, grid, geometry_);
+    reflectors_.update(0, grid, reflected_);
+    const std::size_t bytes = visibility_bytes(kGrid);
+    const auto occluded = test_session().read<std::uint8_t>(visibility_.masks(), 2 * bytes);
     return {{occluded.begin() + static_cast<std::ptrdiff_t>(bytes), occluded.end()},
             geometry_.read(test_session()),
-            reflector_.reflectors(0).read(test_session())};
+            reflected_.read(test_session())};
   }
 
  private:
-  CellVisibility visibility_;
-  BlockerVoxelizer blocker_;
-  ReflectorVoxelizer reflector_;
+  VoxelField visibility_, blockers_, reflectors_;
   Volume geometry_{test_session(), {kGrid + 1, 3, 1}, "test: geometry"};
+  Volume reflected_{test_session(), {kGrid, kCellFaces, 3}, "test: reflectors"};
 };
 
 Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
   return Stages(upload_scene(test_session(), scene)).bring(grid);
 }
 
-TEST(VoxelMasks, MoveWithACascade) {
+TEST(VoxelField, MoveWithACascade) {
   const Scene scene = soup();
   Stages kept(upload_scene(test_session(), scene));
   // By one cell, by several along two and three axes, back, by more than the grid, past a base
@@ -107,7 +106,7 @@ TEST(VoxelMasks, MoveWithACascade) {
   }
 }
 
-TEST(VoxelMasks, DoNotDependOnTheOrderOfTriangles) {
+TEST(VoxelField, DoNotDependOnTheOrderOfTriangles) {
   Scene scene = soup();
   scene.moving.clear();
   const Left before = from_nothing(scene, grid_at({-4, -4, -4}));
@@ -115,7 +114,7 @@ TEST(VoxelMasks, DoNotDependOnTheOrderOfTriangles) {
   EXPECT_TRUE(from_nothing(scene, grid_at({-4, -4, -4})) == before);
 }
 
-TEST(VoxelMasks, DegenerateTrianglesSetNoBits) {
+TEST(VoxelField, DegenerateTrianglesSetNoBits) {
   Scene scene;
   const auto expect_none = [&] {
     const Left left = from_nothing(scene, grid_at({0, 0, 0}));
@@ -131,7 +130,7 @@ TEST(VoxelMasks, DegenerateTrianglesSetNoBits) {
   expect_none();
 }
 
-TEST(VoxelMasks, FollowMovingObjects) {
+TEST(VoxelField, FollowMovingObjects) {
   Scene scene = soup();
   SceneBuffers buffers = upload_scene(test_session(), scene);
   Stages kept(buffers);
@@ -153,4 +152,4 @@ TEST(VoxelMasks, FollowMovingObjects) {
 }
 
 }  // namespace
-}  // namespace clpv::voxel_masks_test
+}  // namespace clpv::voxel_field_test
