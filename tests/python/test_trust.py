@@ -66,11 +66,6 @@ def test_a_forked_child_is_refused_by_name(work):  # a render there once hung
     assert ended.returncode == 0
 
 
-def test_a_forked_child_ends_as_python_does():
-    ended = run(FORK.format("del renderer\n  sys.exit(7)"))
-    assert ended.stdout == "child 7\n" and ended.returncode == 0, ended.stderr
-
-
 def test_a_fork_before_any_render_works():
     code = FORK.replace("renderer.render()\n", "").format(
         f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  sys.exit(0)")
